@@ -53,7 +53,7 @@ final case class Autopilot(
     * @param from
     *   system and component of the sender
     */
-  def heard(message: Message, from: (system: Int, component: Int), motion: Motion): Heard =
+  def heard(message: Message, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
     message match
       case one: CommandLong =>
         val numbers =
@@ -98,18 +98,18 @@ final case class Autopilot(
           case Some(Left(why))     => refused(why)
 
   /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never armed. */
-  def steer(motion: Motion): (heard: Heard, setpoint: Option[Setpoint]) =
+  def steer(motion: VehicleMotion): (heard: Heard, setpoint: Option[Setpoint]) =
     val (asked, texts) = uploading(motion)
     val (after, told)  = asked.onItsOwn(motion)
     (Heard(after, news = texts ++ told), after.goal(motion))
 
   /** In its own clock's time, whether setpoints come. */
-  def isCommanded(motion: Motion): Boolean =
+  def isCommanded(motion: VehicleMotion): Boolean =
     heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
 
   private def refused(why: String): Heard = Heard(this, Vector(text(Severity.Critical, why)))
 
-  private def acknowledged(order: Order, from: (system: Int, component: Int), motion: Motion): Heard =
+  private def acknowledged(order: Order, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
     def ack(result: Int) =
       CommandAck(order.command, result, targetSystem = from.system, targetComponent = from.component)
     obey(order, motion) match
@@ -117,7 +117,7 @@ final case class Autopilot(
         Heard(this, Vector(ack(result)), Vector(text(Severity.Critical, why)))
       case Right(heard) => heard.copy(answers = ack(Result.Accepted) +: heard.answers)
 
-  private def obey(order: Order, motion: Motion): Either[Refusal, Heard] = order.command match
+  private def obey(order: Order, motion: VehicleMotion): Either[Refusal, Heard] = order.command match
     case Command.Arm if order.isOne(0)       => arm(motion)
     case Command.Arm                         => disarm(motion, order.numbers(1) == CommonDialect.Force)
     case Command.Terminate if order.isOne(0) => disarm(motion, isForced = true)
@@ -166,7 +166,7 @@ final case class Autopilot(
       else Right(Heard(this, interval = Some((id, micros))))
     case other => Left(Refusal(Result.Unsupported, s"command $other unsupported"))
 
-  private def arm(motion: Motion): Either[Refusal, Heard] =
+  private def arm(motion: VehicleMotion): Either[Refusal, Heard] =
     if isArmed then Right(Heard(this))
     else if mode == FlightMode.Land || mode == FlightMode.Return then
       Left(Refusal(Result.Rejected, s"Arming denied: switch out of ${mode.title} mode first"))
@@ -182,7 +182,7 @@ final case class Autopilot(
         news = Vector(text(Severity.Info, "Armed by external command"))
       ))
 
-  private def disarm(motion: Motion, isForced: Boolean): Either[Refusal, Heard] =
+  private def disarm(motion: VehicleMotion, isForced: Boolean): Either[Refusal, Heard] =
     if isArmed && motion.isFlying && !isForced then
       Left(Refusal(Result.Rejected, "Disarming denied: not landed"))
     else
@@ -194,7 +194,7 @@ final case class Autopilot(
     news = if isArmed then Vector(text(Severity.Info, why)) else Vector.empty
   )
 
-  private def reposition(order: Order, motion: Motion): Either[Refusal, Heard] =
+  private def reposition(order: Order, motion: VehicleMotion): Either[Refusal, Heard] =
     val here = motion.state.positionNed
     // A command without a frame has PX4's: above the sea.
     Target.heightOf(order.frame.getOrElse(CommonDialect.Frame.Global), order.numbers(6), home) match
@@ -225,7 +225,7 @@ final case class Autopilot(
           )
 
   /** Takes a mode, or says why not. */
-  private def enter(wanted: FlightMode, motion: Motion): Either[Refusal, Heard] =
+  private def enter(wanted: FlightMode, motion: VehicleMotion): Either[Refusal, Heard] =
     def rejected(why: String) = Left(Refusal(Result.Rejected, s"Switching to ${wanted.title} denied: $why"))
     wanted match
       case FlightMode.Offboard if !isCommanded(motion) => rejected("no offboard setpoints")
@@ -251,7 +251,7 @@ final case class Autopilot(
       count: Int,
       kind: Int,
       from: (system: Int, component: Int),
-      motion: Motion
+      motion: VehicleMotion
   ): Heard =
     def ack(result: Int) = Vector(MissionAck(from.system, from.component, result, kind))
     if kind != Mission.Kind then Heard(this, ack(Mission.Ack.Unsupported))
@@ -266,7 +266,7 @@ final case class Autopilot(
       val begun = Upload(from.system, from.component, count, Vector.empty, motion.sinceBoot, tries = 1)
       Heard(copy(upload = Some(begun)), Vector(begun.question))
 
-  private def receive(item: MissionItemInt, from: (system: Int, component: Int), motion: Motion): Heard =
+  private def receive(item: MissionItemInt, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
     upload match
       case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
         if item.seq != going.items.size then Heard(this, Vector(going.question))
@@ -284,7 +284,7 @@ final case class Autopilot(
                 )
       case _ => Heard(this, Vector(MissionAck(from.system, from.component, Mission.Ack.OutOfOrder)))
 
-  private def uploading(motion: Motion): (Autopilot, Vector[Message]) = upload match
+  private def uploading(motion: VehicleMotion): (Autopilot, Vector[Message]) = upload match
     case Some(going) if (motion.sinceBoot - going.askedAt) >= Upload.AskAgain =>
       if going.tries >= Upload.MostTries then
         (
@@ -297,7 +297,7 @@ final case class Autopilot(
     case _ => (this, Vector.empty)
 
   /** What it does without being told. */
-  private def onItsOwn(motion: Motion): (Autopilot, Vector[Message]) =
+  private def onItsOwn(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val now = motion.sinceBoot
     if !isArmed then (this, Vector.empty)
     else
@@ -314,7 +314,7 @@ final case class Autopilot(
   /** On the ground only for as long as the rotors take. */
   private def isRising: Boolean = mode == FlightMode.Takeoff || mode == FlightMode.Mission
 
-  private def proceed(motion: Motion): (Autopilot, Vector[Message]) =
+  private def proceed(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val state = motion.state
     val here  = state.positionNed
     mode match
@@ -331,14 +331,14 @@ final case class Autopilot(
       case FlightMode.Mission => followed(motion)
       case _                  => (this, Vector.empty)
 
-  private def holding(motion: Motion): Autopilot = copy(
+  private def holding(motion: VehicleMotion): Autopilot = copy(
     mode = FlightMode.Hold,
     enteredAt = motion.sinceBoot,
     anchor = motion.state.positionNed,
     turn = Target.Turn.None
   )
 
-  private def followed(motion: Motion): (Autopilot, Vector[Message]) = mission.item match
+  private def followed(motion: VehicleMotion): (Autopilot, Vector[Message]) = mission.item match
     case None =>
       (holding(motion), Vector(text(Severity.Info, "Mission finished, loitering")))
     case Some(item) =>
@@ -380,7 +380,7 @@ final case class Autopilot(
                 val next = copy(mission = mission.next, anchor = here)
                 reached(next)
 
-  private def goal(motion: Motion): Option[Setpoint] =
+  private def goal(motion: VehicleMotion): Option[Setpoint] =
     val here  = motion.state.positionNed
     val speed = MetresPerSecond(cruise.getOrElse(parameters(Parameters.Cruise)).max(0.1))
     def to(place: Vector3, yaw: Target.Turn) =

@@ -139,7 +139,7 @@ object Target:
     * @param cruise
     *   the fastest that places are flown to
     */
-  def setpoint(target: Target, motion: Motion, cruise: MetresPerSecond): Setpoint = target match
+  def setpoint(target: Target, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint = target match
     case Attitude(roll, pitch, yaw, thrust) => Setpoint.anglesThrottle(roll, pitch, yaw, thrust)
     case Rates(roll, pitch, yaw, thrust)    => Setpoint.ratesThrottle(roll, pitch, yaw, thrust)
     case move: Move                         =>

@@ -29,7 +29,7 @@ object Telemetry:
   val Shortest: Span = Span.ofMillis(5)
 
   /** Absent where it is none of its messages. */
-  def of(id: Int, autopilot: Status, motion: Motion): Option[Message] =
+  def of(id: Int, autopilot: Status, motion: VehicleMotion): Option[Message] =
     val state  = motion.state
     val bootMs = motion.sinceBoot.toNanos / 1_000_000
     val bootUs = motion.sinceBoot.toNanos / 1000

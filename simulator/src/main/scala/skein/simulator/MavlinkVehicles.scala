@@ -70,14 +70,14 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
     private var decided      = Autopilot(system, vehicle.home)
     def autopilot: Autopilot = decided
 
-    def motion: Motion = motionAt(world.now)
+    def motion: VehicleMotion = motionAt(world.now)
 
-    private def motionAt(at: Instant): Motion =
+    private def motionAt(at: Instant): VehicleMotion =
       val state = vehicle.state.kinematics.copy(
         positionNed = vehicle.positionAt(at),
         velocityNed = vehicle.velocityAt(at)
       )
-      Motion(at.since(startedAt), state, vehicle.flying)
+      VehicleMotion(at.since(startedAt), state, vehicle.flying)
 
     def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       val wasArmed          = decided.isArmed
