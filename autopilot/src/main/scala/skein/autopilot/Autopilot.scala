@@ -36,9 +36,9 @@ final case class Autopilot(
     mission: Mission = Mission(),
     upload: Option[Upload] = None,
     anchor: Vector3 = Vector3.Zero,
-    turn: Target.Turn = Target.Turn.None,
+    turn: OffboardSetpoint.Turn = OffboardSetpoint.Turn.None,
     enteredAt: Span = Span.Zero,
-    target: Option[Target] = None,
+    target: Option[OffboardSetpoint] = None,
     heardAt: Option[Span] = None,
     stillSince: Option[Span] = None,
     groundedAt: Span = Span.Zero,
@@ -92,7 +92,7 @@ final case class Autopilot(
           Heard(next, news = Vector(next.mission.told))
         else refused(s"no mission item $seq")
       case setpoint =>
-        Target.of(setpoint, home) match
+        OffboardSetpoint.of(setpoint, home) match
           case None                => Heard(this)
           case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
           case Some(Left(why))     => refused(why)
@@ -126,7 +126,7 @@ final case class Autopilot(
       val down  =
         if above.isFinite && above > home.altitude.value + 0.1 then home.altitude.value - above
         else motion.state.positionNed.z - parameters(Parameters.TakeoffAltitude)
-      if math.abs(down) > Target.Most then
+      if math.abs(down) > OffboardSetpoint.Most then
         Left(Refusal(Result.Denied, s"takeoff: no altitude to reach: $above m"))
       else
         enter(FlightMode.Takeoff, motion).map(heard =>
@@ -197,7 +197,7 @@ final case class Autopilot(
   private def reposition(order: Order, motion: VehicleMotion): Either[Refusal, Heard] =
     val here = motion.state.positionNed
     // A command without a frame has PX4's: above the sea.
-    Target.heightOf(order.frame.getOrElse(CommonDialect.Frame.Global), order.numbers(6), home) match
+    OffboardSetpoint.heightOf(order.frame.getOrElse(CommonDialect.Frame.Global), order.numbers(6), home) match
       case None           => Left(Refusal(Result.Denied, s"frame ${order.frame.getOrElse(0)} unsupported"))
       case Some(altitude) =>
         val place = GeoLocation(order.numbers(4), order.numbers(5), altitude).nedFrom(home)
@@ -207,19 +207,19 @@ final case class Autopilot(
           if place.z.isFinite then place.z else here.z
         )
         val yaw     = order.numbers(3)
-        val isAfar  = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > Target.Most)
+        val isAfar  = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > OffboardSetpoint.Most)
         val isGlobe = !(math.abs(order.numbers(4)) > 90) && !(math.abs(order.numbers(5)) > 180)
-        if isAfar || !isGlobe || math.abs(yaw) > Target.Most then
+        if isAfar || !isGlobe || math.abs(yaw) > OffboardSetpoint.Most then
           Left(Refusal(
             Result.Denied,
-            s"reposition: expected a place within ${Target.Most.toInt} m and a yaw"
+            s"reposition: expected a place within ${OffboardSetpoint.Most.toInt} m and a yaw"
           ))
         else
           enter(FlightMode.Hold, motion).map(heard =>
             heard.copy(next =
               heard.next.copy(
                 anchor = goal,
-                turn = if yaw.isFinite then Target.Turn.Towards(yaw) else Target.Turn.None
+                turn = if yaw.isFinite then OffboardSetpoint.Turn.Towards(yaw) else OffboardSetpoint.Turn.None
               )
             )
           )
@@ -241,7 +241,7 @@ final case class Autopilot(
             enteredAt = motion.sinceBoot,
             // What it held, it goes on holding.
             anchor = if mode == FlightMode.Hold && wanted == mode then anchor else motion.state.positionNed,
-            turn = Target.Turn.None,
+            turn = OffboardSetpoint.Turn.None,
             stillSince = None,
             mission = again
           )
@@ -335,7 +335,7 @@ final case class Autopilot(
     mode = FlightMode.Hold,
     enteredAt = motion.sinceBoot,
     anchor = motion.state.positionNed,
-    turn = Target.Turn.None
+    turn = OffboardSetpoint.Turn.None
   )
 
   private def followed(motion: VehicleMotion): (Autopilot, Vector[Message]) = mission.item match
@@ -383,16 +383,16 @@ final case class Autopilot(
   private def goal(motion: VehicleMotion): Option[Setpoint] =
     val here  = motion.state.positionNed
     val speed = MetresPerSecond(cruise.getOrElse(parameters(Parameters.Cruise)).max(0.1))
-    def to(place: Vector3, yaw: Target.Turn) =
+    def to(place: Vector3, yaw: OffboardSetpoint.Turn) =
       val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place, speed)
-      Target.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
+      OffboardSetpoint.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
     def over(place: Vector3, downMps: Double) =
       val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place.copy(z = here.z), speed)
       Setpoint.velocity(velocity.x, velocity.y, downMps)
     if !isArmed then Some(Setpoint.Disarmed)
     else
       Some(mode match
-        case FlightMode.Offboard => target.fold(Setpoint.Armed)(Target.setpoint(_, motion, speed))
+        case FlightMode.Offboard => target.fold(Setpoint.Armed)(OffboardSetpoint.setpoint(_, motion, speed))
         case FlightMode.Takeoff  =>
           val up = parameters(Parameters.TakeoffSpeed)
           over(anchor, ((anchor.z - here.z) * 1.2).max(-up).min(up))
@@ -406,7 +406,7 @@ final case class Autopilot(
           val away   = here.copy(z = 0).norm
           // First up, then across; who is near already goes down where it is.
           if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
-          else to(Vector3.Zero.copy(z = here.z), Target.Turn.None)
+          else to(Vector3.Zero.copy(z = here.z), OffboardSetpoint.Turn.None)
         case FlightMode.Mission if !motion.isFlying =>
           Setpoint.velocity(0, 0, -parameters(Parameters.TakeoffSpeed))
         case FlightMode.Mission =>
@@ -417,8 +417,8 @@ final case class Autopilot(
               case Command.Land => to(Mission.place(item, home, anchor).copy(z = here.z), yawOf(item))
               case _            => to(anchor, turn))
 
-  private def yawOf(item: MissionItemInt): Target.Turn =
-    if item.param4.isFinite then Target.Turn.Towards(math.toRadians(item.param4)) else Target.Turn.None
+  private def yawOf(item: MissionItemInt): OffboardSetpoint.Turn =
+    if item.param4.isFinite then OffboardSetpoint.Turn.Towards(math.toRadians(item.param4)) else OffboardSetpoint.Turn.None
 
 object Autopilot:
   /** What comes of what was heard.
