@@ -27,7 +27,7 @@ import skein.vehicle.ConstantVelocity
   * @param operations
   *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then places
   * @param times
-  *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
+  *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[EventClock]] tells; of a decision, the
   *   time since the one before, and in a duel the ages of the own and of the opponent's reading; by who sees, the age of
   *   the own reading, the time, and until when a belief is carried ([[CameraTrackerLanes.look]]); of an image what
   *   [[CameraTrackerLanes.expose]] takes; of a score, the time; s
