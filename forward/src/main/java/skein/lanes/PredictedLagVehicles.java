@@ -31,16 +31,16 @@ final class PredictedLagVehicles extends PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Propagation course,
+      Propagation propagation,
       boolean withVelocity) {
-    float carried = (float) course.first(), kept = (float) course.second();
+    float carried = (float) propagation.first(), kept = (float) propagation.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
     carry(seenY, seenVy, carried, seenY, reading, into);
     if (withVelocity) {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    for (Propagation.Part part : course.parts()) {
+    for (Propagation.Part part : propagation.parts()) {
       int place = part.command();
       if (place != Propagation.Rest()) {
         float moved = (float) part.span() * speed, faster = (float) part.rest() * speed;
