@@ -4,7 +4,7 @@ import skein.measure.{FlightSet, FlightSummary, SeeingSummary, Detection}
 import skein.plot.*
 import skein.scenario.Equipment
 import skein.scene.{Moment, Placement, SceneObject}
-import skein.scene.render.{Kind, Raster, PngEncoder as PngFile, Renderer, View}
+import skein.scene.render.{Kind, PngEncoder, Raster, Renderer, View}
 import skein.settings.NamedScene
 import skein.simulator.MultirotorBody
 import skein.units.Decimals.fixed
@@ -55,7 +55,7 @@ object DetectionFigure:
           )
         val file =
           Renderer.draw(Moment(scene.scene, Vector(thing)), view, Set(Kind.Scene), _ => 0)(Kind.Scene) match
-            case Raster.Bytes(bgr) => PngFile.encode(bgr, camera.width, camera.height)
+            case Raster.Bytes(bgr) => PngEncoder.encode(bgr, camera.width, camera.height)
             case other            => throw IllegalStateException(s"expected colours, came $other")
         val scale = shownPx / camera.width
         val x     = (camera.width / 2.0 + view.focalPx * StrictMath.tan(detection.azimuthRad)) * scale

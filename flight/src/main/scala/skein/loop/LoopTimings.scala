@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.flow.Sense
-import skein.forward.{Asking, LoopTiming, SteeringEvent}
+import skein.forward.{Asking, LoopTiming, Steering}
 import skein.port.Moves
 import skein.units.*
 
@@ -22,7 +22,7 @@ object LoopTimings:
       inOrder = settings.early == Sense.Early.Waits
     )
     val steering =
-      SteeringEvent(settings.minCommandInterval.toSeconds, settings.movesInFlight, Moves.HandoverAllowed.toSeconds)
+      Steering(settings.minCommandInterval.toSeconds, settings.movesInFlight, Moves.HandoverAllowed.toSeconds)
     kind match
       case LoopKind.Paused     => Some(LoopTiming.Paused(periodS))
       case LoopKind.Sequential => Some(LoopTiming.Sequential(periodS, asking, steering))

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.flow.Sense
-import skein.forward.{Asking, LoopTiming, SteeringEvent}
+import skein.forward.{Asking, LoopTiming, Steering}
 import skein.planning.Geofence
 import skein.port.Moves
 import skein.scenario.Fence
@@ -44,7 +44,7 @@ class SettingsSuite extends munit.FunSuite:
   test("forward simulation has the loops' own times, in seconds"):
     val settings = LoopSettings(period = ms(200), paceInterval = ms(60), patience = ms(70), spread = ms(40))
     val asking   = Asking(4, 0.5, 0.04, inOrder = false)
-    val steering = SteeringEvent(0.02, 2, 0.0005)
+    val steering = Steering(0.02, 2, 0.0005)
     def of(kind: LoopKind, settings: LoopSettings = settings) = LoopTimings.of(kind, settings, ms(500))
     assertEquals(of(LoopKind.Paused), Some(LoopTiming.Paused(0.2)))
     assertEquals(of(LoopKind.Sequential), Some(LoopTiming.Sequential(0.2, asking, steering)))

@@ -2,7 +2,7 @@ package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{DelayTable, Duelist, Engagement, Grounds, LoopObserver, LoopTiming, Reduced, Rollout}
-import skein.policy.{Propagation, TeamPolicy, TeamObservation}
+import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
@@ -193,7 +193,7 @@ object TeamAgreementSimulation:
   /** Notes what a policy sees, and answers as it does. */
   final class Log(policy: TeamPolicy) extends TeamPolicy:
     val seen: ArrayBuffer[TeamObservation]        = ArrayBuffer.empty
-    def course(observed: TeamObservation): Propagation =
+    def course(observed: TeamObservation): Course =
       seen += observed
       policy.course(observed)
 

@@ -204,13 +204,13 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
 
 /** How often it turns depends on what it sees. */
 object Zigzag extends TeamPolicy:
-  def course(seen: TeamObservation): Propagation =
+  def course(seen: TeamObservation): Course =
     var turns = 0
     var north = seen.northM(seen.self)
     while north > 1 do
       north /= 2
       turns += 1
-    Propagation(turns * 0.5, 3)
+    Course(turns * 0.5, 3)
 
 // As docs/guides/search.md has it.
 /** How far the vehicles are from their middle, on average, m. */

@@ -3,7 +3,7 @@ package skein.rpc
 import scala.util.Random
 import upack.*
 
-class MessageSuite extends munit.FunSuite:
+class RpcMessageSuite extends munit.FunSuite:
 
   test("what the writer encodes is what the oracle reads"):
     for seed <- 1 to 100 do

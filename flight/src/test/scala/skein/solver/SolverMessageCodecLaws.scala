@@ -9,7 +9,7 @@ import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-class MessageCodecLaws extends munit.ScalaCheckSuite:
+class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
   private val number  = Gen.oneOf(Gen.double, Gen.oneOf(-0.0, 1e300, Double.MinPositiveValue, -12.5))
   private val instant = Gen.choose(-1e18.toLong, 4e18.toLong).map(Instant.ofNanos)
   private val span    = Gen.choose(-1e12.toLong, 1e12.toLong).map(Span.ofNanos)

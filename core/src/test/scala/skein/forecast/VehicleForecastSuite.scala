@@ -4,7 +4,7 @@ import skein.signal.*
 import skein.units.*
 import skein.vehicle.*
 
-class TrackSuite extends munit.FunSuite:
+class VehicleForecastSuite extends munit.FunSuite:
 
   /** The simulator's clock minus the controller's. */
   private val skew   = Span.ofSeconds(1000)

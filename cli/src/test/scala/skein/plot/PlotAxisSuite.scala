@@ -1,6 +1,6 @@
 package skein.plot
 
-class AxisSuite extends munit.FunSuite:
+class PlotAxisSuite extends munit.FunSuite:
 
   test("an axis around values ends at ticks of 1, 2 or 5 times a power of ten"):
     val axis = PlotAxis.around("m", 0, 47.9)

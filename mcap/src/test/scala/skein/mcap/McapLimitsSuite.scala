@@ -1,6 +1,6 @@
 package skein.mcap
 
-class LimitsSuite extends munit.FunSuite:
+class McapLimitsSuite extends munit.FunSuite:
   private val begin =
     val out = ByteBuilder(64)
     out.raw(Magic.bytes)
