@@ -121,7 +121,7 @@ final case class TeamQuestion(
           profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
         yield TeamEngine.Whole(
           WholeFlights.virtual(conditions, loop, profile, seed, reason),
-          isVirtual = true
+          virtually = true
         )
       case None =>
         for
@@ -130,7 +130,7 @@ final case class TeamQuestion(
         yield
           val plain = by.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
           if plain.isEmpty then TeamEngine.Reduced(flown, delays)
-          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain), isVirtual = false)
+          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain), virtually = false)
 
 object TeamQuestion:
   /** What flies where nothing is told: teams fly low, where the model of three parameters does not hold. */
@@ -159,13 +159,19 @@ object TeamQuestion:
           s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** What flies a team's candidates. */
-enum TeamEngine:
+/** What flies a team's candidates.
+  *
+  * @param isVirtual
+  *   whether candidates fly some a second
+  */
+enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
   /** By measures of quantities. */
   case Reduced(conditions: Conditions.Resolved, delays: Delays)
+      extends TeamEngine(false, conditions.vehicle.description, conditions.vehicle.name)
 
   /** By measures of whole flights. */
-  case Whole(flights: WholeFlights, isVirtual: Boolean)
+  case Whole(flights: WholeFlights, virtually: Boolean)
+      extends TeamEngine(virtually, flights.vehicles, flights.model)
 
 /** A search over a scenario's settings, ready to run.
   *
@@ -180,10 +186,7 @@ final case class TeamSetup(
     flownBy: TeamEngine,
     by: SearchMethod
 ) extends ReadySearch:
-  /** Whether candidates fly some a second. */
-  def isVirtual: Boolean = flownBy match
-    case TeamEngine.Whole(_, isVirtual) => isVirtual
-    case _: TeamEngine.Reduced          => false
+  export flownBy.{isVirtual, model, vehicles}
 
   val search: Search =
     if isVirtual then Search(space, by, objective.direction, question.seed, TeamSetup.LeastPlayOff)
@@ -261,14 +264,6 @@ final case class TeamSetup(
   def effort: Effort = flownBy match
     case _: TeamEngine.Reduced        => Effort.ofTeam(byLanes)
     case TeamEngine.Whole(flights, _) => flights.effort
-
-  def vehicles: String = flownBy match
-    case TeamEngine.Reduced(conditions, _) => conditions.vehicle.description
-    case TeamEngine.Whole(flights, _)      => flights.vehicles
-
-  def model: String = flownBy match
-    case TeamEngine.Reduced(conditions, _) => conditions.vehicle.name
-    case TeamEngine.Whole(flights, _)      => flights.model
 
   def blockEpisodes: Int = flownBy match
     case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(byLanes, conditions.vehicle)

@@ -74,7 +74,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       case TeamEngine.Reduced(conditions, delays) =>
         TeamEngine.Whole(
           WholeFlights.scalar(conditions, delays, question.seed, Seq("off-ring")),
-          isVirtual = false
+          virtually = false
         )
       case other => fail(other.toString)
     def mean(of: TeamSetup) =
