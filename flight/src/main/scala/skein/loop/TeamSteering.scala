@@ -87,7 +87,7 @@ private final class TeamSteering(
   def record: Sink[SteeringEvent, ?] = Sink.foreach(log.steered).addAttributes(parts.named("record"))
 
   /** The moves sent. */
-  def sent: Flow[SteeringEvent, Move, NotUsed] =
+  def sent: Flow[SteeringEvent, SentCommand, NotUsed] =
     val meter = parts.meter("sent")
     Flow[SteeringEvent]
       .collect:
@@ -106,8 +106,8 @@ private final class TeamSteering(
       Some(LoopEvent.Heard(ForecastEvent.Failed(vehicle, decision.sequence))))
 
   /** Carries the newest move of each vehicle back into the view. */
-  def feedBack: Flow[Move, LoopEvent, NotUsed] =
-    Flow[Move]
+  def feedBack: Flow[SentCommand, LoopEvent, NotUsed] =
+    Flow[SentCommand]
       .map(move => (move.vehicle, move))
       .via(FeedBack.newest)
       .map((_, move) => LoopEvent.Moved(move))

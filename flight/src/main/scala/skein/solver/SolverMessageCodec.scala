@@ -3,7 +3,7 @@ package skein.solver
 import java.io.IOException
 import skein.bytes.Codec
 import skein.forecast.Estimate
-import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
+import skein.loop.{Chosen, Memory, SentCommand, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
 import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
@@ -44,7 +44,7 @@ object SolverMessageCodec:
   private given Codec[Yaw]           = Codec.derived
   private given Codec[Action]        = Codec.derived
   private given Codec[Reading]       = Codec.derived
-  private given Codec[Move]          = Codec.derived
+  private given Codec[SentCommand]          = Codec.derived
   private given Codec[SensorReading] = Codec.derived
   private given Codec[Estimate]      = Codec.derived
   private given Codec[TeamView]      = Codec.derived[Seen].imap(_.view)(Seen.of)
@@ -82,7 +82,7 @@ object SolverMessageCodec:
   /** A view without its forecast, as it is written. */
   private final case class Seen(
       readings: Vector[Option[Reading]],
-      moves: Vector[Option[Move]],
+      moves: Vector[Option[SentCommand]],
       clocks: Option[(offset: Span, uncertainty: Span)],
       sensed: Vector[SensorReading],
       estimates: Option[Vector[Estimate]]

@@ -105,7 +105,7 @@ class PlanningSuite extends munit.FunSuite:
       Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
     def target(policy: AgentPolicy) =
       val posed = PursuitPlanning(flownBy(policy), pursuer, PlanSettings(behaviours = 1), 3)
-        .pose(Memory(0.25, None, 7), view.withMove(Move(evader, 1, 0.7, now)), now)
+        .pose(Memory(0.25, None, 7), view.withMove(SentCommand(evader, 1, 0.7, now)), now)
       posed.situation.behaviours.head.target
     target(KeepHeading) match
       case opponent: Target.Opponent =>

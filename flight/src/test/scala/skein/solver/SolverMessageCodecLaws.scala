@@ -3,7 +3,7 @@ package skein.solver
 import org.scalacheck.Prop.forAll
 import org.scalacheck.{Arbitrary, Gen}
 import skein.forecast.Estimate
-import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
+import skein.loop.{Chosen, Memory, SentCommand, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
 import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
@@ -53,7 +53,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
   private def move(vehicle: Int) =
     Gen.zip(Gen.long, number, instant, speed, Gen.option(action)).map(
       (decision, heading, at, speed, action) =>
-        Move(vehicle, decision, heading, at, speed, action)
+        SentCommand(vehicle, decision, heading, at, speed, action)
     )
 
   /** Of which middle and half width are whole. */
@@ -73,7 +73,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
           Gen.option(Gen.zip(Gen.long, stamped(kinematics)).map(Reading(vehicle, _, _)))
         )
       )
-      moves <- Gen.sequence[Vector[Option[Move]], Option[Move]](
+      moves <- Gen.sequence[Vector[Option[SentCommand]], Option[SentCommand]](
         (0 until vehicles).map(vehicle => Gen.option(move(vehicle)))
       )
       alignment <- Gen.option(alignment)
