@@ -25,7 +25,7 @@ class PlanKernelSuite extends munit.FunSuite:
     speedChange = 0.05,
     cruiseSpeed = 8
   )
-  private val search = Search(
+  private val search = SamplingDistribution(
     IArray.tabulate(steps)(0.02f * _),
     IArray.tabulate(steps)(step => 0.5f + 0.01f * step),
     IArray.fill(steps)(8f),
