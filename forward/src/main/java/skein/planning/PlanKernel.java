@@ -344,7 +344,7 @@ final class PlanKernel extends CandidateBlock {
   /** What it costs to come near the other vehicles. */
   private void keepApart() {
     float[] costs = costs();
-    Separation separation = objective.separation();
+    SeparationCost separation = objective.separation();
     FloatVector least =
         FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
     FloatVector price = FloatVector.broadcast(SPECIES, (float) separation.price() * dtS);
