@@ -24,7 +24,7 @@ private[rpc] final class Call(
     val calledAt: Instant
 ):
   val outcome: Promise[Either[RpcError, TimedReply[Msg | Received]]] = Promise()
-  val deadline: Instant                                          = calledAt + options.timeout
+  val deadline: Instant                                              = calledAt + options.timeout
 
   /** Order of arrival in its channel. */
   var sequence: Long = -1

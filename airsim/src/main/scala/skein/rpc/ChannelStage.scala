@@ -268,7 +268,7 @@ private[rpc] final class ChannelStage(
                   if connection.received(reply, now) then strays = 0 else strays += 1
                 case RpcMessage.Ignored(what)     => stray(what)
                 case RpcMessage.Malformed(reason) => ended(reason, malformed = true)
-                case other                     => stray(other.productPrefix)
+                case other                        => stray(other.productPrefix)
               if strays > settings.strays then
                 ended(s"more than ${settings.strays} values in a row that answer no call", malformed = true)
               more = !over

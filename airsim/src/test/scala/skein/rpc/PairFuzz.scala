@@ -160,11 +160,14 @@ object PairFuzz:
       for case Framed.Complete(frame) <- Wire.framed(framer, Seq(ByteString.fromArray(segment, 0, count))) do
         RpcMessage.fromClient(frame) match
           case request: RpcMessage.Request => id = Some(request.id)
-          case other                    => throw AssertionError(s"not a request: $other")
+          case other                       => throw AssertionError(s"not a request: $other")
     id.get
 
   /** Values up to the first malformed one, and why it is. */
-  private def decoded(bytes: Array[Byte], decode: Array[Byte] => RpcMessage): (Seq[RpcMessage], Option[String]) =
+  private def decoded(
+      bytes: Array[Byte],
+      decode: Array[Byte] => RpcMessage
+  ): (Seq[RpcMessage], Option[String]) =
     val framer   = Framer(frameLimits)
     val messages = Wire
       .framed(framer, Seq(ByteString.fromArrayUnsafe(bytes)))

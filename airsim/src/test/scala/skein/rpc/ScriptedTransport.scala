@@ -50,7 +50,7 @@ final class Peer(requests: TestSubscriber.Probe[ByteString], replies: TestPublis
       for case Framed.Complete(frame) <- Wire.framed(framer, Seq(requests.requestNext())) do
         RpcMessage.fromClient(frame) match
           case request: RpcMessage.Request => pending.enqueue(request)
-          case other                    => throw AssertionError(s"not a request: $other")
+          case other                       => throw AssertionError(s"not a request: $other")
     pending.dequeue()
 
   def answer(id: Long, result: Msg = Null): Unit = send { writer.reply(id, Right(result)); writer.take() }

@@ -212,7 +212,10 @@ class ServerLimitsSuite extends munit.FunSuite:
     r.never.success(Right(Null))
     var answers = Seq.empty[ByteString]
     while replies(answers).size < 20 do answers :+= greedy.replies.expectNext()
-    assertEquals(replies(answers).toSet, (1 to 20).map(id => RpcMessage.Reply(id, Null, Null): RpcMessage).toSet)
+    assertEquals(
+      replies(answers).toSet,
+      (1 to 20).map(id => RpcMessage.Reply(id, Null, Null): RpcMessage).toSet
+    )
     assertEquals(r.turns.mostBytes, 6L)
 
   rig("a message under way too long is the reason to close, and gives back what was held", ServerLimits()):

@@ -206,8 +206,8 @@ final case class Autopilot(
           if place.y.isFinite then place.y else here.y,
           if place.z.isFinite then place.z else here.z
         )
-        val yaw     = order.numbers(3)
-        val isAfar  = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > OffboardSetpoint.Most)
+        val yaw    = order.numbers(3)
+        val isAfar = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > OffboardSetpoint.Most)
         val isGlobe = !(math.abs(order.numbers(4)) > 90) && !(math.abs(order.numbers(5)) > 180)
         if isAfar || !isGlobe || math.abs(yaw) > OffboardSetpoint.Most then
           Left(Refusal(
@@ -266,7 +266,11 @@ final case class Autopilot(
       val begun = Upload(from.system, from.component, count, Vector.empty, motion.sinceBoot, tries = 1)
       Heard(copy(upload = Some(begun)), Vector(begun.question))
 
-  private def receive(item: MissionItemInt, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
+  private def receive(
+      item: MissionItemInt,
+      from: (system: Int, component: Int),
+      motion: VehicleMotion
+  ): Heard =
     upload match
       case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
         if item.seq != going.items.size then Heard(this, Vector(going.question))
@@ -418,7 +422,8 @@ final case class Autopilot(
               case _            => to(anchor, turn))
 
   private def yawOf(item: MissionItemInt): OffboardSetpoint.Turn =
-    if item.param4.isFinite then OffboardSetpoint.Turn.Towards(math.toRadians(item.param4)) else OffboardSetpoint.Turn.None
+    if item.param4.isFinite then OffboardSetpoint.Turn.Towards(math.toRadians(item.param4))
+    else OffboardSetpoint.Turn.None
 
 object Autopilot:
   /** What comes of what was heard.

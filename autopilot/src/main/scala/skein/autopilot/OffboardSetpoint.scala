@@ -132,39 +132,42 @@ object OffboardSetpoint:
         turn.map(Turn.Towards(_)).orElse(rate.map(Turn.Turning(_))).getOrElse(Turn.None)
       ))
 
-  extension (move: OffboardSetpoint.Move) private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
+  extension (move: OffboardSetpoint.Move)
+    private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
 
   /** What the flight controller is told for it.
     *
     * @param cruise
     *   the fastest that places are flown to
     */
-  def setpoint(target: OffboardSetpoint, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint = target match
-    case Attitude(roll, pitch, yaw, thrust) => Setpoint.anglesThrottle(roll, pitch, yaw, thrust)
-    case Rates(roll, pitch, yaw, thrust)    => Setpoint.ratesThrottle(roll, pitch, yaw, thrust)
-    case move: Move                         =>
-      val state        = motion.state
-      val (vn, ve, vd) = move.velocity
-      val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
-      val yaw          = state.orientation.yawRad
-      val velocity     =
-        if move.inBody then Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
-        else asked
-      val goal = Vector3(
-        move.north.getOrElse(state.positionNed.x),
-        move.east.getOrElse(state.positionNed.y),
-        move.down.getOrElse(state.positionNed.z)
-      )
-      val towards = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, cruise)
-      val north   = velocity.x + move.north.fold(0.0)(_ => towards.x)
-      val east    = velocity.y + move.east.fold(0.0)(_ => towards.y)
-      // By velocity in the plane and at an altitude: what the flight controller does by itself.
-      val byPlane  = move.north.isEmpty && move.east.isEmpty && vd.isEmpty
-      val setpoint = move.down match
-        case Some(down) if byPlane => Setpoint.velocityZ(north, east, down)
-        case Some(_)               => Setpoint.velocity(north, east, velocity.z + towards.z)
-        case None                  => Setpoint.velocity(north, east, velocity.z)
-      turned(setpoint, move.turn)
+  def setpoint(target: OffboardSetpoint, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint =
+    target match
+      case Attitude(roll, pitch, yaw, thrust) => Setpoint.anglesThrottle(roll, pitch, yaw, thrust)
+      case Rates(roll, pitch, yaw, thrust)    => Setpoint.ratesThrottle(roll, pitch, yaw, thrust)
+      case move: Move                         =>
+        val state        = motion.state
+        val (vn, ve, vd) = move.velocity
+        val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
+        val yaw          = state.orientation.yawRad
+        val velocity     =
+          if move.inBody then
+            Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
+          else asked
+        val goal = Vector3(
+          move.north.getOrElse(state.positionNed.x),
+          move.east.getOrElse(state.positionNed.y),
+          move.down.getOrElse(state.positionNed.z)
+        )
+        val towards = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, cruise)
+        val north   = velocity.x + move.north.fold(0.0)(_ => towards.x)
+        val east    = velocity.y + move.east.fold(0.0)(_ => towards.y)
+        // By velocity in the plane and at an altitude: what the flight controller does by itself.
+        val byPlane  = move.north.isEmpty && move.east.isEmpty && vd.isEmpty
+        val setpoint = move.down match
+          case Some(down) if byPlane => Setpoint.velocityZ(north, east, down)
+          case Some(_)               => Setpoint.velocity(north, east, velocity.z + towards.z)
+          case None                  => Setpoint.velocity(north, east, velocity.z)
+        turned(setpoint, move.turn)
 
   private[autopilot] def turned(setpoint: Setpoint, turn: Turn): Setpoint = turn match
     case Turn.None           => setpoint

@@ -16,7 +16,11 @@ class AutopilotSuite extends munit.FunSuite:
       place: Vector3 = Vector3.Zero,
       flying: Boolean = false,
       velocity: Vector3 = Vector3.Zero
-  ) = VehicleMotion(Span.ofSeconds(seconds), Kinematics(place, velocity, Quaternion.Identity, Vector3.Zero), flying)
+  ) = VehicleMotion(
+    Span.ofSeconds(seconds),
+    Kinematics(place, velocity, Quaternion.Identity, Vector3.Zero),
+    flying
+  )
 
   private def command(number: Int, numbers: Float*): Message =
     val all = numbers.padTo(7, 0f)

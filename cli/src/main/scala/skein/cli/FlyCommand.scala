@@ -177,7 +177,7 @@ final class FlyCommand(using Scenarios)
   private def allWell(landed: Vector[FlightResult]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>
       val ended = flight.outcome match
-        case FlightOutcome.Failed(reason)              => Some(reason)
+        case FlightOutcome.Failed(reason)                    => Some(reason)
         case FlightOutcome.Completed | FlightOutcome.Stopped => None
       ended.orElse(flight.written.left.toOption.map(_.message)).map(reason =>
         s"${flight.plan.id} failed: $reason"

@@ -34,10 +34,11 @@ private[cli] object Questions:
     String(kind.toArray, UTF_8) match
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))
       case Budget  => ClusterSubject.solvers.of(question.drop(1))
-      case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): BlockSolver)
-      case Spread  => SpreadQuestion.solvers.of(question.drop(1))
-      case Learn   => LearnWork.solvers.of(question.drop(1))
-      case other   =>
+      case Torture =>
+        TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): BlockSolver)
+      case Spread => SpreadQuestion.solvers.of(question.drop(1))
+      case Learn  => LearnWork.solvers.of(question.drop(1))
+      case other  =>
         Left(
           s"expected a question of $Search, $Budget, $Torture, $Spread or $Learn, came one of '${other.take(40)}'"
         )

@@ -28,7 +28,7 @@ private[cli] object SpreadFlights:
       .inParallel(settings, plans): flight =>
         val summary = flight.landed.outcome match
           case FlightOutcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
-          case _                      => Right(FlightSummary.of(flight.recorder.recording))
+          case _                            => Right(FlightSummary.of(flight.recorder.recording))
         onLanded
         summary
       .map(_.flatten)

@@ -41,7 +41,11 @@ object LatencyFigure:
     val halves  = profile.toVector.flatMap(densityOfHalves(_, step))
     val panel   = Panel(
       PlotAxis.around("round trip, ms", 0, most, 6),
-      PlotAxis.around(s"share per $width ms, %", 0, (share.values ++ (density ++ halves).map(_._2)).max * 1.12),
+      PlotAxis.around(
+        s"share per $width ms, %",
+        0,
+        (share.values ++ (density ++ halves).map(_._2)).max * 1.12
+      ),
       left = 52,
       top = 48,
       width = 300,

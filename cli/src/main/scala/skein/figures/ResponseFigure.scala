@@ -22,9 +22,9 @@ object ResponseFigure:
   private def panel(model: ReducedModel, flown: Flown): Drawing =
     val modelled = flight(model, flown)
     val samples  = flown.samples
-    val time     = PlotAxis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
-    val speeds   = samples.flatMap(sample => Vector(sample.vx, sample.vy))
-    val top      =
+    val time   = PlotAxis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
+    val speeds = samples.flatMap(sample => Vector(sample.vx, sample.vy))
+    val top    =
       Panel(
         time.copy(label = ""),
         PlotAxis.around("velocity, m/s", speeds.min, speeds.max),

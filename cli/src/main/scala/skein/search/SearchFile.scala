@@ -17,7 +17,7 @@ object SearchFile:
   given ReadWriter[RunningStats]        = ReadWriter.derived
   private given ReadWriter[Scored]      = ReadWriter.derived
   private given ReadWriter[CmaEs.State] = ReadWriter.derived
-  private given ReadWriter[MethodState]      = ReadWriter.derived
+  private given ReadWriter[MethodState] = ReadWriter.derived
   private given ReadWriter[SearchState] = ReadWriter.derived
   given ReadWriter[Question]            = readwriter[ujson.Value].bimap(
     {

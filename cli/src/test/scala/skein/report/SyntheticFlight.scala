@@ -143,7 +143,8 @@ object SyntheticFlight:
       seconds: Int,
       scenario: Fleet
   ): RecordingHeader =
-    def vehicle(agent: Agent) = VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+    def vehicle(agent: Agent) =
+      VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
     RecordingHeader(
       FlightRow(
         s"$loop-$link",

@@ -48,4 +48,5 @@ enum WorkerEvent(val text: String):
       extends WorkerEvent(s"$worker is gone; $blocks blocks that it had wait again")
   case Refused(worker: String, reason: String) extends WorkerEvent(s"refused $worker: $reason")
   case Fetching(worker: String) extends WorkerEvent(s"$worker fetches this program, for its own is another")
-  case Unread(worker: String, reason: String) extends WorkerEvent(s"$worker cannot have this program: $reason")
+  case Unread(worker: String, reason: String)
+      extends WorkerEvent(s"$worker cannot have this program: $reason")

@@ -112,7 +112,8 @@ private[cluster] final class CoordinatorBehavior private (
       addresses += ask.worker -> ask.replyTo
       if ask.run != job.run then say(ask.replyTo, ToWorker.Welcome(job.run, job.question))
       else
-        if !state.workers.get(ask.worker).exists(_.isHere) then tell(WorkerEvent.Joined(ask.worker, ask.cores))
+        if !state.workers.get(ask.worker).exists(_.isHere) then
+          tell(WorkerEvent.Joined(ask.worker, ask.cores))
         state = state.joined(ask.worker, ask.cores)
         serve(ask.worker, ask.holding)
 

@@ -172,8 +172,9 @@ private[cluster] object WorkerBehavior:
     case Offered(run: Long, program: Sha256)
 
   sealed trait Local
-  private case object Beat                                                                       extends Local
-  private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[BlockSolver]]) extends Local
+  private case object Beat extends Local
+  private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[BlockSolver]])
+      extends Local
   private final case class Solved(
       run: Long,
       number: Long,

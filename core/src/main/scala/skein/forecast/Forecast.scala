@@ -71,8 +71,9 @@ final case class Forecast private (
       delays = Some(current)
     )
 
-  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): VehicleForecast[?] = models(vehicle) match
-    case model: VehicleModel[s] => VehicleForecast(model, reading)
+  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): VehicleForecast[?] =
+    models(vehicle) match
+      case model: VehicleModel[s] => VehicleForecast(model, reading)
 
   private def updated(vehicle: Int)(change: VehicleForecast[?] => VehicleForecast[?]): Forecast =
     copy(tracks = tracks.updated(vehicle, tracks(vehicle).map(change)))

@@ -124,7 +124,8 @@ object Formula:
           )
         )
       val args = method.getParameters.toVector.map(each => argument(each.getType, each.getName))
-      val self = if code.isStatic then Vector.empty else Vector(Known(target, Some(Path(None, PathStep.Itself))))
+      val self =
+        if code.isStatic then Vector.empty else Vector(Known(target, Some(Path(None, PathStep.Itself))))
       val answer = lifter.call(code, self ++ args)
 
       def outputsOf(value: Value, name: String): Vector[(String, Node)] = value match
@@ -240,7 +241,7 @@ private final class NumberReader(paths: Vector[Path]):
   private val indices = paths.map(indexOf).toArray
   private def indexOf(of: Path) = of.step match
     case PathStep.At(index) => index
-    case _              => -1
+    case _                  => -1
 
   def read(root: AnyRef): Array[Double] =
     val found   = walk(root)
@@ -278,9 +279,9 @@ private final class PathWalk(paths: Vector[Path]):
     while i < steps.length do
       val from = if before(i) < 0 then root else found(before(i))
       found(i) = steps(i) match
-        case PathStep.Itself       => root
-        case _ if from == null => null
-        case PathStep.Of(field)    =>
+        case PathStep.Itself    => root
+        case _ if from == null  => null
+        case PathStep.Of(field) =>
           if field.getDeclaringClass.isInstance(from) then field.get(from) else null
         case PathStep.At(index) =>
           if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)

@@ -31,7 +31,8 @@ class VehicleForecastSuite extends munit.FunSuite:
   private def northAt(track: VehicleForecast[?], validMs: Double, nowMs: Double): Double =
     track.estimateAt(simulator(validMs), delays, controller(nowMs)).kinematics.positionNed.x
 
-  private val commanded = VehicleForecast(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
+  private val commanded =
+    VehicleForecast(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
 
   test("each command acts when it is expected to arrive, whatever the clocks show"):
     assertEqualsDouble(northAt(commanded, 50, 60), 0, 1e-4)
@@ -107,9 +108,10 @@ class VehicleForecastSuite extends munit.FunSuite:
         Quaternion.Identity,
         Vector3.Zero
       )
-    val track = Seq(300.0, 400.0, 1000.0).foldLeft(VehicleForecast(obedient, reading(0, circling(0))))((track, ms) =>
-      track.seen(reading(ms, circling(ms)), delays)
-    )
+    val track =
+      Seq(300.0, 400.0, 1000.0).foldLeft(VehicleForecast(obedient, reading(0, circling(0))))((track, ms) =>
+        track.seen(reading(ms, circling(ms)), delays)
+      )
     for ms <- 0 to 400 by 10 do
       val position = track.positionNedAt(simulator(ms)).get
       assert((position - circling(ms).positionNed).norm < 5e-3, s"$ms ms: $position")
@@ -132,7 +134,7 @@ class VehicleForecastSuite extends munit.FunSuite:
       quadrotor.step(real, if 3 * n < 50 then Setpoint.hold(start) else setpoint(3 * n - 50))
       before
     var track: VehicleForecast[?] = VehicleForecast(model, reading(0, truth(0)))
-    var worst           = 0.0
+    var worst                     = 0.0
     for n <- 33 until 1900 by 33 do
       val sampledMs = 3 * n
       for sentMs <- 0 to sampledMs + 49 by 100 if sentMs > sampledMs - 50 do

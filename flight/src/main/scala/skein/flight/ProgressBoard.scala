@@ -10,7 +10,12 @@ import skein.units.Decimals.fixed
   * @param silentFor
   *   how long nothing was heard of the simulator, where it is silent
   */
-final case class FlightProgress(id: String, flown: Span, seen: Option[LastSeen], silentFor: Option[Span] = None):
+final case class FlightProgress(
+    id: String,
+    flown: Span,
+    seen: Option[LastSeen],
+    silentFor: Option[Span] = None
+):
   def text: String =
     val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
     val shown   = seen.map(seen =>

@@ -122,7 +122,7 @@ object VirtualFlights:
       flown <- fly(settings, settings.plans.last.copy(seed = settings.seed))
       _     <- flown.landed.outcome match
         case FlightOutcome.Failed(reason) => Left(reason)
-        case _                      => Right(())
+        case _                            => Right(())
       tracks <- Tracks
         .of(RecordedTracks.of(flown.recorder.recording))
         .filter(_.vehicles.size == settings.fleet.agents.size)

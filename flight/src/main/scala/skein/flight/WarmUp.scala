@@ -57,7 +57,7 @@ object WarmUp:
           case Right(flight) =>
             flight.landed.outcome match
               case FlightOutcome.Failed(reason) => Left(s"${plan.id}, to warm up: $reason")
-              case _                      => next(flown + 1)
+              case _                            => next(flown + 1)
 
     next(0)
 

@@ -97,10 +97,15 @@ object Flight:
   private def recorded(recorder: Recorder, outcome: FlightOutcome): FlightOutcome =
     recorder.failure.value.flatMap(_.toOption) match
       case Some(error) if !outcome.isInstanceOf[FlightOutcome.Failed] => FlightOutcome.Failed(error.message)
-      case _                                                    => outcome
+      case _                                                          => outcome
 
   /** Nothing says that a user's graph minds the switch: one that does not is broken off. */
-  private def runOwn(own: OwnLoop, team: Team, switch: SharedKillSwitch, stopping: Future[FlightOutcome])(using
+  private def runOwn(
+      own: OwnLoop,
+      team: Team,
+      switch: SharedKillSwitch,
+      stopping: Future[FlightOutcome]
+  )(using
       system: ActorSystem
   ): Future[Done] =
     import system.dispatcher

@@ -47,7 +47,9 @@ object RecordedPlan:
     *   the number of the next one
     */
   def learned(at: Instant, vehicle: String, decision: Long, news: LearnerUpdate): Seq[Record] =
-    news.parameters.map(parameters => ParameterRow(s"$Version.$decision", Numbers64.text(parameters))).toSeq :+
+    news.parameters.map(parameters =>
+      ParameterRow(s"$Version.$decision", Numbers64.text(parameters))
+    ).toSeq :+
       Event(at, EventKind.Learned, Some(vehicle), news.text, Some(decision))
 
   /** What [[of]] needs besides the columns that every recording has. */

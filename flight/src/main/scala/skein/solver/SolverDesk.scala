@@ -80,9 +80,9 @@ final class SolverDesk(
         Left(mistake)
 
   private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Unit =
-    val known                    = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
+    val known = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
     def answer(message: SolverMessage) = reply(SolverMessageCodec.bytes(message))
-    def no(reason: String)       =
+    def no(reason: String)             =
       lock.synchronized:
         refused += 1
       told(s"refused a flight: $reason")

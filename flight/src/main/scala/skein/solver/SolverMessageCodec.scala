@@ -44,7 +44,7 @@ object SolverMessageCodec:
   private given Codec[Yaw]           = Codec.derived
   private given Codec[Action]        = Codec.derived
   private given Codec[Reading]       = Codec.derived
-  private given Codec[SentCommand]          = Codec.derived
+  private given Codec[SentCommand]   = Codec.derived
   private given Codec[SensorReading] = Codec.derived
   private given Codec[Estimate]      = Codec.derived
   private given Codec[TeamView]      = Codec.derived[Seen].imap(_.view)(Seen.of)
@@ -58,14 +58,14 @@ object SolverMessageCodec:
     .derived[Question]
     .imap(checked)(asked => asked.copy(view = withSensorsOf(asked.deciders.map(_.vehicle).toSet, asked.view)))
 
-  private given Codec[PlannedPath]     = Codec.derived
-  private given Codec[PlanReport] = Codec.derived
-  private given Codec[Chosen]     = Codec.derived
+  private given Codec[PlannedPath] = Codec.derived
+  private given Codec[PlanReport]  = Codec.derived
+  private given Codec[Chosen]      = Codec.derived
 
-  private given Codec[Choice]   = Codec.derived
-  private given Codec[Answer]   = Codec.derived
-  private given Codec[Briefing] = Codec.derived
-  private given Codec[SolverMessage]  = Codec.derived
+  private given Codec[Choice]        = Codec.derived
+  private given Codec[Answer]        = Codec.derived
+  private given Codec[Briefing]      = Codec.derived
+  private given Codec[SolverMessage] = Codec.derived
 
   private def checked(asked: Question): Question =
     val vehicles = asked.view.readings.size

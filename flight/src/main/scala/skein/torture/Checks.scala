@@ -121,7 +121,7 @@ object Checks:
   /** A recording that failed has the beginning alone. */
   private def isRecorded(seen: FlightTrace): Boolean = seen.outcome match
     case FlightOutcome.Failed(_) => false
-    case _                 => true
+    case _                       => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
     // Each sensor that a policy reads is asked beside the vehicle.
@@ -150,7 +150,8 @@ object Checks:
     */
   private def outOfControl(seen: FlightTrace): Vector[String] =
     val due = seen.calmFrom + FaultPlan.ResumesWithin
-    if seen.outcome != FlightOutcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused then
+    if seen.outcome != FlightOutcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused
+    then
       Vector.empty
     else
       seen.vehicles.flatMap: vehicle =>

@@ -155,7 +155,7 @@ class FailureTellingSimulation extends munit.FunSuite:
       val why   = "the simulator at simulator:41451 no longer gives "
       flown.landed.outcome match
         case FlightOutcome.Failed(reason) => assert(reason.startsWith(why), reason)
-        case other                  => fail(s"it ended as $other")
+        case other                        => fail(s"it ended as $other")
       // It is asked once a client that waits up to 2 s between two attempts has found it.
       val latest = flown.wentWrong + pause + Span.ofSeconds(3)
       assert(flown.told.exists((at, line) => line.contains(why) && at < latest), flown.told.toString)

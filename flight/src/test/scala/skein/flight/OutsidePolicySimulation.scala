@@ -75,7 +75,7 @@ class OutsidePolicySimulation extends munit.FunSuite:
       Some(if number < 5 then Peer.pursuer(seen) else Peer.refusal("no such luck"))
     ) match
       case (FlightOutcome.Failed(reason), _) => assert(reason.contains("the policy: no such luck"), reason)
-      case (other, _)                  => fail(s"$other")
+      case (other, _)                        => fail(s"$other")
 
   test("flights to warm up in virtual time do not ask it"):
     Using.resource(Peer((_, _) => None)): peer =>

@@ -29,7 +29,10 @@ class OwnLoopSimulation extends munit.FunSuite:
       port.hover()
     override val sensors: Map[String, Sensor] = port.sensors
 
-  private def fly(loop: OwnLoop, seed: Long = 1): (outcome: FlightOutcome, recorder: MemoryRecorder, hovers: Int) =
+  private def fly(
+      loop: OwnLoop,
+      seed: Long = 1
+  ): (outcome: FlightOutcome, recorder: MemoryRecorder, hovers: Int) =
     var hovers = 0
     val flown  = VirtualTime
       .run(seed): system =>

@@ -61,7 +61,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
 
   test("the four observations count from arrival and from the moves sent"):
-    val moved    = view.withMove(SentCommand(0, 0, 1, millis(150))).withMove(SentCommand(1, 0, 1, millis(170)))
+    val moved = view.withMove(SentCommand(0, 0, 1, millis(150))).withMove(SentCommand(1, 0, 1, millis(170)))
     val decision = row(evader.decide(evader.start, moved, millis(200)))
     assertEquals(decision.observations.ownAge, Span.ofMillis(80))
     assertEquals(decision.observations.opponentAge, Span.ofMillis(40))
@@ -81,7 +81,8 @@ class DeciderSuite extends munit.FunSuite:
   test(
     "it sees itself heading where it was last told, the others where they were sent, and all as they are foreseen"
   ):
-    val sent   = view.withMove(SentCommand(0, 0, 0.4, millis(150))).withMove(SentCommand(1, 0, 0.6, millis(150)))
+    val sent =
+      view.withMove(SentCommand(0, 0, 0.4, millis(150))).withMove(SentCommand(1, 0, 0.6, millis(150)))
     val memory = pursuer.start.copy(headingRad = 0.9, decidedAt = Some(millis(170)), decisions = 3)
     val heard  = pursuer.observation(memory, sent, millis(200))
     assertEquals(heard.headings.map(_.value), Vector(0.4, 0.9))

@@ -13,7 +13,11 @@ import skein.vtime.VirtualTime
 class LateFailureSimulation extends munit.FunSuite:
 
   /** Of a flight of 2 s over 200 ms each way, whose recorder fails at a moment, if ever. */
-  private def outcome(kind: LoopKind, failsAt: Option[Span], ends: () => FlightOutcome = () => FlightOutcome.Completed) =
+  private def outcome(
+      kind: LoopKind,
+      failsAt: Option[Span],
+      ends: () => FlightOutcome = () => FlightOutcome.Completed
+  ) =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system

@@ -149,7 +149,7 @@ class PausedLoopSuite extends munit.FunSuite:
     for landed <- Seq(fly(failingRead = 5), fly(failingStep = 5), fly(failingStep = 1)) do
       landed.outcome match
         case FlightOutcome.Failed(reason) => assert(reason.contains("no answer"), reason)
-        case other                  => fail(s"expected a failure, came $other")
+        case other                        => fail(s"expected a failure, came $other")
       isReleased(landed)
 
   test("vehicles and simulator are told again until they answer"):
@@ -159,4 +159,4 @@ class PausedLoopSuite extends munit.FunSuite:
   test("a simulator that never answers again is given up, and the outcome says so"):
     fly(failedResumes = 999).outcome match
       case FlightOutcome.Failed(reason) => assert(reason.contains("stands still"), reason)
-      case other                  => fail(s"expected a failure, came $other")
+      case other                        => fail(s"expected a failure, came $other")

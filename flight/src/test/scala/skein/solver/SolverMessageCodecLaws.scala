@@ -181,7 +181,9 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
       val _ = SolverMessageCodec.message(bytes)
 
   property("garbage is refused"):
-    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => SolverMessageCodec.message(bytes).isLeft || bytes.length > 9)
+    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes =>
+      SolverMessageCodec.message(bytes).isLeft || bytes.length > 9
+    )
 
   test("a mistake says what was expected and what came"):
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
@@ -195,7 +197,9 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     )
     assertEquals(
       SolverMessageCodec.message(new Array[Byte](SolverMessageCodec.MostBytes + 1)),
-      Left(s"expected ${SolverMessageCodec.MostBytes} bytes at most, came ${SolverMessageCodec.MostBytes + 1}")
+      Left(
+        s"expected ${SolverMessageCodec.MostBytes} bytes at most, came ${SolverMessageCodec.MostBytes + 1}"
+      )
     )
     val memory   = Memory(0, None, 0)
     val question = Question(1, Vector.empty, 0, Instant.Epoch, None, None, TeamView.empty(2))

@@ -166,7 +166,7 @@ private sealed class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
-  def clock(): EventClock                         = PieceClock(lanes.plant.stepS)
+  def clock(): EventClock                           = PieceClock(lanes.plant.stepS)
 
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     PlantFlights(duelist, lanes, timing)

@@ -52,7 +52,8 @@ private[skein] final class Timetable private[lanes] (
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
-  def bytes: Long = 4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
+  def bytes: Long =
+    4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
 
 private[skein] object Timetable:
   val Fields: Int  = 6
@@ -131,11 +132,11 @@ private final class TimetableCompiler(
     Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 
   /** The number of each view among those that are told, or −1. */
-  private val told    = Array.fill(notes.views.size)(-1)
+  private val told         = Array.fill(notes.views.size)(-1)
   private val propagations = Array.newBuilder[Propagation]
-  private var placed  = 0
-  private val views   = Array.newBuilder[Int]
-  private var count   = 0
+  private var placed       = 0
+  private val views        = Array.newBuilder[Int]
+  private var count        = 0
 
   private val operations = Array.ofDim[Int](end * Fields)
   private val times      = Array.ofDim[Float](end * Numbers)

@@ -52,8 +52,8 @@ private[skein] object TimetablePredictor:
 private object CoastPredictor extends TimetablePredictor, Propagator:
   def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
   def propagator: Propagator                               = this
-  def next(legs: Vector[Propagator.Leg]): Propagator = this
-  def predicted(legs: Vector[Propagator.Leg]): Propagation   =
+  def next(legs: Vector[Propagator.Leg]): Propagator       = this
+  def predicted(legs: Vector[Propagator.Leg]): Propagation =
     Propagation(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each

@@ -84,7 +84,11 @@ final class Search(
     val course = method match
       case _: (SearchMethod.Grid | SearchMethod.Random) => MethodState.Listed(0)
       case _: SearchMethod.CrossEntropy                 =>
-        MethodState.Drawn(0, space.axes.map(axis => (axis.least + axis.most) / 2), space.axes.map(_.width / 2))
+        MethodState.Drawn(
+          0,
+          space.axes.map(axis => (axis.least + axis.most) / 2),
+          space.axes.map(_.width / 2)
+        )
       case cma: SearchMethod.CmaEs =>
         MethodState.Adapted(evolution.get.start(space.shares(space.defaults), cma.startSize))
       case _: SearchMethod.Racing => MethodState.Raced(0, Vector.empty)
@@ -130,8 +134,8 @@ final class Search(
       (fields, 0 until method.episodes)
     case MethodState.Drawn(generation, means, deviations) =>
       (drawn(generation, means, deviations), 0 until method.episodes)
-    case MethodState.Adapted(state)      => (evolution.get.sample(state).map(space.at), 0 until method.episodes)
-    case MethodState.Raced(0, _)         => (randomField, 0 until method.episodes)
+    case MethodState.Adapted(state) => (evolution.get.sample(state).map(space.at), 0 until method.episodes)
+    case MethodState.Raced(0, _)    => (randomField, 0 until method.episodes)
     case MethodState.Raced(round, field) =>
       val flown = field.head.tally.count
       (field.map(_.candidate), flown until 2 * flown)
@@ -151,7 +155,11 @@ final class Search(
     case SearchMethod.Racing(candidates, _) => space.random(candidates, seed)
     case _                                  => Vector.empty
 
-  private def after(course: MethodState, before: Vector[Scored], seen: Vector[Scored]): (MethodState, Vector[Scored]) =
+  private def after(
+      course: MethodState,
+      before: Vector[Scored],
+      seen: Vector[Scored]
+  ): (MethodState, Vector[Scored]) =
     lazy val leaders = ranked(before ++ seen).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
     (course, method) match
       case (MethodState.Listed(next), _) =>
@@ -166,7 +174,8 @@ final class Search(
         val (nextMeans, nextDeviations) =
           (blend(means, newMeans, entropy.smoothing), blend(deviations, newDeviations, entropy.smoothing))
         val next =
-          if generation + 1 < entropy.generations then MethodState.Drawn(generation + 1, nextMeans, nextDeviations)
+          if generation + 1 < entropy.generations then
+            MethodState.Drawn(generation + 1, nextMeans, nextDeviations)
           else playOff(leaders, Some(space.clamp(nextMeans)))
         (next, leaders)
       case (MethodState.Adapted(state), cma: SearchMethod.CmaEs) =>
@@ -185,7 +194,10 @@ final class Search(
       case (MethodState.PlayOff(episodes, field), _) =>
         val standing = field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally))
         val flown    = episodes + seen.head.tally.count
-        (if flown < playOffEpisodes then MethodState.PlayOff(flown, standing) else MethodState.Ended, ranked(standing))
+        (
+          if flown < playOffEpisodes then MethodState.PlayOff(flown, standing) else MethodState.Ended,
+          ranked(standing)
+        )
       case _ => (MethodState.Ended, before)
 
   /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the same

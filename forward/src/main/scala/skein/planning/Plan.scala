@@ -50,4 +50,10 @@ final case class SamplingDistribution(
   * @param candidates
   *   tried so far
   */
-final case class Plan(manoeuvre: Manoeuvre, cost: Float, search: SamplingDistribution, slices: Int, candidates: Long)
+final case class Plan(
+    manoeuvre: Manoeuvre,
+    cost: Float,
+    search: SamplingDistribution,
+    slices: Int,
+    candidates: Long
+)

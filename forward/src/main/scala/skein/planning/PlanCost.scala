@@ -48,7 +48,12 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
   * @param price
   *   per second and per square metre missing
   */
-final case class SeparationCost(minimum: Double, margin: Double = 1, growth: Double = 0.5, price: Double = 20):
+final case class SeparationCost(
+    minimum: Double,
+    margin: Double = 1,
+    growth: Double = 0.5,
+    price: Double = 20
+):
   require(minimum >= 0 && margin >= 0 && growth >= 0 && price >= 0, s"must not be negative: $this")
 
   /** Whether there is anything to be kept. */

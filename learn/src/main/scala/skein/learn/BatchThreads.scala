@@ -16,7 +16,8 @@ final class BatchThreads(threads: Int) extends AutoCloseable:
     */
   def share(rows: Int)(work: (Int, Int, Int) => Unit): Unit =
     val parts          = BatchThreads.parts(rows)
-    def one(part: Int) = work(part, part * BatchThreads.Rows, (part * BatchThreads.Rows + BatchThreads.Rows).min(rows))
+    def one(part: Int) =
+      work(part, part * BatchThreads.Rows, (part * BatchThreads.Rows + BatchThreads.Rows).min(rows))
     pool match
       case Some(pool) if parts > 1 =>
         val all: Runnable = () => IntStream.range(0, parts).parallel().forEach(one)

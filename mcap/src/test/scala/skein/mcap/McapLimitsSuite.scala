@@ -13,9 +13,10 @@ class McapLimitsSuite extends munit.FunSuite:
     records(out)
     Bytes.of(out.array.take(out.size))
 
-  private def errorOf(file: Bytes, limits: McapLimits = McapLimits()) = Parsing.all(file, limits = limits).end match
-    case Parsed.Failed(error) => error.message
-    case other                => s"$other"
+  private def errorOf(file: Bytes, limits: McapLimits = McapLimits()) =
+    Parsing.all(file, limits = limits).end match
+      case Parsed.Failed(error) => error.message
+      case other                => s"$other"
 
   test("a record that claims more than the limit is refused before room is made for it"):
     val file = after: out =>

@@ -69,7 +69,8 @@ final case class ParameterRow(name: String, value: String) extends Record
   * @param startNed
   *   the origin of its own frame in the world frame
   */
-final case class VehicleRow(name: String, role: String, speed: MetresPerSecond, startNed: Vector3) extends Record
+final case class VehicleRow(name: String, role: String, speed: MetresPerSecond, startNed: Vector3)
+    extends Record
 
 object VehicleRow:
   def of(agent: Agent): VehicleRow =

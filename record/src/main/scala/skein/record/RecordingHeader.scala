@@ -1,7 +1,11 @@
 package skein.record
 
 /** What a recording begins with; on disk before the first record is taken. */
-final case class RecordingHeader(flight: FlightRow, vehicles: Seq[VehicleRow], parameters: Seq[ParameterRow] = Nil):
+final case class RecordingHeader(
+    flight: FlightRow,
+    vehicles: Seq[VehicleRow],
+    parameters: Seq[ParameterRow] = Nil
+):
   def records: Seq[Record] = flight +: (vehicles ++ parameters)
 
   /** The parameters whose names begin with a word and a full stop, by what follows. */

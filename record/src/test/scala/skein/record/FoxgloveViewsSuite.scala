@@ -43,7 +43,8 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     // Down is positive.
     assertEqualsDouble(body("pose")("position")("z").num, -body("size")("z").num / 2, 1e-9)
     assertEquals(VehicleRow.kind("Evader", VehicleKind.Multirotor), None)
-    for other <- Seq(ParameterRow("kind.Nobody", "Car"), ParameterRow("kind.Evader", "Boat"), ParameterRow("car", ""))
+    for other <-
+        Seq(ParameterRow("kind.Nobody", "Car"), ParameterRow("kind.Evader", "Boat"), ParameterRow("car", ""))
     do
       assertEquals(seen.of(other).size, 0)
 

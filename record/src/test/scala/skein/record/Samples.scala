@@ -170,7 +170,15 @@ object Samples:
       Vector3(21.5, 1.25, -19.75),
       Metres(0.0625)
     ),
-    CommandRow(1, "Pursuer", Some(1), MetresPerSecond(6.4), MetresPerSecond(7.7), Metres(-20), at(41_000_000)),
+    CommandRow(
+      1,
+      "Pursuer",
+      Some(1),
+      MetresPerSecond(6.4),
+      MetresPerSecond(7.7),
+      Metres(-20),
+      at(41_000_000)
+    ),
     CommandRow(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
     Acknowledgement("Pursuer", 1, at(80_000_000), "superseded"),
     Latency("vpn", at(5), Span.ofNanos(102_800_001)),

@@ -44,7 +44,7 @@ import skein.units.Vector3
   row("  forest: Scene")(draw(forest, Kind.Scene))
   val scene = Renderer.draw(Scenes.Sixty, view, Set(Kind.Scene), identity)(Kind.Scene) match
     case Raster.Bytes(bytes) => bytes
-    case _                  => Array.emptyByteArray
+    case _                   => Array.emptyByteArray
   row(s"  PNG of Scene")(PngEncoder.encode(scene, 1280, 720).length)
   val lidar = Lidar()
   row("lidar, a turn of 10,000 rays, 60 boxes"):

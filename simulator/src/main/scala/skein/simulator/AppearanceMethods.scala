@@ -77,7 +77,8 @@ private[simulator] object AppearanceMethods:
 
   /** AirSim reads past the end of what is shorter. */
   private def coloured(colour: Seq[Float])(run: => CallOutcome): CallOutcome =
-    if colour.size >= 4 then run else CallOutcome.Threw(s"a colour is four numbers (RGBA), not ${colour.size}")
+    if colour.size >= 4 then run
+    else CallOutcome.Threw(s"a colour is four numbers (RGBA), not ${colour.size}")
 
   private def paired(what: String, first: Seq[?], second: Seq[?])(run: => CallOutcome): CallOutcome =
     if first.size == second.size then run

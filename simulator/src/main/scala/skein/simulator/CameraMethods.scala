@@ -61,7 +61,7 @@ private[simulator] object CameraMethods:
             val film = Filmback("Custom...", width, height)
             change(simulation, camera, name, external)(_.copy(filmback = film)) match
               case CallOutcome.Answered(_) => answer(film.aspectRatio)
-              case refused             => refused
+              case refused                 => refused
     ,
     get("simGetFocalLength")(camera => answer(camera.focalLengthMm)),
     set("simSetFocalLength", "a focal length", LargestMm)(_.withFocalLength(_)),
@@ -108,7 +108,8 @@ private[simulator] object CameraMethods:
     many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
       case (simulation, (camera, kind, mesh, name, external)) =>
         detecting(simulation, camera, kind, name, external): filter =>
-          if filter.meshes.size < DetectionFilter.MostMeshes then Right(filter.copy(meshes = filter.meshes + mesh))
+          if filter.meshes.size < DetectionFilter.MostMeshes then
+            Right(filter.copy(meshes = filter.meshes + mesh))
           else Left(s"a detection filter holds at most ${DetectionFilter.MostMeshes} names")
     ,
     many[(String, Int, Float, String, Boolean)]("simSetDetectionFilterRadius"):
@@ -128,7 +129,11 @@ private[simulator] object CameraMethods:
       case (simulation, (camera, name, external)) =>
         of(simulation, camera, name, external)((index, camera) => read(cameraOf(simulation, index, camera)))
 
-  private def set(method: String, what: String, largest: Float)(change: (Camera, Float) => Camera): ServerMethod =
+  private def set(
+      method: String,
+      what: String,
+      largest: Float
+  )(change: (Camera, Float) => Camera): ServerMethod =
     many[(Float, String, String, Boolean)](method):
       case (simulation, (value, camera, name, external)) =>
         positive(what, value, largest):

@@ -49,7 +49,11 @@ private[simulator] object ServerMethod:
     ServerMethod(name, List.empty, (simulation, _) => run(simulation))
 
   def one[A](name: String)(run: (Simulated, A) => CallOutcome)(using argument: Argument[A]): ServerMethod =
-    ServerMethod(name, List(argument), (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1))
+    ServerMethod(
+      name,
+      List(argument),
+      (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1)
+    )
 
   /** A function of several parameters, read as the tuple that `run` takes. */
   inline def many[T <: Tuple](name: String)(run: (Simulated, T) => CallOutcome): ServerMethod =
@@ -69,11 +73,17 @@ private[simulator] object ServerMethod:
     find(simulation, name, "Vehicle API", "this is simulation-only API")(run)
 
   /** The same, with the words of AirSim's functions that exist in simulation only. */
-  def simulated(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => CallOutcome): CallOutcome =
+  def simulated(
+      simulation: Simulated,
+      name: String
+  )(run: (Int, SimulatedVehicle) => CallOutcome): CallOutcome =
     find(simulation, name, "Vehicle Sim-API", "this is not a simulation")(run)
 
   /** A multirotor; a car has no such function. */
-  def multirotor(simulation: Simulated, name: String)(run: (Int, SimulatedMultirotor) => CallOutcome): CallOutcome =
+  def multirotor(
+      simulation: Simulated,
+      name: String
+  )(run: (Int, SimulatedMultirotor) => CallOutcome): CallOutcome =
     vehicle(simulation, name):
       case (index, multirotor: SimulatedMultirotor) => run(index, multirotor)
       case (_, other) => CallOutcome.Threw(s"expected a multirotor, '${other.settings.name}' is a car")

@@ -177,10 +177,10 @@ final class Simulation(
         fail(Rpclib.arity(call.method, passed = call.params.size, wanted = method.arity))
       case Some(method) =>
         method(this, call.params) match
-          case CallOutcome.Answered(result)      => answers += SimulatorAnswer(call.token, Right(result))
-          case CallOutcome.Draws(work)           => answers += SimulatorAnswer(call.token, Right(DeferredResult(work)))
-          case CallOutcome.Threw(text)           => fail(Rpclib.threw(call.method, call.params.size, text))
-          case CallOutcome.Steps(span)           => continueFor(span, call.token, at)
+          case CallOutcome.Answered(result) => answers += SimulatorAnswer(call.token, Right(result))
+          case CallOutcome.Draws(work) => answers += SimulatorAnswer(call.token, Right(DeferredResult(work)))
+          case CallOutcome.Threw(text) => fail(Rpclib.threw(call.method, call.params.size, text))
+          case CallOutcome.Steps(span) => continueFor(span, call.token, at)
           case CallOutcome.Flies(vehicle, order) =>
             val flight = Waiting(call, order)
             if workers.acquire(vehicle, flight) then start(vehicle, flight, at)

@@ -54,7 +54,8 @@ final case class SimulatorSettings(
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
   /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]] says so. */
-  private[simulator] def equipment: SensorSettings = SensorSettings.read(world.text).getOrElse(SensorSettings.None)
+  private[simulator] def equipment: SensorSettings =
+    SensorSettings.read(world.text).getOrElse(SensorSettings.None)
 
   /** Autopilots outside want their sensors at whole milliseconds. */
   private[simulator] def multirotors: RotorcraftKind =

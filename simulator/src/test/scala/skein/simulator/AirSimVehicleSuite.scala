@@ -43,7 +43,8 @@ class AirSimVehicleSuite extends munit.FunSuite:
   /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the second's sending,
     * and how the first ended, and what was said of lost answers.
     */
-  private def firstOfTwo(isLost: RpcMessage => Boolean): (Long, Either[VehicleError, Boolean], Vector[String]) =
+  private def firstOfTwo(isLost: RpcMessage => Boolean)
+      : (Long, Either[VehicleError, Boolean], Vector[String]) =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem = system
@@ -84,7 +85,7 @@ class AirSimVehicleSuite extends munit.FunSuite:
 
   private def isMovesAnswer(message: RpcMessage): Boolean = message match
     case RpcMessage.Reply(_, _, upack.False) => true
-    case _                                => false
+    case _                                   => false
 
   test("a move that is replaced ends a round trip later, and nothing is taken for lost"):
     assertEquals(firstOfTwo(_ => false), (40L, Right(false), Vector.empty))

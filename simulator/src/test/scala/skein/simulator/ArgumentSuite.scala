@@ -127,4 +127,4 @@ class ArgumentSuite extends munit.FunSuite:
     val broken = ServerMethod.none("broken")(_ => throw IllegalStateException("within"))
     broken(Bench().simulation, Vector.empty) match
       case CallOutcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")
-      case other               => fail(s"$other")
+      case other                   => fail(s"$other")

@@ -129,7 +129,7 @@ object Siege:
         connection.ask(id, "getMultirotorState", Seq(Str("")))
         connection.reply() match
           case RpcMessage.Reply(answered, Null, _) if answered == id => ()
-          case _                                                  => wrong += 1
+          case _                                                     => wrong += 1
         val _ = waits.add((System.nanoTime() - start) * 1e-6)
         Thread.sleep(5)
 

@@ -27,4 +27,5 @@ final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long
     )
 
 object Subscriptions:
-  def none(limits: ViewerLimits, channels: Set[Long]): Subscriptions = Subscriptions(limits, channels, Map.empty)
+  def none(limits: ViewerLimits, channels: Set[Long]): Subscriptions =
+    Subscriptions(limits, channels, Map.empty)

@@ -20,7 +20,11 @@ import skein.units.Clock
   * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` control a
   * flight ([[FlightControl]]), and `POST /hover` pauses all.
   */
-final class ViewServer private (binding: Http.ServerBinding, val counts: RefusalCounts, turning: () => Unit)(using
+final class ViewServer private (
+    binding: Http.ServerBinding,
+    val counts: RefusalCounts,
+    turning: () => Unit
+)(using
     system: ActorSystem
 ):
   def port: Int = binding.localAddress.getPort
@@ -149,8 +153,9 @@ object ViewServer:
     else
       for
         show    <- shows
-        control <- FlightControl.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
-        act     <- show.controls.get(control)
+        control <-
+          FlightControl.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
+        act <- show.controls.get(control)
       yield act
 
   private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: RefusalCounts)(using
@@ -163,7 +168,9 @@ object ViewServer:
       )
 
   /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
-  private def whole(limits: ViewerLimits, counts: RefusalCounts)(using ActorSystem): Flow[Message, Message, ?] =
+  private def whole(limits: ViewerLimits, counts: RefusalCounts)(using
+      ActorSystem
+  ): Flow[Message, Message, ?] =
     given ExecutionContext = ExecutionContext.parasitic
     def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
       parts

@@ -27,8 +27,8 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private final class Served(limits: ViewerLimits):
     val done: ConcurrentLinkedQueue[FlightControl] = ConcurrentLinkedQueue()
-    val feed: Feed                           = Feed()
-    val show: LiveShow                       =
+    val feed: Feed                                 = Feed()
+    val show: LiveShow                             =
       LiveShow(
         Samples.heading,
         feed,

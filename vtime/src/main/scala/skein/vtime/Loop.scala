@@ -30,7 +30,7 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
 
   def nanoTime(): Long        = now
   def elapsed: FiniteDuration = (now - Loop.epochNanos).nanos
-  def counts: RunCounts          = RunCounts(tasks, fired, instants)
+  def counts: RunCounts       = RunCounts(tasks, fired, instants)
 
   def post(task: Runnable): Unit =
     requireOwnThread(s"posted ${TaskName.of(task)}")

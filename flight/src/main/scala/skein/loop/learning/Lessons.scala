@@ -78,12 +78,15 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
         Some(parameters)
       )))
 
-  private def say(news: LearnerUpdate): Unit = said.updateAndGet(before => (before :+ news).takeRight(MostSaid)): Unit
+  private def say(news: LearnerUpdate): Unit =
+    said.updateAndGet(before => (before :+ news).takeRight(MostSaid)): Unit
 
   def news(decision: Long): Vector[LearnerUpdate] =
     val lost  = dropped.get
     val fresh = lost - told.getAndSet(lost)
-    Option.when(fresh > 0)(LearnerUpdate(s"$fresh flown decisions are not learned from, $lost in all")).toVector ++
+    Option.when(fresh > 0)(
+      LearnerUpdate(s"$fresh flown decisions are not learned from, $lost in all")
+    ).toVector ++
       said.getAndSet(Vector.empty) ++ newest.getAndSet(None)
 
   def flown(transition: Transition): Unit = queue.offer(transition) match

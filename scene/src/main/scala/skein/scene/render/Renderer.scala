@@ -62,7 +62,7 @@ object Renderer:
       case _                   => Layer.Lit(view, surfaces, moment.scene.skyRgb)
 
   private def imageOf(kind: Kind, view: View, layer: Layer): Raster = (kind, layer) match
-    case (Kind.DepthVis, depth: Layer.Planar)            => Raster.Bytes(grey(depth.metres, _ / Raster.WhiteM))
+    case (Kind.DepthVis, depth: Layer.Planar) => Raster.Bytes(grey(depth.metres, _ / Raster.WhiteM))
     case (Kind.DisparityNormalized, depth: Layer.Planar) =>
       val most = (Raster.BaselineM * view.focalPx / view.width).toFloat
       Raster.Numbers(depth.metres.map(most / _))

@@ -21,11 +21,11 @@ class RendererSuite extends munit.FunSuite:
 
   private def bgr(images: Map[Kind, Raster], kind: Kind) = images(kind) match
     case Raster.Bytes(bytes) => bytes
-    case other              => fail(s"$kind came as $other")
+    case other               => fail(s"$kind came as $other")
 
   private def numbers(images: Map[Kind, Raster], kind: Kind) = images(kind) match
     case Raster.Numbers(values) => values
-    case other                 => fail(s"$kind came as $other")
+    case other                  => fail(s"$kind came as $other")
 
   test("every pixel shows what a ray through its middle meets, as far away as it meets it"):
     for seed <- 1 to 6 do
