@@ -293,7 +293,8 @@ private[rpc] final class ChannelStage(
           if !watched then watch(settings.messageTime)
         if !holding.resize(framer.heldBytes) then
           ended(
-            s"${framer.heldBytes} bytes of an unfinished message are held, and no more than ${settings.openBytes} in all",
+            s"${framer.heldBytes} bytes of an unfinished message are " +
+              s"held, and no more than ${settings.openBytes} in all",
             malformed = true
           )
 

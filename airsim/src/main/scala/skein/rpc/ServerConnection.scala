@@ -176,7 +176,8 @@ private[rpc] final class ServerConnection(
       private def tooMuch(): Unit = refuse(ServerLimit.Held, s"$held bytes of it are held, and $noMore")
 
       private def noMore: String =
-        s"no more than ${limits.heldBytesInCommon} in all beyond ${limits.heldBytesPerConnection} for each connection"
+        s"no more than ${limits.heldBytesInCommon} in all beyond " +
+          s"${limits.heldBytesPerConnection} for each connection"
 
       private def take(frame: Array[Byte]): Unit =
         val bytes = framer.decodedBytes + BytesPerRequest

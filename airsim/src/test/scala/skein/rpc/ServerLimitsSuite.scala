@@ -135,8 +135,8 @@ class ServerLimitsSuite extends munit.FunSuite:
       val third   = r.Connection()
       third.send(large(300))
       val text =
-        "this request takes 40687 bytes of the server's memory, and no more than 120000 in all beyond 10000 " +
-          "for each connection"
+        "this request takes 40687 bytes of the server's memory, and no " +
+          "more than 120000 in all beyond 10000 for each connection"
       assertEquals(replies(Seq(third.replies.expectNext())), Seq(RpcMessage.Reply(300, Str(text), Null)))
       third.ping()
       assertEquals(r.counters.snapshot.lacking, 1L)
@@ -174,8 +174,8 @@ class ServerLimitsSuite extends munit.FunSuite:
     val image = r.Connection()
     image.ask("image")
     val text =
-      "the reply takes 200009 bytes of the server's memory, and no more than 120000 in all beyond 10000 for " +
-        "each connection"
+      "the reply takes 200009 bytes of the server's memory, and no more " +
+        "than 120000 in all beyond 10000 for each connection"
     assertEquals(replies(Seq(image.replies.expectNext())), Seq(RpcMessage.Reply(1, Str(text), Null)))
     image.ping()
     assertEquals((r.counters.snapshot.lacking, r.counters.snapshot.refused), (1L, 1L))
@@ -184,7 +184,8 @@ class ServerLimitsSuite extends munit.FunSuite:
   private val six = ServerLimits(inFlightAssured = 2, inFlightInCommon = 4)
 
   rig(
-    "one that asks without a pause leaves the others their requests in flight, and all of its own are answered",
+    "one that asks without a pause leaves the others their " +
+      "requests in flight, and all of its own are answered",
     six
   ): r =>
     val greedy = r.Connection()

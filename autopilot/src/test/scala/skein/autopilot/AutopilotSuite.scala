@@ -61,7 +61,8 @@ class AutopilotSuite extends munit.FunSuite:
     assertEquals(inAir.mode, FlightMode.Hold)
 
   test(
-    "what it refuses is refused with a reason: takeoff unarmed, disarming in the air, a mission that it has not"
+    "what it refuses is refused with a reason: takeoff unarmed, " +
+      "disarming in the air, a mission that it has not"
   ):
     for (autopilot, message, motion, why) <- Seq(
         (fresh, takeoff, at(1), "Switching to Takeoff denied: vehicle is disarmed"),

@@ -44,13 +44,15 @@ object LearnedUnderDelay:
     val panels  = sides.map: side =>
       val rows = flownBy(side, folder, flights, seed)
       println(
-        s"| $side | loop | link | distance over the last 10 s, m: mean ± sd | ± 95 % | nearer than $CaptureM m in | flights |"
+        s"| $side | loop | link | distance over the last 10 s, m: mean ± " +
+          s"sd | ± 95 % | nearer than $CaptureM m in | flights |"
       )
       println("|---|---|---|---|---|---|---|")
       for row <- rows do
         val half = row.distance.halfWidth95
         println(
-          f"| ${row.policy} | `${row.loop}` | ${row.link} | ${row.distance.mean}%.2f ± ${row.distance.sd}%.2f | ± $half%.3f | ${row.captures} | ${row.distance.count} |"
+          f"| ${row.policy} | `${row.loop}` | ${row.link} | ${row.distance.mean}%.2f ± " +
+            f"${row.distance.sd}%.2f | ± $half%.3f | ${row.captures} | ${row.distance.count} |"
         )
       picture(side, rows)
     Png.bytes(Drawing.stacked(panels*), 2) match

@@ -81,7 +81,8 @@ object BudgetFigure:
       panel.bottom + 44,
       Vector(
         panel.title(
-          s"${map.loop} every ${map.periodMs.significant(4)} ms, truth ${budget.truth.significant(4)} ${map.unit}".trim
+          s"${map.loop} every ${map.periodMs.significant(4)} ms, " +
+            s"truth ${budget.truth.significant(4)} ${map.unit}".trim
         ),
         Mark.box(panel.left, panel.top, panel.right, panel.bottom, empty)
       ) ++ heat.cells(panel, scale) ++ contours ++ marks ++

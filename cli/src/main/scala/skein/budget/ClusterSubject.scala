@@ -80,7 +80,8 @@ object ClusterSubject:
       posed <- JsonText.read[ProbedQuestion](asked, "a budget's question")
       came  <- subjects(posed).flatMap(probes)
       _     <- Expect.that(came == posed.probes):
-        "one episode does not come to the same here and at the coordinator; has a file that --plant names another content here?"
+        "one episode does not come to the same here and at the " +
+          "coordinator; has a file that --plant names another content here?"
     yield () =>
       val own = subjects(posed)
       block =>

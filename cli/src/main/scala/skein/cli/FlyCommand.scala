@@ -18,8 +18,8 @@ import skein.view.Shows
 final case class FlyOptions(
     flights: FlightOptions,
     @arg(doc =
-      "a simulator that runs already, AirSim for example; with --mavlink by UDP, or by TCP as tcp://HOST:PORT; without it, " +
-        "each flight has a built-in one"
+      "a simulator that runs already, AirSim for example; with --mavlink by UDP, or by " +
+        "TCP as tcp://HOST:PORT; without it, each flight has a built-in one"
     )
     simulator: Option[String],
     @arg(doc =
@@ -27,7 +27,8 @@ final case class FlyOptions(
     )
     clock: String = "real",
     @arg(doc =
-      "how often each live flight is flown again in virtual time, for the report's comparison; 0 for not at all"
+      "how often each live flight is flown again in virtual time, " +
+        "for the report's comparison; 0 for not at all"
     )
     twins: Int = 1,
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
@@ -75,7 +76,8 @@ final class FlyCommand(using Scenarios)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
         "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
       _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
-        "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
+        "--view shows flights in real time; look at what flew by " +
+          "--clock virtual with ./skein replay --view FILE"
       _ <- Expect.that(clock == ClockKind.Real || simulator.isEmpty):
         "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
@@ -123,7 +125,8 @@ final class FlyCommand(using Scenarios)
         yield
           FlyCommand.warm ++= settings.loops
           Console.err.println(
-            s"warmed up by $flights virtual flights and $decisions decisions over loopback, so that none waits for the compiler"
+            s"warmed up by $flights virtual flights and $decisions decisions " +
+              "over loopback, so that none waits for the compiler"
           )
       finally
         val _ = Edge.await(system.terminate())
@@ -200,4 +203,5 @@ private[cli] object FlyCommand:
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }
     Expect.that(idle.isEmpty):
-      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${AirSimFleet.askTimeout.toMillis.round} ms?"
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than " +
+        s"the time-out of ${AirSimFleet.askTimeout.toMillis.round} ms?"

@@ -40,5 +40,6 @@ private[cli] object Questions:
       case Learn  => LearnWork.solvers.of(question.drop(1))
       case other  =>
         Left(
-          s"expected a question of $Search, $Budget, $Torture, $Spread or $Learn, came one of '${other.take(40)}'"
+          s"expected a question of $Search, $Budget, $Torture, " +
+            s"$Spread or $Learn, came one of '${other.take(40)}'"
         )

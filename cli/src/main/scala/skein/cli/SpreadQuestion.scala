@@ -62,7 +62,8 @@ private[cli] object SpreadQuestion:
       settings <- FlySettings.read(config)
       came     <- probe(settings)
       _        <- Expect.that(came == question.probe):
-        "short flights are others here than at the coordinator; has a file that --link, --policy, --predictor or --scene names another content here?"
+        "short flights are others here than at the coordinator; has a file that " +
+          "--link, --policy, --predictor or --scene names another content here?"
     yield () => (Ready(settings).answer(_)): BlockSolver
 
   /** Flies, or has flown. */

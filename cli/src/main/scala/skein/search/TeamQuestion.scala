@@ -74,7 +74,8 @@ final case class TeamQuestion(
     for
       ready <- read
       _     <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
-        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} flights in virtual time, came some ${ready.search.expected}"
+        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} " +
+          s"flights in virtual time, came some ${ready.search.expected}"
     yield ready
 
   /** The same, however many flights it asks for. */
@@ -113,7 +114,8 @@ final case class TeamQuestion(
     refused.orElse(moved) match
       case Some(reason) if conditions.plant != Plant =>
         Left(
-          s"--plant: expected none, since this scenario flies in virtual time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
+          "--plant: expected none, since this scenario flies in virtual " +
+            s"time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
         )
       case Some(reason) =>
         for
@@ -156,7 +158,8 @@ object TeamQuestion:
         )
       case None =>
         Left(
-          s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
+          s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the " +
+            s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
 /** What flies a team's candidates.

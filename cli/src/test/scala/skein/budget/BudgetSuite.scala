@@ -80,7 +80,8 @@ class BudgetSuite extends munit.FunSuite, Optimised:
       case other            => fail(s"$other")
     assertEquals(
       leaves.sentence(18),
-      "holds within 5 % of the truth, 8 m, up to 75 ms mean at 20 ms jitter (round trips; stream every 100 ms)"
+      "holds within 5 % of the truth, 8 m, up to 75 ms mean at " +
+        "20 ms jitter (round trips; stream every 100 ms)"
     )
     assertEquals(
       leaves.copy(legs = Legs.OneWay).sentence(18),

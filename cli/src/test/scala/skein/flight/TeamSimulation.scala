@@ -91,7 +91,8 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
     )
   do
     test(
-      s"${scenario.name} by ${loop.label} decides the same when it is decided upon again, and when flown again"
+      s"${scenario.name} by ${loop.label} decides the same when " +
+        "it is decided upon again, and when flown again"
     ):
       val chosen   = settings(scenario, loop, LatencyProfile.vpn, 2)
       val plan     = chosen.plans.head

@@ -142,7 +142,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(told).exists(_.contains("refused anna: its build is two")))
 
   test(
-    "a worker of another build has the coordinator's program from it if it accepts that one, and else is refused"
+    "a worker of another build has the coordinator's program " +
+      "from it if it accepts that one, and else is refused"
   ):
     val jar = Files.write(temporaryFolder().resolve("ridge.jar"), scala.util.Random(1).nextBytes(3 << 20))
     val shipment = Shipment.of("ridge.Main", Vector(jar)).fold(fail(_), identity)
@@ -257,7 +258,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
   test(
-    "with certificates of one set nodes work together; without, of another set, or of another host, nobody joins"
+    "with certificates of one set nodes work together; without, " +
+      "of another set, or of another host, nobody joins"
   ):
     val Vector(own, elsewhere) = lab.map(tls): @unchecked
     val strangers              = tls(Await.result(makingOthers, 60.seconds).head)

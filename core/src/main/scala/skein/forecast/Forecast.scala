@@ -19,7 +19,8 @@ final case class Forecast private (
     alignment: Option[ClockAlignment],
     delays: Option[OneWayDelays]
 ):
-  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the others.
+  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the
+  // others.
   @volatile private var told: Option[(Instant, Vector[Estimate])] = None
 
   def withEvent(event: ForecastEvent): Forecast = event match

@@ -54,7 +54,8 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(crossed, 350, 400), 1, 0.02)
 
   test(
-    "a command without receipt is presumed lost after two round trips and grace, and acts again when one comes"
+    "a command without receipt is presumed lost after two round " +
+      "trips and grace, and acts again when one comes"
   ):
     val overdueMs = 100 + 2 * 100 + VehicleForecast.Grace.toMillis + 1
     assertEqualsDouble(northAt(commanded, 300, overdueMs), 2.5, 1e-4)
@@ -119,7 +120,8 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEquals(track.positionNedAt(simulator(1100)), None)
 
   test(
-    "a quadrotor is estimated within 5 mm when its command acts, from readings 50 ms old and commands in flight"
+    "a quadrotor is estimated within 5 mm when its command acts, " +
+      "from readings 50 ms old and commands in flight"
   ):
     val quadrotor = Quadrotor.AirSim
     val model     = QuadrotorModel.AirSim

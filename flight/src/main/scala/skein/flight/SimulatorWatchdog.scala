@@ -36,7 +36,8 @@ private[flight] final class SimulatorWatchdog(
 
   @volatile private var life = SignsOfLife()
 
-  // When a silence ended last, and when the simulator was known last to be the one that the flight began with.
+  // When a silence ended last, and when the simulator was known last to be the one that the flight began
+  // with.
   @volatile private var backAt, knownAt = startedAt
   @volatile private var asking          = false
 
@@ -121,7 +122,8 @@ private[flight] object SimulatorWatchdog:
       .map(one => (one.vehicle, now.since(one.since)))
       .collect:
         case (vehicle, since) if since > Slow =>
-          s": it is not asked while $vehicle's policy has not decided for ${seconds(since)}; --deadline limits that"
+          s": it is not asked while $vehicle's policy has not decided " +
+            s"for ${seconds(since)}; --deadline limits that"
     s"no answer from the simulator at $simulator for $lasts${why.getOrElse("")}"
 
   private def seconds(span: Span): String = span.toSeconds.fixed(1) + " s"

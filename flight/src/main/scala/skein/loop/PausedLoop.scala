@@ -49,7 +49,8 @@ object PausedLoop:
     val stepped       = Option.when(before.nonEmpty)(now.since(newest(before)))
     Vector(
       Option.when(oldest != now)(
-        s"${now.since(oldest).toMillis} ms of simulator time passed while step $step was read: it did not stand still"
+        s"${now.since(oldest).toMillis} ms of simulator time passed " +
+          s"while step $step was read: it did not stand still"
       ),
       stepped.filter(_ != period).map(took =>
         s"step $step took ${took.toMillis} ms of simulator time instead of ${period.toMillis} ms"

@@ -225,7 +225,8 @@ object SolverClient:
   final case class Welcomed(byVectors: Boolean):
     /** For a flight that plans. */
     def warning: Option[String] = Option.when(!byVectors)(
-      "the solver runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
+      "the solver runs without jdk.incubator.vector, so " +
+        "candidates are flown one by one, some fifty times fewer"
     )
 
   /** Nobody decides: why. */

@@ -93,7 +93,8 @@ final class SolverDesk(
       answer(SolverMessage.Welcome(flight, id, byVectors))
     else if theirs != build then
       no(
-        s"this solver is build $build, the flight's program is build $theirs; start both from the same program"
+        s"this solver is build $build, the flight's program is " +
+          s"build $theirs; start both from the same program"
       )
     else if begins(flight) then
       Future(decidersOf(briefing))(using workers).onComplete { result =>

@@ -91,7 +91,8 @@ object Briefing:
     val policy = s"${agent.policy}".replaceAll("@[0-9a-f]+", "")
     val shown  =
       if policy.length <= MostShown then policy else s"${policy.take(MostShown)}… ${policy.hashCode}"
-    s"${agent.name}, ${agent.role}, from ${start.x} ${start.y} ${start.z} at ${agent.speed.value} m/s by $shown"
+    s"${agent.name}, ${agent.role}, from ${start.x} ${start.y} " +
+      s"${start.z} at ${agent.speed.value} m/s by $shown"
 
   private val MostShown = 400
 

@@ -79,7 +79,8 @@ private[torture] object KnowledgeChecks:
         ("its opponent's data", observed.opponentAge, arrived(decision.opponent))
       ).collect:
         case (whose, told, since) if told != since =>
-          s"${where(decision)}: $whose had come ${since.toMillis.fixed(3)} ms before, told were ${told.toMillis.fixed(3)} ms"
+          s"${where(decision)}: $whose had come ${since.toMillis.fixed(3)} " +
+            s"ms before, told were ${told.toMillis.fixed(3)} ms"
       byArrival ++ trueAgesWrong(seen, decision)
     wrong.nextOption().toVector
 
@@ -108,8 +109,8 @@ private[torture] object KnowledgeChecks:
       old       = decision.decidedAt.since(sampledAt)
       off       = age - old
       if off > told.uncertainty || off < Span.Zero - told.uncertainty
-    yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were ${age.toMillis.fixed(3)} ms" +
-      s" to within ${told.uncertainty.toMillis.fixed(3)} ms"
+    yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were " +
+      s"${age.toMillis.fixed(3)} ms to within ${told.uncertainty.toMillis.fixed(3)} ms"
 
   /** By how much the controller's clock was truly ahead of the simulator's. None while it cannot be known yet: all that
     * a run before the simulator's present one has told must have gone by; and never, where the clock of a new run is so

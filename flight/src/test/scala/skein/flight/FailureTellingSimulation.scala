@@ -114,7 +114,8 @@ class FailureTellingSimulation extends munit.FunSuite:
     loop <- LoopKind.values.toSeq
   do
     test(
-      s"${loop.label}: a simulator that dies in flight is told within a second, recorded, and has failed the flight"
+      s"${loop.label}: a simulator that dies in flight is told " +
+        "within a second, recorded, and has failed the flight"
     ):
       val flown = fly(loop, dies = true)
       val line  = flown.toldInTime("no answer from the simulator at simulator:41451")
@@ -149,7 +150,8 @@ class FailureTellingSimulation extends munit.FunSuite:
     pause <- Seq(Span.ofMillis(200), Span.ofSeconds(3))
   do
     test(
-      s"${loop.label}: a simulator started again after ${pause.toMillis} ms fails the flight, whose vehicles are lost to it"
+      s"${loop.label}: a simulator started again after " +
+        s"${pause.toMillis} ms fails the flight, whose vehicles are lost to it"
     ):
       val flown = fly(loop, dies = true, restarts = Some(pause))
       val why   = "the simulator at simulator:41451 no longer gives "

@@ -146,7 +146,8 @@ class RunningSimulatorSimulation extends munit.FunSuite:
   private def orFail[A](result: Either[String, A]): A = result.fold(fail(_), identity)
 
   test(
-    "flights of one command and of several begin at rest at the starts, and nothing that flies falls between them"
+    "flights of one command and of several begin at rest at the " +
+      "starts, and nothing that flies falls between them"
   ):
     val (recordings, seen, atFirst, inAll) = on(duel): bench =>
       import bench.system.dispatcher

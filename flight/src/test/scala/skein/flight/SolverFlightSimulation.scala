@@ -128,7 +128,8 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assertEquals(
       welcomed(briefing, build = "theirs"),
       Left(
-        "the solver refuses: this solver is build ours, the flight's program is build theirs; start both from the same program"
+        "the solver refuses: this solver is build ours, the flight's " +
+          "program is build theirs; start both from the same program"
       )
     )
     val unknown = welcomed(briefing.copy(scenario = "moon landing"))

@@ -53,7 +53,8 @@ class DecideWithinSuite extends munit.FunSuite:
     .value
 
   test(
-    "a deadline missed is recorded, and the policy goes on from the decision before, over the time that has passed"
+    "a deadline missed is recorded, and the policy goes on from " +
+      "the decision before, over the time that has passed"
   ):
     val (decisions, events) = flown(instead = None)
     assertEquals(

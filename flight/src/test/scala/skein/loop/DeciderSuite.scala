@@ -79,7 +79,8 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
 
   test(
-    "it sees itself heading where it was last told, the others where they were sent, and all as they are foreseen"
+    "it sees itself heading where it was last told, the others " +
+      "where they were sent, and all as they are foreseen"
   ):
     val sent =
       view.withMove(SentCommand(0, 0, 0.4, millis(150))).withMove(SentCommand(1, 0, 0.6, millis(150)))

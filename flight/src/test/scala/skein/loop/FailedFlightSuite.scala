@@ -79,7 +79,8 @@ class FailedFlightSuite extends munit.FunSuite:
 
   for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do
     test(
-      s"${kind.label}: when a policy throws, vehicles are told to hover until they say so, and every call ends"
+      s"${kind.label}: when a policy throws, vehicles are told to " +
+        "hover until they say so, and every call ends"
     ):
       val landed = fly(kind, IllegalStateException("no idea"), lostHovers = 3)
       assertEquals(landed.outcome, FlightOutcome.Failed("no idea"))

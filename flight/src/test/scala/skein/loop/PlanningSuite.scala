@@ -31,7 +31,8 @@ class PlanningSuite extends munit.FunSuite:
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
   test(
-    "vehicles that are neither planned nor the opponent are kept from where a separation is set, with a metre more"
+    "vehicles that are neither planned nor the opponent are kept " +
+      "from where a separation is set, with a metre more"
   ):
     val apart = part(PlanSettings(separationM = 5))
     assertEquals(apart.objective.separation, SeparationCost(5, margin = 1))
@@ -43,7 +44,8 @@ class PlanningSuite extends munit.FunSuite:
     assert(!PursuitPlanning(fleet, pursuer, PlanSettings(), 3).regardsTeam)
 
   test(
-    "what the scenario keeps between any two is kept from opponents, too, with a metre more, however little it is"
+    "what the scenario keeps between any two is kept from " +
+      "opponents, too, with a metre more, however little it is"
   ):
     val settings = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
     val kept     = part(settings)
@@ -165,7 +167,8 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(teamPart(Moving(), PlanSettings(horizonSteps = 1)).objective.cruiseSpeed, 0.0)
 
   test(
-    "it keeps the widest separation that anybody set, and a metre more, and is suggested no policy that avoids"
+    "it keeps the widest separation that anybody set, and a " +
+      "metre more, and is suggested no policy that avoids"
   ):
     def separation(policy: Moving, settings: PlanSettings) =
       val posed = teamPart(policy, settings)
@@ -204,7 +207,8 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(mostAtOnce(0.4), 1 / 0.4)
 
   test(
-    "vehicles of a team that do not plan are kept from where a separation is set, and else are in nobody's way"
+    "vehicles of a team that do not plan are kept from where a " +
+      "separation is set, and else are in nobody's way"
   ):
     val mixed = Fleet(fleet.agents.zipWithIndex.map((agent, place) =>
       if place == pursuer then agent.copy(policy = Moving()) else agent.copy(policy = Together)
@@ -228,7 +232,8 @@ class PlanningSuite extends munit.FunSuite:
     assert(decidedBy(planning, isOld = false)._1.speed.isDefined)
 
   test(
-    "a plan is begun with where it saves a tenth of a metre against what the policy would do, else the policy's way"
+    "a plan is begun with where it saves a tenth of a metre " +
+      "against what the policy would do, else the policy's way"
   ):
     val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
     val planning             = TeamPlanning(team, pursuer, Moving(), PlanSettings(), seed = 3)

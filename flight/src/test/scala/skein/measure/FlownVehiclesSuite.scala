@@ -66,7 +66,8 @@ class FlownVehiclesSuite extends munit.FunSuite:
     assertEquals((sample.x, sample.y, sample.vx, sample.vy), (3.0, -3.0, 10.0, -10.0))
 
   test(
-    "a command whose predecessor was answered as superseded arrived in the middle of what is over in its round trip"
+    "a command whose predecessor was answered as superseded " +
+      "arrived in the middle of what is over in its round trip"
   ):
     // 60 ms instead of 40: half of it on either way.
     assertEquals(

@@ -66,7 +66,8 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(clue(sent.dropWhile(identity).count(identity)) <= 3)
 
   test(
-    "decisions are made elsewhere, at the solver's time on the controller's clock, and replay from the recording"
+    "decisions are made elsewhere, at the solver's time on the " +
+      "controller's clock, and replay from the recording"
   ):
     val trial = checked(SolverTrial.fly()())
     assert(trial.recording.decisions.size > 100)
@@ -153,7 +154,8 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(trial.recording.solved.size > 30, s"seed $seed: ${trial.counts}")
 
   test(
-    "a policy with a memory goes on from the answer that was used, and begins anew with a new start of its solver"
+    "a policy with a memory goes on from the answer that was " +
+      "used, and begins anew with a new start of its solver"
   ):
     val counting = SolverSimulation.Counting
     val team     =

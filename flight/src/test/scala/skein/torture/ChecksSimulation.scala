@@ -276,12 +276,14 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val wrong = "ms old, told were"
     for seconds <- Seq(100.0, -100.0, 1.0, -1.0) do
       assert(found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
-    // A jump that no answer shows is not judged, and neither is what was read while the old answers may still come.
+    // A jump that no answer shows is not judged, and neither is what was read while the old answers may still
+    // come.
     for seconds <- Seq(0.5, -0.5) do
       assert(!found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
     assert(!found(restarted(7.3, Span.ofSeconds(100))).contains(wrong))
     assertEquals(found(restarted(4, Span.Zero)), "")
-    // 0.7 s until questions of the old run are over, and 0.7 s more for the first answer of the new one to be known.
+    // 0.7 s until questions of the old run are over, and 0.7 s more for the first answer of the new one to be
+    // known.
     val first = found(restarted(4, Span.ofSeconds(100))) match
       case s"${_}decision $number of $vehicle: ${_}" =>
         clean.recording.decisions.find(one => one.vehicle == vehicle && one.sequence == number.toLong).get
@@ -317,7 +319,8 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(forged).contains("after the newer"))
 
   test(
-    "an answer of a run before, with a later clock, is not newer than one of the run that followed (seed 1851)"
+    "an answer of a run before, with a later clock, is not " +
+      "newer than one of the run that followed (seed 1851)"
   ):
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       Stamped((), at(validMs), at(sentMs), at(receivedMs))

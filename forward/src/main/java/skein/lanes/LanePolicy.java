@@ -29,7 +29,9 @@ class LanePolicy {
   /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
   private final float[] initial, memory, newMemory;
 
-  /** How far each world's decided heading is from the one before, by the shorter way, rad; 0 without efforts. */
+  /**
+   * How far each world's decided heading is from the one before, by the shorter way, rad; 0 without efforts.
+   */
   final float[] turned = new float[WORLDS];
 
   /** The heading commanded last, rad, for policies that turn from it, and the one decided. */

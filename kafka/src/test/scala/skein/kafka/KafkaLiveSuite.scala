@@ -73,7 +73,8 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
     assert(isSo(recorder.recording))
 
   test(
-    "a broker that is killed and started again in a flight: until it is back the deadline's fallback decides for all, who hover; then they fly on, and all is recorded"
+    "a broker that is killed and started again in a flight: until it is back the deadline's " +
+      "fallback decides for all, who hover; then they fly on, and all is recorded"
   ):
     val own                                      = Files.createTempDirectory("kafka-killed")
     val log                                      = Files.createTempFile("kafka-killed", ".log")

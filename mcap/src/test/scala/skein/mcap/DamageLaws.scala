@@ -106,7 +106,8 @@ class DamageLaws extends munit.FunSuite:
       catch case error: Throwable => throw AssertionError(s"seed $seed: $error", error)
 
   test(
-    "what lz4 or zstd is damaged to is refused, never more than it claims, and never an error of the machine's"
+    "what lz4 or zstd is damaged to is refused, never more than " +
+      "it claims, and never an error of the machine's"
   ):
     for seed <- 1L to 1000 do
       val random = SplittableRandom(seed)

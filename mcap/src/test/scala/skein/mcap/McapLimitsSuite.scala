@@ -80,7 +80,8 @@ class McapLimitsSuite extends munit.FunSuite:
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.Chunk(0, 0, 3, 5, "", Bytes.utf8("abc")), _))),
-      "byte 25: the CRC of the chunk's records, uncompressed, is written as 0x00000005, its bytes give 0x352441c2"
+      "byte 25: the CRC of the chunk's records, uncompressed, is " +
+        "written as 0x00000005, its bytes give 0x352441c2"
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.SummaryOffset(3, 0, 0), _))),

@@ -62,7 +62,8 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     assert(PolicyFile.parse(policy.role, policy.text).left.exists(_.contains("came another")))
 
   folder.test("one whose answer is no number ends the flight with that, and vehicles hover"): folder =>
-    // Tried before, where it has one: the evader stands ahead, the logarithm of its place to the right is none.
+    // Tried before, where it has one: the evader stands ahead, the logarithm of its place to the right is
+    // none.
     val policy = PolicyFile.read(written(folder, model("Acos"))).fold(fail(_), identity)
     val landed = flown(policy)
     landed.landed.outcome match

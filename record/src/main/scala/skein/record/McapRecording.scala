@@ -253,7 +253,8 @@ object McapRecording:
     Using.resource(connection.createStatement()): statement =>
       val _ = statement.execute(
         s"INSERT INTO ${table.name} SELECT ${values.mkString(", ")} FROM " +
-          s"read_json($quoted, format = 'newline_delimited', columns = $types, maximum_object_size = $longest)"
+          s"read_json($quoted, format = 'newline_delimited', " +
+          s"columns = $types, maximum_object_size = $longest)"
       )
 
   /** DuckDB's own limit of a line, bytes. */

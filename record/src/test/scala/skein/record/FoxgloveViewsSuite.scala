@@ -83,7 +83,8 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val turn            = read(drawn.head)("transforms")(0)
     val rotation        = turn("rotation")
     val Seq(x, y, z, w) = Seq("x", "y", "z", "w").map(rotation(_).num): @unchecked
-    // The rotation's matrix, by its definition, row by row: what was north becomes y, what was east x, down −z.
+    // The rotation's matrix, by its definition, row by row: what was north becomes y, what was east x, down
+    // −z.
     val rows = Vector(
       Vector(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
       Vector(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),

@@ -105,11 +105,13 @@ private[simulator] object PathMove:
     else if lookahead == 0 then Left("lookahead distance cannot be 0")
     else if lookahead > 0 && perTurn > lookahead then
       Left(
-        s"lookahead value ${lookahead.fixed(6)} is too small for velocity ${speedMps.fixed(6)}. It must be at least ${perTurn.fixed(6)}"
+        s"lookahead value ${lookahead.fixed(6)} is too small for velocity " +
+          s"${speedMps.fixed(6)}. It must be at least ${perTurn.fixed(6)}"
       )
     else if lookahead > 0 && PathFollowing.DistanceAccuracyM > lookahead then
       Left(
-        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's distance accuracy ${PathFollowing.DistanceAccuracyM.fixed(6)}."
+        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's " +
+          s"distance accuracy ${PathFollowing.DistanceAccuracyM.fixed(6)}."
       )
     else
       val distance =

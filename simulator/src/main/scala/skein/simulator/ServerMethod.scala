@@ -103,5 +103,6 @@ private[simulator] object ServerMethod:
     if index >= 0 then run(index, vehicles(index))
     else
       CallOutcome.Threw(
-        s"$what for '${name}' is not available. This could either because $reason or this vehicle does not exist"
+        s"$what for '${name}' is not available. This could either " +
+          s"because $reason or this vehicle does not exist"
       )

@@ -233,7 +233,8 @@ object Simulation:
   final private case class Waiting(call: SimulatorCall, order: Move.Order)
 
   private[simulator] val methods: Seq[ServerMethod] =
-    SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++ GainMethods.all ++ SceneMethods.all ++
+    SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++
+      GainMethods.all ++ SceneMethods.all ++
       CameraMethods.all ++ AppearanceMethods.all
 
   private val named: Map[String, ServerMethod] = methods.map(method => method.name -> method).toMap

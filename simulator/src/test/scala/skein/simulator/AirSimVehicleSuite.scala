@@ -91,7 +91,8 @@ class AirSimVehicleSuite extends munit.FunSuite:
     assertEquals(firstOfTwo(_ => false), (40L, Right(false), Vector.empty))
 
   test(
-    "where its answer is lost it is taken for replaced, once the next move has come and a further cancel has ended nothing"
+    "where its answer is lost it is taken for replaced, once the next " +
+      "move has come and a further cancel has ended nothing"
   ):
     val (afterMs, result, noted) = firstOfTwo(isMovesAnswer)
     assertEquals((afterMs, result, noted.size), (780L, Right(false), 1))

@@ -42,7 +42,8 @@ object Siege:
     val honest   = Honest(server.address.port)
     println(s"seed $seed; honest client: getMultirotorState every 5 ms; waits in ms")
     println(
-      f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s ${"max"}%7s | 2 s after: ${"p99"}%6s ${"max"}%7s | held MiB"
+      f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s " +
+        f"${"max"}%7s | 2 s after: ${"p99"}%6s ${"max"}%7s | held MiB"
     )
     def row(what: String)(attack: => String): Unit =
       honest.reset()
@@ -54,8 +55,10 @@ object Siege:
       val after = honest.reset()
       val held  = server.stats.mostHeldBytes / 1048576.0
       println(
-        f"$what%-12s ${during.length}%6d ${at(during, 0.5)}%6.1f ${at(during, 0.99)}%6.1f ${at(during, 1)}%7.1f |" +
-          f"            ${at(after, 0.99)}%6.1f ${at(after, 1)}%7.1f | $held%.1f of ${settings.limits.heldBytes >> 20}  $said"
+        f"$what%-12s ${during.length}%6d ${at(during, 0.5)}%6.1f " +
+          f"${at(during, 0.99)}%6.1f ${at(during, 1)}%7.1f |            " +
+          f"${at(after, 0.99)}%6.1f ${at(after, 1)}%7.1f | $held%.1f of " +
+          f"${settings.limits.heldBytes >> 20}  $said"
       )
     row("nobody") { Thread.sleep(5000); "" }
     if attacks.contains("fuzz") then
@@ -328,5 +331,6 @@ object Attackers:
     threads.foreach(_.join())
     val took = (System.nanoTime() - start) * 1e-9
     println(
-      f"${ended.get} calls ended, ${refused.get} of them refused, in $took%.0f s; defects: ${defects.asScala.toSeq.distinct.mkString("; ")}"
+      f"${ended.get} calls ended, ${refused.get} of them refused, in $took%.0f " +
+        f"s; defects: ${defects.asScala.toSeq.distinct.mkString("; ")}"
     )

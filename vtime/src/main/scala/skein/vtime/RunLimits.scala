@@ -21,6 +21,7 @@ final case class RunLimits(
     standstill: FiniteDuration = 10.seconds
 ):
   require(
-    duration > Duration.Zero && tasksPerInstant > 0 && processorPerInstant > Duration.Zero && standstill > 1.milli,
+    duration > Duration.Zero && tasksPerInstant > 0 && processorPerInstant > Duration.Zero &&
+      standstill > 1.milli,
     s"limits must be positive: $this"
   )
