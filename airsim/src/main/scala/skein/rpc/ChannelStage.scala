@@ -27,10 +27,10 @@ private[rpc] trait ChannelInput:
   * thread, calls made meanwhile leave in one write, and every decision is [[ChannelState]]'s. The connections run fused
   * inside this stage.
   *
-  * '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
-  * '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
-  * '''Completes when''' closed through its [[ChannelInput]].
-  * '''Cancels when''' never.
+  *   - '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
+  *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
+  *   - '''Completes when''' closed through its [[ChannelInput]].
+  *   - '''Cancels when''' never.
   */
 private[rpc] final class ChannelStage(
     channel: Channel,
