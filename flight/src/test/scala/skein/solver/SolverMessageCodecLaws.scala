@@ -193,7 +193,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),
-      Left("expected a kind of message from 1 to 7, came 42")
+      Left("expected a kind of solver message from 1 to 7, came 42")
     )
     assertEquals(
       SolverMessageCodec.message(new Array[Byte](SolverMessageCodec.MostBytes + 1)),
