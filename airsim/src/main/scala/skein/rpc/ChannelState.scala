@@ -13,7 +13,7 @@ private[rpc] trait ChannelEffects:
   def send(call: Call): Unit
 
   /** The call has ended. */
-  def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit
+  def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit
 
   /** Try to open the connection again, after a pause. */
   def reconnect(connection: Int, after: Span): Unit
@@ -108,15 +108,15 @@ private[rpc] final class ChannelState(
     dispatch()
 
   /** Takes a reply. True if it answers a call of ours, late or in time. */
-  def replied(connection: Int, reply: Message.Reply, now: Instant): Boolean =
+  def replied(connection: Int, reply: RpcMessage.Reply, now: Instant): Boolean =
     val slot = connections(connection)
     slot.inFlight.get(reply.id) match
       case Some(call) if call.written =>
         slot.inFlight.remove(call.id)
         inFlight -= 1
         slot.failures = 0
-        if reply.error == Null then succeed(call, Answer(reply.result, call.sentAt, now))
-        else fail(call, RpcError.Refused(call.method, Message.errorText(reply.error)))
+        if reply.error == Null then succeed(call, TimedReply(reply.result, call.sentAt, now))
+        else fail(call, RpcError.Refused(call.method, RpcMessage.errorText(reply.error)))
         dispatch()
         true
       case _ =>
@@ -164,7 +164,7 @@ private[rpc] final class ChannelState(
       inFlight -= 1
       if call.written then slot.remember(call)
 
-  private def succeed(call: Call, answer: Answer[Msg | Received]): Unit =
+  private def succeed(call: Call, answer: TimedReply[Msg | Received]): Unit =
     counters.answered.increment()
     finish(call, Right(answer))
 
@@ -173,7 +173,7 @@ private[rpc] final class ChannelState(
     effects.observe(RpcEvent.Failed(call.method, channel, error))
     finish(call, Left(error))
 
-  private def finish(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
+  private def finish(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
     call.ended = true
     val _ = deadlines.remove(call)
     effects.end(call, outcome)
@@ -284,9 +284,9 @@ private object ChannelState:
 
     /** A counter that wraps at 32 bits and passes over ids still in use. */
     def freshId(): Long =
-      while inFlight.contains(id) || abandoned.contains(id) do id = (id + 1) & Message.MaxId
+      while inFlight.contains(id) || abandoned.contains(id) do id = (id + 1) & RpcMessage.MaxId
       val fresh = id
-      id = (id + 1) & Message.MaxId
+      id = (id + 1) & RpcMessage.MaxId
       fresh
 
     def remember(call: Call): Unit =

@@ -69,11 +69,6 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
     at += length
     Bytes(bytes, at - length, length)
 
-  def boolean(): Boolean = header() match
-    case 0xc2  => false
-    case 0xc3  => true
-    case other => unexpected("a boolean", other)
-
   def long(): Long =
     val marker = header()
     if marker < 0x80 || marker >= 0xe0 then marker.toByte.toLong

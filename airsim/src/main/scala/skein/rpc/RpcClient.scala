@@ -63,7 +63,7 @@ final class RpcClient(
       method: String,
       params: Seq[Msg],
       options: CallOptions = CallOptions()
-  ): Future[Either[RpcError, Answer[Msg]]] =
+  ): Future[Either[RpcError, TimedReply[Msg]]] =
     submit(method, params, options).map(_.flatMap(answer =>
       answer.value match
         case read: Msg          => Right(answer.copy(value = read))
@@ -77,7 +77,7 @@ final class RpcClient(
     */
   def callBulk[A](method: String, params: Seq[Msg], options: CallOptions = CallOptions())(
       read: MessageReader => A
-  ): Future[Either[RpcError, Answer[A]]] =
+  ): Future[Either[RpcError, TimedReply[A]]] =
     submit(method, params, options.copy(channel = Channel.Bulk)).map(_.flatMap(answer =>
       answer.value match
         case received: Received =>
@@ -85,14 +85,14 @@ final class RpcClient(
             RpcError.Malformed(method, _)
           )
         case other: Msg =>
-          Left(RpcError.Malformed(method, s"expected a large result, came ${Message.kindOf(other)}"))
+          Left(RpcError.Malformed(method, s"expected a large result, came ${RpcMessage.kindOf(other)}"))
     ))
 
   private def submit(
       method: String,
       params: Seq[Msg],
       options: CallOptions
-  ): Future[Either[RpcError, Answer[Msg | Received]]] =
+  ): Future[Either[RpcError, TimedReply[Msg | Received]]] =
     val call = Call(method, params, options, clock.now())
     counters.called.increment()
     val channel = options.channel match
@@ -108,7 +108,7 @@ final class RpcClient(
       method: String,
       params: Seq[Msg],
       options: CallOptions = CallOptions()
-  ): Future[Either[RpcError, Answer[A]]] =
+  ): Future[Either[RpcError, TimedReply[A]]] =
     callStamped(method, params, options).map(
       _.flatMap(answer => read[A](method, answer.value).map(value => answer.map(_ => value)))
     )
@@ -133,7 +133,8 @@ final class RpcClient(
           s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil"
         )
       read
-    // Keeping note of where it is makes reading several times slower: only what cannot be read is read again with it.
+    // Keeping note of where it is makes reading several times slower: only what cannot be read is read again
+    // with it.
     try Right(readAs(trace = false))
     catch
       case NonFatal(_) =>

@@ -16,10 +16,10 @@ object RpcFlow:
     * element whose call fails or comes late is passed over, counted in [[RpcStats.skipped]] and reported as
     * [[RpcEvent.Skipped]].
     *
-    * '''Emits when''' the oldest call under way has its answer.
-    * '''Backpressures when''' `parallelism` calls are under way or done and not yet emitted, or downstream does.
-    * '''Completes when''' upstream has completed and no call is under way.
-    * '''Cancels when''' downstream cancels.
+    *   - '''Emits when''' the oldest call under way has its answer.
+    *   - '''Backpressures when''' `parallelism` calls are under way or done and not yet emitted, or downstream does.
+    *   - '''Completes when''' upstream has completed and no call is under way.
+    *   - '''Cancels when''' downstream cancels.
     *
     * @param parallelism
     *   most calls under way; they wait for a place in the client's windows, which may be smaller, and are passed over
@@ -29,7 +29,7 @@ object RpcFlow:
     */
   def ordered[A, B: Reader](client: RpcClient, parallelism: Int, timeout: Span)(
       request: A => RpcCall
-  ): Flow[A, Answer[B], NotUsed] =
+  ): Flow[A, TimedReply[B], NotUsed] =
     Flow[A]
       .mapAsync(parallelism): element =>
         val call = request(element)

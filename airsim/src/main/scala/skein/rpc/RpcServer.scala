@@ -100,8 +100,8 @@ object RpcServer:
   /** The words of AirSim's server for a function that throws. */
   def rpclibFailure(request: RpcRequest, failure: Throwable): String =
     val text = Option(failure.getMessage).getOrElse(failure.toString)
-    s"rpclib: function '${request.method}' (called with ${request.params.length} arg(s)) threw an exception. " +
-      s"The exception contained this information: $text."
+    s"rpclib: function '${request.method}' (called with ${request.params.length} " +
+      s"arg(s)) threw an exception. The exception contained this information: $text."
 
   /** Closed and refused connections that are told one by one. */
   private val MostTold = 20

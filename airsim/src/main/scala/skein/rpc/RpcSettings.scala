@@ -90,7 +90,8 @@ final case class RpcSettings(
     bulkLimits: FrameLimits = FrameLimits()
 ):
   require(
-    controlConnections > 0 && sensorConnections > 0 && bulkConnections > 0 && windowPerConnection > 0 && windowInAll > 0 && queue >= 0 &&
+    controlConnections > 0 && sensorConnections > 0 && bulkConnections > 0 &&
+      windowPerConnection > 0 && windowInAll > 0 && queue >= 0 &&
       resends >= 0 && rememberedIds >= 0 && strays >= 0 && messageTime > Span.Zero && openBytes >= 0,
     s"connections and windows must be positive, the other bounds not negative: $this"
   )

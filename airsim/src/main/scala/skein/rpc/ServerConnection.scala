@@ -13,14 +13,14 @@ import upack.Msg
 
 /** Serves one connection: requests' bytes in, replies' bytes out, replies in the order of completion.
   *
-  * '''Emits when''' replies are ready; those ready together leave together.
-  * '''Backpressures when''' its limit of requests being handled, of reply bytes not yet taken, or of memory held is
-  * reached.
-  * A request too large for the memory left waits for those of its connection that are under way; then, or after the
-  * longest time for a message, it is answered with an error, and so is one whose reply is too large.
-  * '''Completes when''' upstream has completed and every request is answered, or at once on malformed input or a
-  * limit that cannot be waited for.
-  * '''Cancels when''' downstream cancels, or on malformed input or such a limit.
+  *   - '''Emits when''' replies are ready; those ready together leave together.
+  *   - '''Backpressures when''' its limit of requests being handled, of reply bytes not yet taken, or of memory held is
+  *     reached.
+  *     A request too large for the memory left waits for those of its connection that are under way; then, or after the
+  *     longest time for a message, it is answered with an error, and so is one whose reply is too large.
+  *   - '''Completes when''' upstream has completed and every request is answered, or at once on malformed input or a
+  *     limit that cannot be waited for.
+  *   - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
   */
 private[rpc] final class ServerConnection(
     connection: Long,
@@ -176,7 +176,8 @@ private[rpc] final class ServerConnection(
       private def tooMuch(): Unit = refuse(ServerLimit.Held, s"$held bytes of it are held, and $noMore")
 
       private def noMore: String =
-        s"no more than ${limits.heldBytesInCommon} in all beyond ${limits.heldBytesPerConnection} for each connection"
+        s"no more than ${limits.heldBytesInCommon} in all beyond " +
+          s"${limits.heldBytesPerConnection} for each connection"
 
       private def take(frame: Array[Byte]): Unit =
         val bytes = framer.decodedBytes + BytesPerRequest
@@ -189,7 +190,7 @@ private[rpc] final class ServerConnection(
           backFor = 0
           counters.lacking.increment()
           // Unread: to read it takes what is lacking.
-          Message.requestId(frame) match
+          RpcMessage.requestId(frame) match
             case Some(id) =>
               counters.requests.increment()
               counters.refused.increment()
@@ -197,16 +198,16 @@ private[rpc] final class ServerConnection(
             case None => ignore(s"a message that asks for no answer and takes $bytes bytes, and $noMore")
 
       private def handle(frame: Array[Byte], bytes: Long): Unit =
-        Message.fromClient(frame) match
-          case Message.Request(id, method, params) =>
+        RpcMessage.fromClient(frame) match
+          case RpcMessage.Request(id, method, params) =>
             counters.requests.increment()
             run(id, RpcRequest(connection, method, params, notification = false), bytes)
-          case Message.Notification(method, params) =>
+          case RpcMessage.Notification(method, params) =>
             counters.notifications.increment()
             run(NoReply, RpcRequest(connection, method, params, notification = true), bytes)
-          case Message.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
-          case Message.Ignored(what)      => ignore(what)
-          case other: Message.Reply       => ignore(other.productPrefix)
+          case RpcMessage.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
+          case RpcMessage.Ignored(what)      => ignore(what)
+          case other: RpcMessage.Reply       => ignore(other.productPrefix)
 
       private def ignore(what: String): Unit =
         strays += 1

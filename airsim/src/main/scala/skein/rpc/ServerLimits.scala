@@ -51,8 +51,9 @@ final case class ServerLimits(
     idle: Span = Span.ofSeconds(3600)
 ):
   require(
-    inFlightPerConnection > 0 && inFlightAssured > 0 && inFlightInCommon >= 0 && unsentBytesPerConnection > 0 &&
-      connections > 0 && heldBytesPerConnection > 0 && heldBytesInCommon >= 0 && strays >= 0,
+    inFlightPerConnection > 0 && inFlightAssured > 0 && inFlightInCommon >= 0 &&
+      unsentBytesPerConnection > 0 && connections > 0 &&
+      heldBytesPerConnection > 0 && heldBytesInCommon >= 0 && strays >= 0,
     s"limits must be positive: $this"
   )
   require(

@@ -8,7 +8,8 @@ class CallLinesSuite extends munit.FunSuite:
     Iterator.continually(lines.take()).takeWhile(_.nonEmpty).flatten.toSeq
 
   test(
-    "the first of each connection's calls are taken in turn, then what waits, each connection's in their order"
+    "the first of each connection's calls are taken in turn, " +
+      "then what waits, each connection's in their order"
   ):
     val lines = CallLines[String]()
     for (connection, call) <- Seq(1 -> "a1", 1 -> "a2", 1 -> "a3", 2 -> "b1", 3 -> "c1", 3 -> "c2") do
@@ -28,7 +29,8 @@ class CallLinesSuite extends munit.FunSuite:
       assert(ahead <= 200, s"$ahead calls went ahead, seed $seed")
 
   test(
-    "one that asks now and then goes before 200 that ask without a pause, who are woken once for several answers"
+    "one that asks now and then goes before 200 that ask without " +
+      "a pause, who are woken once for several answers"
   ):
     for pause <- Seq(60, 200, 1000) do
       val lines = CallLines[Long]()

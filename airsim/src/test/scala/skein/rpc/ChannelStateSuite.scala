@@ -24,7 +24,7 @@ class ChannelStateSuite extends munit.FunSuite:
       call.sends += 1
       sent += call
       usedInTurn += call.connection
-    def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
+    def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
       assert(!ends.contains(call.method), s"${call.method} ended twice")
       ends(call.method) = outcome.map(_.value)
     def reconnect(connection: Int, after: Span): Unit = reconnects += connection -> after
@@ -35,7 +35,7 @@ class ChannelStateSuite extends munit.FunSuite:
     def open(connections: Int*): Unit                                 = connections.foreach(state.opened)
     def reply(name: String, result: Msg = Null, at: Double = 0): Unit =
       val call = sent.findLast(_.method == name).get
-      state.replied(call.connection, Message.Reply(call.id, Null, result), ms(at)): Unit
+      state.replied(call.connection, RpcMessage.Reply(call.id, Null, result), ms(at)): Unit
     def sentNames: Seq[String]          = sent.map(_.method).toSeq
     def connectionOf(name: String): Int = sent.findLast(_.method == name).get.connection
     def error(name: String): RpcError   = ends(name).left.toOption.get
@@ -258,8 +258,8 @@ class ChannelStateSuite extends munit.FunSuite:
     val l = channel()
     l.open(0)
     l.submit("a")
-    l.state.replied(0, Message.Reply(99, Null, Null), ms(1))
-    l.state.replied(0, Message.Reply(0, Str("std::bad_cast"), Null), ms(1))
+    l.state.replied(0, RpcMessage.Reply(99, Null, Null), ms(1))
+    l.state.replied(0, RpcMessage.Reply(0, Str("std::bad_cast"), Null), ms(1))
     assertEquals(l.error("a"), RpcError.Refused("a", "std::bad_cast"))
     assertEquals(l.counters.snapshot.unexpected, 1L)
 
@@ -293,7 +293,7 @@ class ChannelStateSuite extends munit.FunSuite:
               step
             )
           case 7 | 8 if up(connection) =>
-            l.state.replied(connection, Message.Reply(random.nextInt(40), Null, Int32(step)), ms(step))
+            l.state.replied(connection, RpcMessage.Reply(random.nextInt(40), Null, Int32(step)), ms(step))
           case _ => l.state.expire(ms(step))
         assertEquals(l.counters.snapshot.pending, calls - l.ends.size.toLong, s"seed $seed, step $step")
         assert(l.counters.snapshot.pending <= 8 + 5 + 8, s"seed $seed, step $step: unbounded")
@@ -310,7 +310,7 @@ class ChannelStateSuite extends munit.FunSuite:
     channel.state.withdraw(first, ms(700))
     assertEquals(channel.error("first"), RpcError.Timeout("first", Span.ofMillis(700)))
     assertEquals(channel.sentNames, Seq("first", "second"))
-    channel.state.replied(0, Message.Reply(first.id, Null, Null), ms(800))
+    channel.state.replied(0, RpcMessage.Reply(first.id, Null, Null), ms(800))
     assertEquals(channel.counters.snapshot.late, 1L)
 
   test("a call that has ended, or waits, can be withdrawn as well"):

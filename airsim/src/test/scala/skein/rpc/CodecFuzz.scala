@@ -38,8 +38,8 @@ object CodecFuzz:
       val refusal = found.collectFirst { case Framed.Malformed(reason) => reason }
       judge(bytes, frames, refusal, framer.midway, s"seed ${seed + i}")
       for frame <- frames do
-        Message.fromServer(frame)
-        if Message.fromClient(frame).isInstanceOf[Message.Malformed] then malformed += 1
+        RpcMessage.fromServer(frame)
+        if RpcMessage.fromClient(frame).isInstanceOf[RpcMessage.Malformed] then malformed += 1
       values += frames.length
       if refusal.nonEmpty then refused += 1
       else if framer.midway then cut += 1

@@ -55,7 +55,7 @@ object PairFuzz:
       val answers = Wire.framed(Framer(), Seq(ByteString.fromArrayUnsafe(got)))
       check(
         answers.forall {
-          case Framed.Complete(f) => Message.fromServer(f).isInstanceOf[Message.Reply]; case _ => false
+          case Framed.Complete(f) => RpcMessage.fromServer(f).isInstanceOf[RpcMessage.Reply]; case _ => false
         },
         s"not replies, $clue"
       )
@@ -115,11 +115,11 @@ object PairFuzz:
       val result      = Await.result(client.call("read", Seq.empty), 20.seconds)
       val (id, bytes) = sent.poll(10, TimeUnit.SECONDS)
       (firstReply(bytes, id), result) match
-        case (Some(Message.Reply(_, Null, value: Msg)), Right(got)) =>
+        case (Some(RpcMessage.Reply(_, Null, value: Msg)), Right(got)) =>
           check(same(got, value), s"got $got, expected $value, $clue")
           right += 1
-        case (Some(Message.Reply(_, error, _)), Left(RpcError.Refused(_, text))) if error != Null =>
-          check(text == Message.errorText(error), clue)
+        case (Some(RpcMessage.Reply(_, error, _)), Left(RpcError.Refused(_, text))) if error != Null =>
+          check(text == RpcMessage.errorText(error), clue)
           refused += 1
         case (None, Left(_: RpcError.Malformed | _: RpcError.ConnectionLost)) => failed += 1
         case (expected, got) => throw AssertionError(s"got $got, expected $expected, $clue")
@@ -158,31 +158,34 @@ object PairFuzz:
       val count = connection.getInputStream.read(segment)
       if count < 0 then throw IOException("closed")
       for case Framed.Complete(frame) <- Wire.framed(framer, Seq(ByteString.fromArray(segment, 0, count))) do
-        Message.fromClient(frame) match
-          case request: Message.Request => id = Some(request.id)
-          case other                    => throw AssertionError(s"not a request: $other")
+        RpcMessage.fromClient(frame) match
+          case request: RpcMessage.Request => id = Some(request.id)
+          case other                       => throw AssertionError(s"not a request: $other")
     id.get
 
   /** Values up to the first malformed one, and why it is. */
-  private def decoded(bytes: Array[Byte], decode: Array[Byte] => Message): (Seq[Message], Option[String]) =
+  private def decoded(
+      bytes: Array[Byte],
+      decode: Array[Byte] => RpcMessage
+  ): (Seq[RpcMessage], Option[String]) =
     val framer   = Framer(frameLimits)
     val messages = Wire
       .framed(framer, Seq(ByteString.fromArrayUnsafe(bytes)))
       .map:
         case Framed.Complete(frame) => decode(frame)
-        case other                  => Message.Malformed(other.asInstanceOf[Framed.Malformed].reason)
-    val reason = messages.collectFirst { case Message.Malformed(reason) => reason }
+        case other                  => RpcMessage.Malformed(other.asInstanceOf[Framed.Malformed].reason)
+    val reason = messages.collectFirst { case RpcMessage.Malformed(reason) => reason }
     val cut    = Option.when(framer.midway)("the peer stopped in the middle of a message")
-    (messages.takeWhile(!_.isInstanceOf[Message.Malformed]), reason.orElse(cut))
+    (messages.takeWhile(!_.isInstanceOf[RpcMessage.Malformed]), reason.orElse(cut))
 
-  private def expectedReason(bytes: Array[Byte]): Option[String] = decoded(bytes, Message.fromClient)._2
+  private def expectedReason(bytes: Array[Byte]): Option[String] = decoded(bytes, RpcMessage.fromClient)._2
 
   private def requestsIn(bytes: Array[Byte]): Int =
-    decoded(bytes, Message.fromClient)._1.count(_.isInstanceOf[Message.Request])
+    decoded(bytes, RpcMessage.fromClient)._1.count(_.isInstanceOf[RpcMessage.Request])
 
-  private def firstReply(bytes: Array[Byte], id: Long): Option[Message.Reply] =
-    decoded(bytes, Message.fromServer)._1.collectFirst {
-      case reply: Message.Reply if reply.id == id => reply
+  private def firstReply(bytes: Array[Byte], id: Long): Option[RpcMessage.Reply] =
+    decoded(bytes, RpcMessage.fromServer)._1.collectFirst {
+      case reply: RpcMessage.Reply if reply.id == id => reply
     }
 
   private def same(a: Msg, b: Msg): Boolean = java.util.Arrays.equals(upack.write(a), upack.write(b))

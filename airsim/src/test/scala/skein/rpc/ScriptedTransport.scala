@@ -42,15 +42,15 @@ final class ScriptedTransport(using ActorSystem) extends Transport:
 final class Peer(requests: TestSubscriber.Probe[ByteString], replies: TestPublisher.Probe[ByteString]):
   private val framer  = Framer()
   private val writer  = MessageWriter()
-  private val pending = scala.collection.mutable.Queue.empty[Message.Request]
+  private val pending = scala.collection.mutable.Queue.empty[RpcMessage.Request]
 
   /** The next request; waits for it. */
-  def request(): Message.Request =
+  def request(): RpcMessage.Request =
     while pending.isEmpty do
       for case Framed.Complete(frame) <- Wire.framed(framer, Seq(requests.requestNext())) do
-        Message.fromClient(frame) match
-          case request: Message.Request => pending.enqueue(request)
-          case other                    => throw AssertionError(s"not a request: $other")
+        RpcMessage.fromClient(frame) match
+          case request: RpcMessage.Request => pending.enqueue(request)
+          case other                       => throw AssertionError(s"not a request: $other")
     pending.dequeue()
 
   def answer(id: Long, result: Msg = Null): Unit = send { writer.reply(id, Right(result)); writer.take() }

@@ -46,7 +46,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val (requests, replies) =
       TestSource[ByteString]().via(Flow.fromGraph(stage)).toMat(TestSink[ByteString]())(Keep.both).run()
     private val framer   = Framer()
-    private val answered = scala.collection.mutable.Queue.empty[Message]
+    private val answered = scala.collection.mutable.Queue.empty[RpcMessage]
 
     /** The next request that waits for the test's answer. */
     def next(): (RpcRequest, Promise[Either[String, Msg]]) = taken(asked)
@@ -59,10 +59,10 @@ class ServerConnectionSuite extends munit.FunSuite:
     def send(msg: Msg): Unit               = send(ByteString(Wire.pack(msg)))
     def send(bytes: ByteString): Unit      =
       val _ = requests.sendNext(bytes)
-    def reply(): Message =
+    def reply(): RpcMessage =
       while answered.isEmpty do
         for case Framed.Complete(frame) <- Wire.framed(framer, Seq(replies.requestNext())) do
-          answered.enqueue(Message.fromServer(frame))
+          answered.enqueue(RpcMessage.fromServer(frame))
       answered.dequeue()
 
   test("replies leave in the order of completion"):
@@ -72,9 +72,9 @@ class ServerConnectionSuite extends munit.FunSuite:
     val slow = r.next()
     val fast = r.next()
     fast._2.success(Right(Str("fast")))
-    assertEquals(r.reply(), Message.Reply(2, Null, Str("fast")))
+    assertEquals(r.reply(), RpcMessage.Reply(2, Null, Str("fast")))
     slow._2.success(Left("no"))
-    assertEquals(r.reply(), Message.Reply(1, Str("no"), Null))
+    assertEquals(r.reply(), RpcMessage.Reply(1, Str("no"), Null))
 
   test("a handler that throws or fails answers in rpclib's words and the connection lives"):
     val r     = Rig()
@@ -82,10 +82,10 @@ class ServerConnectionSuite extends munit.FunSuite:
       "rpclib: function 'throw' (called with 0 arg(s)) threw an exception. " +
         "The exception contained this information: bad."
     r.ask(1, "throw")
-    assertEquals(r.reply(), Message.Reply(1, Str(words), Null))
+    assertEquals(r.reply(), RpcMessage.Reply(1, Str(words), Null))
     r.ask(2, "later")
     r.next()._2.failure(IllegalArgumentException("bad"))
-    assertEquals(r.reply(), Message.Reply(2, Str(words.replace("'throw'", "'later'")), Null))
+    assertEquals(r.reply(), RpcMessage.Reply(2, Str(words.replace("'throw'", "'later'")), Null))
 
   test("a notification runs and is not answered"):
     val r = Rig()
@@ -94,7 +94,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     assertEquals(request, RpcRequest(1, "note", Vector(Int32(5)), notification = true))
     answer.success(Right(Null))
     r.ask(3, "now")
-    assertEquals(r.reply(), Message.Reply(3, Null, Int32(1)))
+    assertEquals(r.reply(), RpcMessage.Reply(3, Null, Int32(1)))
 
   test("values that are no messages are counted and the connection lives"):
     val r = Rig()
@@ -102,7 +102,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.send(upack.Obj(Str("a") -> Null))
     r.send(Int32(7))
     r.ask(1, "now")
-    assertEquals(r.reply(), Message.Reply(1, Null, Int32(1)))
+    assertEquals(r.reply(), RpcMessage.Reply(1, Null, Int32(1)))
     assertEquals(
       Seq.fill(3)(r.event()),
       Seq("an array of 2", "a map", "an integer").map(ServerEvent.Ignored(1, _))
@@ -136,7 +136,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val _     = r.next()
     assertEquals(r.counters.snapshot.requests, 2L)
     first._2.success(Right(Null))
-    assertEquals(r.reply(), Message.Reply(1, Null, Null))
+    assertEquals(r.reply(), RpcMessage.Reply(1, Null, Null))
     val _ = r.next()
     assertEquals(r.counters.snapshot.requests, 3L)
 
@@ -157,7 +157,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.ask(1, "slow")
     r.requests.sendComplete()
     r.next()._2.success(Right(Int32(9)))
-    assertEquals(r.reply(), Message.Reply(1, Null, Int32(9)))
+    assertEquals(r.reply(), RpcMessage.Reply(1, Null, Int32(9)))
     val _ = r.replies.expectComplete()
     assertEquals(r.event(), ServerEvent.Closed(1, None))
 

@@ -126,8 +126,8 @@ class ServerLimitsSuite extends munit.FunSuite:
     r.until(r.holdings.bytes == before + 40_685)
     connection
 
-  private def replies(bytes: Seq[ByteString]): Seq[Message] =
-    Wire.framed(Framer(), bytes).collect { case Framed.Complete(frame) => Message.fromServer(frame) }
+  private def replies(bytes: Seq[ByteString]): Seq[RpcMessage] =
+    Wire.framed(Framer(), bytes).collect { case Framed.Complete(frame) => RpcMessage.fromServer(frame) }
 
   rig("a request counts until it is answered, and a lone one too large for what is left is refused", three):
     r =>
@@ -135,9 +135,9 @@ class ServerLimitsSuite extends munit.FunSuite:
       val third   = r.Connection()
       third.send(large(300))
       val text =
-        "this request takes 40687 bytes of the server's memory, and no more than 120000 in all beyond 10000 " +
-          "for each connection"
-      assertEquals(replies(Seq(third.replies.expectNext())), Seq(Message.Reply(300, Str(text), Null)))
+        "this request takes 40687 bytes of the server's memory, and no " +
+          "more than 120000 in all beyond 10000 for each connection"
+      assertEquals(replies(Seq(third.replies.expectNext())), Seq(RpcMessage.Reply(300, Str(text), Null)))
       third.ping()
       assertEquals(r.counters.snapshot.lacking, 1L)
       r.never.success(Right(Null))
@@ -156,7 +156,7 @@ class ServerLimitsSuite extends munit.FunSuite:
     for id <- 3 to 8 do honest.send(large(id))
     var answers = Seq.empty[ByteString]
     while replies(answers).size < 8 do answers :+= honest.replies.expectNext()
-    assertEquals(replies(answers), (1 to 8).map(id => Message.Reply(id, Null, Null): Message))
+    assertEquals(replies(answers), (1 to 8).map(id => RpcMessage.Reply(id, Null, Null): RpcMessage))
     assertEquals((r.counters.snapshot.lacking, r.events.size), (0L, 0))
     assert(r.holdings.mostBytes <= three.heldBytes)
 
@@ -174,9 +174,9 @@ class ServerLimitsSuite extends munit.FunSuite:
     val image = r.Connection()
     image.ask("image")
     val text =
-      "the reply takes 200009 bytes of the server's memory, and no more than 120000 in all beyond 10000 for " +
-        "each connection"
-    assertEquals(replies(Seq(image.replies.expectNext())), Seq(Message.Reply(1, Str(text), Null)))
+      "the reply takes 200009 bytes of the server's memory, and no more " +
+        "than 120000 in all beyond 10000 for each connection"
+    assertEquals(replies(Seq(image.replies.expectNext())), Seq(RpcMessage.Reply(1, Str(text), Null)))
     image.ping()
     assertEquals((r.counters.snapshot.lacking, r.counters.snapshot.refused), (1L, 1L))
     assert(r.holdings.mostBytes <= three.heldBytes)
@@ -184,7 +184,8 @@ class ServerLimitsSuite extends munit.FunSuite:
   private val six = ServerLimits(inFlightAssured = 2, inFlightInCommon = 4)
 
   rig(
-    "one that asks without a pause leaves the others their requests in flight, and all of its own are answered",
+    "one that asks without a pause leaves the others their " +
+      "requests in flight, and all of its own are answered",
     six
   ): r =>
     val greedy = r.Connection()
@@ -212,7 +213,10 @@ class ServerLimitsSuite extends munit.FunSuite:
     r.never.success(Right(Null))
     var answers = Seq.empty[ByteString]
     while replies(answers).size < 20 do answers :+= greedy.replies.expectNext()
-    assertEquals(replies(answers).toSet, (1 to 20).map(id => Message.Reply(id, Null, Null): Message).toSet)
+    assertEquals(
+      replies(answers).toSet,
+      (1 to 20).map(id => RpcMessage.Reply(id, Null, Null): RpcMessage).toSet
+    )
     assertEquals(r.turns.mostBytes, 6L)
 
   rig("a message under way too long is the reason to close, and gives back what was held", ServerLimits()):

@@ -36,9 +36,9 @@ final case class Autopilot(
     mission: Mission = Mission(),
     upload: Option[Upload] = None,
     anchor: Vector3 = Vector3.Zero,
-    turn: Target.Turn = Target.Turn.None,
+    turn: OffboardSetpoint.Turn = OffboardSetpoint.Turn.None,
     enteredAt: Span = Span.Zero,
-    target: Option[Target] = None,
+    target: Option[OffboardSetpoint] = None,
     heardAt: Option[Span] = None,
     stillSince: Option[Span] = None,
     groundedAt: Span = Span.Zero,
@@ -53,7 +53,7 @@ final case class Autopilot(
     * @param from
     *   system and component of the sender
     */
-  def heard(message: Message, from: (system: Int, component: Int), motion: Motion): Heard =
+  def heard(message: Message, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
     message match
       case one: CommandLong =>
         val numbers =
@@ -92,24 +92,24 @@ final case class Autopilot(
           Heard(next, news = Vector(next.mission.told))
         else refused(s"no mission item $seq")
       case setpoint =>
-        Target.of(setpoint, home) match
+        OffboardSetpoint.of(setpoint, home) match
           case None                => Heard(this)
           case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
           case Some(Left(why))     => refused(why)
 
   /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never armed. */
-  def steer(motion: Motion): (heard: Heard, setpoint: Option[Setpoint]) =
+  def steer(motion: VehicleMotion): (heard: Heard, setpoint: Option[Setpoint]) =
     val (asked, texts) = uploading(motion)
     val (after, told)  = asked.onItsOwn(motion)
     (Heard(after, news = texts ++ told), after.goal(motion))
 
   /** In its own clock's time, whether setpoints come. */
-  def isCommanded(motion: Motion): Boolean =
+  def isCommanded(motion: VehicleMotion): Boolean =
     heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
 
   private def refused(why: String): Heard = Heard(this, Vector(text(Severity.Critical, why)))
 
-  private def acknowledged(order: Order, from: (system: Int, component: Int), motion: Motion): Heard =
+  private def acknowledged(order: Order, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
     def ack(result: Int) =
       CommandAck(order.command, result, targetSystem = from.system, targetComponent = from.component)
     obey(order, motion) match
@@ -117,7 +117,7 @@ final case class Autopilot(
         Heard(this, Vector(ack(result)), Vector(text(Severity.Critical, why)))
       case Right(heard) => heard.copy(answers = ack(Result.Accepted) +: heard.answers)
 
-  private def obey(order: Order, motion: Motion): Either[Refusal, Heard] = order.command match
+  private def obey(order: Order, motion: VehicleMotion): Either[Refusal, Heard] = order.command match
     case Command.Arm if order.isOne(0)       => arm(motion)
     case Command.Arm                         => disarm(motion, order.numbers(1) == CommonDialect.Force)
     case Command.Terminate if order.isOne(0) => disarm(motion, isForced = true)
@@ -126,7 +126,7 @@ final case class Autopilot(
       val down  =
         if above.isFinite && above > home.altitude.value + 0.1 then home.altitude.value - above
         else motion.state.positionNed.z - parameters(Parameters.TakeoffAltitude)
-      if math.abs(down) > Target.Most then
+      if math.abs(down) > OffboardSetpoint.Most then
         Left(Refusal(Result.Denied, s"takeoff: no altitude to reach: $above m"))
       else
         enter(FlightMode.Takeoff, motion).map(heard =>
@@ -166,7 +166,7 @@ final case class Autopilot(
       else Right(Heard(this, interval = Some((id, micros))))
     case other => Left(Refusal(Result.Unsupported, s"command $other unsupported"))
 
-  private def arm(motion: Motion): Either[Refusal, Heard] =
+  private def arm(motion: VehicleMotion): Either[Refusal, Heard] =
     if isArmed then Right(Heard(this))
     else if mode == FlightMode.Land || mode == FlightMode.Return then
       Left(Refusal(Result.Rejected, s"Arming denied: switch out of ${mode.title} mode first"))
@@ -182,7 +182,7 @@ final case class Autopilot(
         news = Vector(text(Severity.Info, "Armed by external command"))
       ))
 
-  private def disarm(motion: Motion, isForced: Boolean): Either[Refusal, Heard] =
+  private def disarm(motion: VehicleMotion, isForced: Boolean): Either[Refusal, Heard] =
     if isArmed && motion.isFlying && !isForced then
       Left(Refusal(Result.Rejected, "Disarming denied: not landed"))
     else
@@ -194,10 +194,10 @@ final case class Autopilot(
     news = if isArmed then Vector(text(Severity.Info, why)) else Vector.empty
   )
 
-  private def reposition(order: Order, motion: Motion): Either[Refusal, Heard] =
+  private def reposition(order: Order, motion: VehicleMotion): Either[Refusal, Heard] =
     val here = motion.state.positionNed
     // A command without a frame has PX4's: above the sea.
-    Target.heightOf(order.frame.getOrElse(CommonDialect.Frame.Global), order.numbers(6), home) match
+    OffboardSetpoint.heightOf(order.frame.getOrElse(CommonDialect.Frame.Global), order.numbers(6), home) match
       case None           => Left(Refusal(Result.Denied, s"frame ${order.frame.getOrElse(0)} unsupported"))
       case Some(altitude) =>
         val place = GeoLocation(order.numbers(4), order.numbers(5), altitude).nedFrom(home)
@@ -206,26 +206,26 @@ final case class Autopilot(
           if place.y.isFinite then place.y else here.y,
           if place.z.isFinite then place.z else here.z
         )
-        val yaw     = order.numbers(3)
-        val isAfar  = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > Target.Most)
+        val yaw    = order.numbers(3)
+        val isAfar = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > OffboardSetpoint.Most)
         val isGlobe = !(math.abs(order.numbers(4)) > 90) && !(math.abs(order.numbers(5)) > 180)
-        if isAfar || !isGlobe || math.abs(yaw) > Target.Most then
+        if isAfar || !isGlobe || math.abs(yaw) > OffboardSetpoint.Most then
           Left(Refusal(
             Result.Denied,
-            s"reposition: expected a place within ${Target.Most.toInt} m and a yaw"
+            s"reposition: expected a place within ${OffboardSetpoint.Most.toInt} m and a yaw"
           ))
         else
           enter(FlightMode.Hold, motion).map(heard =>
             heard.copy(next =
               heard.next.copy(
                 anchor = goal,
-                turn = if yaw.isFinite then Target.Turn.Towards(yaw) else Target.Turn.None
+                turn = if yaw.isFinite then OffboardSetpoint.Turn.Towards(yaw) else OffboardSetpoint.Turn.None
               )
             )
           )
 
   /** Takes a mode, or says why not. */
-  private def enter(wanted: FlightMode, motion: Motion): Either[Refusal, Heard] =
+  private def enter(wanted: FlightMode, motion: VehicleMotion): Either[Refusal, Heard] =
     def rejected(why: String) = Left(Refusal(Result.Rejected, s"Switching to ${wanted.title} denied: $why"))
     wanted match
       case FlightMode.Offboard if !isCommanded(motion) => rejected("no offboard setpoints")
@@ -241,7 +241,7 @@ final case class Autopilot(
             enteredAt = motion.sinceBoot,
             // What it held, it goes on holding.
             anchor = if mode == FlightMode.Hold && wanted == mode then anchor else motion.state.positionNed,
-            turn = Target.Turn.None,
+            turn = OffboardSetpoint.Turn.None,
             stillSince = None,
             mission = again
           )
@@ -251,7 +251,7 @@ final case class Autopilot(
       count: Int,
       kind: Int,
       from: (system: Int, component: Int),
-      motion: Motion
+      motion: VehicleMotion
   ): Heard =
     def ack(result: Int) = Vector(MissionAck(from.system, from.component, result, kind))
     if kind != Mission.Kind then Heard(this, ack(Mission.Ack.Unsupported))
@@ -266,7 +266,11 @@ final case class Autopilot(
       val begun = Upload(from.system, from.component, count, Vector.empty, motion.sinceBoot, tries = 1)
       Heard(copy(upload = Some(begun)), Vector(begun.question))
 
-  private def receive(item: MissionItemInt, from: (system: Int, component: Int), motion: Motion): Heard =
+  private def receive(
+      item: MissionItemInt,
+      from: (system: Int, component: Int),
+      motion: VehicleMotion
+  ): Heard =
     upload match
       case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
         if item.seq != going.items.size then Heard(this, Vector(going.question))
@@ -284,7 +288,7 @@ final case class Autopilot(
                 )
       case _ => Heard(this, Vector(MissionAck(from.system, from.component, Mission.Ack.OutOfOrder)))
 
-  private def uploading(motion: Motion): (Autopilot, Vector[Message]) = upload match
+  private def uploading(motion: VehicleMotion): (Autopilot, Vector[Message]) = upload match
     case Some(going) if (motion.sinceBoot - going.askedAt) >= Upload.AskAgain =>
       if going.tries >= Upload.MostTries then
         (
@@ -297,7 +301,7 @@ final case class Autopilot(
     case _ => (this, Vector.empty)
 
   /** What it does without being told. */
-  private def onItsOwn(motion: Motion): (Autopilot, Vector[Message]) =
+  private def onItsOwn(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val now = motion.sinceBoot
     if !isArmed then (this, Vector.empty)
     else
@@ -314,7 +318,7 @@ final case class Autopilot(
   /** On the ground only for as long as the rotors take. */
   private def isRising: Boolean = mode == FlightMode.Takeoff || mode == FlightMode.Mission
 
-  private def proceed(motion: Motion): (Autopilot, Vector[Message]) =
+  private def proceed(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val state = motion.state
     val here  = state.positionNed
     mode match
@@ -331,14 +335,14 @@ final case class Autopilot(
       case FlightMode.Mission => followed(motion)
       case _                  => (this, Vector.empty)
 
-  private def holding(motion: Motion): Autopilot = copy(
+  private def holding(motion: VehicleMotion): Autopilot = copy(
     mode = FlightMode.Hold,
     enteredAt = motion.sinceBoot,
     anchor = motion.state.positionNed,
-    turn = Target.Turn.None
+    turn = OffboardSetpoint.Turn.None
   )
 
-  private def followed(motion: Motion): (Autopilot, Vector[Message]) = mission.item match
+  private def followed(motion: VehicleMotion): (Autopilot, Vector[Message]) = mission.item match
     case None =>
       (holding(motion), Vector(text(Severity.Info, "Mission finished, loitering")))
     case Some(item) =>
@@ -380,19 +384,19 @@ final case class Autopilot(
                 val next = copy(mission = mission.next, anchor = here)
                 reached(next)
 
-  private def goal(motion: Motion): Option[Setpoint] =
+  private def goal(motion: VehicleMotion): Option[Setpoint] =
     val here  = motion.state.positionNed
     val speed = MetresPerSecond(cruise.getOrElse(parameters(Parameters.Cruise)).max(0.1))
-    def to(place: Vector3, yaw: Target.Turn) =
+    def to(place: Vector3, yaw: OffboardSetpoint.Turn) =
       val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place, speed)
-      Target.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
+      OffboardSetpoint.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
     def over(place: Vector3, downMps: Double) =
       val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place.copy(z = here.z), speed)
       Setpoint.velocity(velocity.x, velocity.y, downMps)
     if !isArmed then Some(Setpoint.Disarmed)
     else
       Some(mode match
-        case FlightMode.Offboard => target.fold(Setpoint.Armed)(Target.setpoint(_, motion, speed))
+        case FlightMode.Offboard => target.fold(Setpoint.Armed)(OffboardSetpoint.setpoint(_, motion, speed))
         case FlightMode.Takeoff  =>
           val up = parameters(Parameters.TakeoffSpeed)
           over(anchor, ((anchor.z - here.z) * 1.2).max(-up).min(up))
@@ -406,7 +410,7 @@ final case class Autopilot(
           val away   = here.copy(z = 0).norm
           // First up, then across; who is near already goes down where it is.
           if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
-          else to(Vector3.Zero.copy(z = here.z), Target.Turn.None)
+          else to(Vector3.Zero.copy(z = here.z), OffboardSetpoint.Turn.None)
         case FlightMode.Mission if !motion.isFlying =>
           Setpoint.velocity(0, 0, -parameters(Parameters.TakeoffSpeed))
         case FlightMode.Mission =>
@@ -417,8 +421,9 @@ final case class Autopilot(
               case Command.Land => to(Mission.place(item, home, anchor).copy(z = here.z), yawOf(item))
               case _            => to(anchor, turn))
 
-  private def yawOf(item: MissionItemInt): Target.Turn =
-    if item.param4.isFinite then Target.Turn.Towards(math.toRadians(item.param4)) else Target.Turn.None
+  private def yawOf(item: MissionItemInt): OffboardSetpoint.Turn =
+    if item.param4.isFinite then OffboardSetpoint.Turn.Towards(math.toRadians(item.param4))
+    else OffboardSetpoint.Turn.None
 
 object Autopilot:
   /** What comes of what was heard.

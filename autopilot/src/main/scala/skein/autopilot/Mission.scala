@@ -60,7 +60,7 @@ object Mission:
 
   /** Where an item is, in the vehicle's own frame; a place of 0, 0 is where it is already. */
   def place(item: MissionItemInt, home: GeoLocation, hereNed: Vector3): Vector3 =
-    val altitude = Target.heightOf(item.frame, item.z, home).getOrElse(home.altitude)
+    val altitude = OffboardSetpoint.heightOf(item.frame, item.z, home).getOrElse(home.altitude)
     val at       = GeoLocation(item.x * 1e-7, item.y * 1e-7, altitude).nedFrom(home)
     if item.x == 0 && item.y == 0 then hereNed.copy(z = at.z) else at
 

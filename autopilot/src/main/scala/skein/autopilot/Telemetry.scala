@@ -29,7 +29,7 @@ object Telemetry:
   val Shortest: Span = Span.ofMillis(5)
 
   /** Absent where it is none of its messages. */
-  def of(id: Int, autopilot: Status, motion: Motion): Option[Message] =
+  def of(id: Int, autopilot: Status, motion: VehicleMotion): Option[Message] =
     val state  = motion.state
     val bootMs = motion.sinceBoot.toNanos / 1_000_000
     val bootUs = motion.sinceBoot.toNanos / 1000
@@ -40,8 +40,8 @@ object Telemetry:
     id match
       case 0 => Some(heartbeat(autopilot))
       case 1 =>
-        // Gyro, accelerometer, magnetometer, barometer, GPS, the controllers of rates, attitude, yaw, altitude, position,
-        // motors, the estimate (AHRS), the battery and the checks before arming.
+        // Gyro, accelerometer, magnetometer, barometer, GPS, the controllers of rates, attitude, yaw,
+        // altitude, position, motors, the estimate (AHRS), the battery and the checks before arming.
         val sensors = 0x0220fc2fL | 0x10000000L
         Some(SysStatus(sensors, sensors, sensors, 100, BatteryMv, -1, BatteryPercent, 0, 0, 0, 0, 0, 0))
       case 2  => Some(SystemTime(0, bootMs))
@@ -181,8 +181,8 @@ object Telemetry:
 
   /** With the number of a PX4 whose interface this follows, and Skein's own vehicle number. */
   def version(autopilot: Status): Message =
-    // Float and integer missions, commands as integers, setpoints of attitude and in the local frame and of the globe,
-    // termination, MAVLink 2.
+    // Float and integer missions, commands as integers, setpoints of attitude and in the local frame and of
+    // the globe, termination, MAVLink 2.
     val can = 1L | 4 | 8 | 64 | 128 | 256 | 2048 | 8192
     AutopilotVersion(
       can,

@@ -16,7 +16,11 @@ class AutopilotSuite extends munit.FunSuite:
       place: Vector3 = Vector3.Zero,
       flying: Boolean = false,
       velocity: Vector3 = Vector3.Zero
-  ) = Motion(Span.ofSeconds(seconds), Kinematics(place, velocity, Quaternion.Identity, Vector3.Zero), flying)
+  ) = VehicleMotion(
+    Span.ofSeconds(seconds),
+    Kinematics(place, velocity, Quaternion.Identity, Vector3.Zero),
+    flying
+  )
 
   private def command(number: Int, numbers: Float*): Message =
     val all = numbers.padTo(7, 0f)
@@ -31,9 +35,9 @@ class AutopilotSuite extends munit.FunSuite:
     SetPositionTargetLocalNed(0, 1, 1, 1, mask, 0, 0, 0, north, 0, 0, 0, 0, 0, 0, 0)
 
   extension (autopilot: Autopilot)
-    private def told(message: Message, motion: Motion): Autopilot.Heard =
+    private def told(message: Message, motion: VehicleMotion): Autopilot.Heard =
       autopilot.heard(message, gcs, motion)
-    private def flown(motion: Motion): Autopilot = autopilot.steer(motion).heard.next
+    private def flown(motion: VehicleMotion): Autopilot = autopilot.steer(motion).heard.next
 
   private def results(heard: Autopilot.Heard): Vector[Int] = heard.answers.collect { case ack: CommandAck =>
     ack.result
@@ -57,7 +61,8 @@ class AutopilotSuite extends munit.FunSuite:
     assertEquals(inAir.mode, FlightMode.Hold)
 
   test(
-    "what it refuses is refused with a reason: takeoff unarmed, disarming in the air, a mission that it has not"
+    "what it refuses is refused with a reason: takeoff unarmed, " +
+      "disarming in the air, a mission that it has not"
   ):
     for (autopilot, message, motion, why) <- Seq(
         (fresh, takeoff, at(1), "Switching to Takeoff denied: vehicle is disarmed"),

@@ -41,8 +41,9 @@ import skein.scenario.Scenarios
   val most      =
     Files.readString(Path.of("/proc/self/status")).linesIterator.find(_.startsWith("VmHWM")).getOrElse("")
   println(
-    f"${steps / count * count}%,d steps in $seconds%.1f s, $processor%.1f s of processor time with start and compilation; " +
-      f"most memory ${most.split("\\s+")(1).toLong / 1024} MB; the first environment ended $ends times, at ${distance / ends.max(1)}%.3f m"
+    f"${steps / count * count}%,d steps in $seconds%.1f s, $processor%.1f s of processor time " +
+      f"with start and compilation; most memory ${most.split("\\s+")(1).toLong / 1024} MB; the " +
+      f"first environment ended $ends times, at ${distance / ends.max(1)}%.3f m"
   )
 
 private val periods = 600

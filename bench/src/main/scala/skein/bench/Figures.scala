@@ -37,7 +37,8 @@ object Figures:
     for episodes <- Seq(1, 100) do
       val each = 1_000_000 / episodes
       show(
-        s"1,000,000 evaluations of 60 s, stream over vpn, $each candidates on each of $episodes episodes, within 15 s",
+        s"1,000,000 evaluations of 60 s, stream over vpn, $each " +
+          s"candidates on each of $episodes episodes, within 15 s",
         1.2e9
       )(
         candidates(1_000_000, episodes)
@@ -57,7 +58,8 @@ object Figures:
       ((System.nanoTime() - start) * 1e-9, (Work.cpuNanos - cpu) * 1e-9 / cores, witness)
     val (clock, cpu) = (runs.map(_._1).min, runs.map(_._2).min)
     println(
-      f"$what: $clock%.2f s by the clock, ${steps / clock / 1e6}%.0f M steps/s; $cpu%.2f s of each processor, ${steps / cpu / 1e6}%.0f M steps/s; witness ${runs.head._3}%.4f"
+      f"$what: $clock%.2f s by the clock, ${steps / clock / 1e6}%.0f M steps/s; $cpu%.2f s of " +
+        f"each processor, ${steps / cpu / 1e6}%.0f M steps/s; witness ${runs.head._3}%.4f"
     )
 
   private def candidates(evaluations: Int, episodes: Int): Double =

@@ -67,7 +67,8 @@ object FrameworkLatency:
     def quantile(p: Double) = nanos((p * (nanos.size - 1)).toInt) / 1000
     println("vehicles   commands (witness)   p50 us   p99 us  p99.9 us   max us")
     println(
-      f"${pairs * 2}%8d ${nanos.size}%20d ${quantile(0.5)}%8d ${quantile(0.99)}%8d ${quantile(0.999)}%9d ${quantile(1)}%8d"
+      f"${pairs * 2}%8d ${nanos.size}%20d ${quantile(0.5)}%8d " +
+        f"${quantile(0.99)}%8d ${quantile(0.999)}%9d ${quantile(1)}%8d"
     )
     Await.result(system.terminate(), Duration.Inf): Unit
 

@@ -44,13 +44,15 @@ object LearnedUnderDelay:
     val panels  = sides.map: side =>
       val rows = flownBy(side, folder, flights, seed)
       println(
-        s"| $side | loop | link | distance over the last 10 s, m: mean ± sd | ± 95 % | nearer than $CaptureM m in | flights |"
+        s"| $side | loop | link | distance over the last 10 s, m: mean ± " +
+          s"sd | ± 95 % | nearer than $CaptureM m in | flights |"
       )
       println("|---|---|---|---|---|---|---|")
       for row <- rows do
         val half = row.distance.halfWidth95
         println(
-          f"| ${row.policy} | `${row.loop}` | ${row.link} | ${row.distance.mean}%.2f ± ${row.distance.sd}%.2f | ± $half%.3f | ${row.captures} | ${row.distance.count} |"
+          f"| ${row.policy} | `${row.loop}` | ${row.link} | ${row.distance.mean}%.2f ± " +
+            f"${row.distance.sd}%.2f | ± $half%.3f | ${row.captures} | ${row.distance.count} |"
         )
       picture(side, rows)
     Png.bytes(Drawing.stacked(panels*), 2) match
@@ -130,8 +132,8 @@ object LearnedUnderDelay:
     val most   = rows.map(row => row.distance.mean + row.distance.sd).max
     val height = 20.0 * rows.size
     val panel  = Panel(
-      Axis.around("distance over the last 10 s, m", 0, most),
-      Axis.exactly("", 0, rows.size.toDouble, 1).copy(ticks = Vector.empty),
+      PlotAxis.around("distance over the last 10 s, m", 0, most),
+      PlotAxis.exactly("", 0, rows.size.toDouble, 1).copy(ticks = Vector.empty),
       left = 360,
       top = 34,
       width = 460,
@@ -144,15 +146,15 @@ object LearnedUnderDelay:
       val (at, sd)         = (row.distance.mean, row.distance.sd)
       def x(value: Double) = panel.atX(value.max(0))
       Vector(
-        Shape.Text(
+        Mark.Text(
           Point(panel.left - 10, y + 4),
           s"${row.loop} over ${row.link}: ${row.policy}",
           Theme.labelSize,
           Theme.labelColour,
           Anchor.End
         ),
-        Shape.line(Point(x(at - sd), y), Point(x(at + sd), y), Stroke(colour, 3)),
-        Shape.Disc(Point(x(at), y), 4, Some(Stroke(Colour(0xffffff), 0.8)), Some(colour))
+        Mark.line(Point(x(at - sd), y), Point(x(at + sd), y), Stroke(colour, 3)),
+        Mark.Disc(Point(x(at), y), 4, Some(Stroke(Colour(0xffffff), 0.8)), Some(colour))
       )
     Drawing(
       panel.right + 40,

@@ -109,7 +109,8 @@ object Peers:
       yield
         val peer                      = best.get((peerOf(name), threads)).filter(_ => name != peerOf(name))
         def ratio(of: Rate => Double) = peer.fold("")(p => f"${of(rate) / of(p)}%.2f")
-        f"| $name | $threads | ${rate.byWall}%.1f | ${ratio(_.byWall)} | ${rate.byCpu}%.1f | ${ratio(_.byCpu)} | ${rate.witness}%.4f |"
+        f"| $name | $threads | ${rate.byWall}%.1f | ${ratio(_.byWall)} | " +
+          f"${rate.byCpu}%.1f | ${ratio(_.byCpu)} | ${rate.witness}%.4f |"
     def over(name: String) =
       for
         one <- best.get((name, 1))
@@ -120,7 +121,8 @@ object Peers:
         twin <- Seq("yardstick, Numba", "yardstick, JAX")
         peer <- best.get((twin, cores))
         own  <- best.get((Works.yardstick.name, cores))
-      yield f"${Works.yardstick.name} over $twin on $cores threads: ${own.byWall / peer.byWall}%.1f by the clock, ${own.byCpu / peer.byCpu}%.1f by processor time"
+      yield f"${Works.yardstick.name} over $twin on $cores threads: " +
+        f"${own.byWall / peer.byWall}%.1f by the clock, ${own.byCpu / peer.byCpu}%.1f by processor time"
     (Seq(
       "| work | threads | M/s | to its peer | M per processor second | to its peer | witness |",
       "|---|---|---|---|---|---|---|"

@@ -20,7 +20,8 @@ object TeamRates:
 
   def main(args: Array[String]): Unit =
     println(
-      "| team | by lanes, M agent-steps per processor second | scalar | ratio | first flight of an episode, ms | witness | scalar's |"
+      "| team | by lanes, M agent-steps per processor second | scalar | " +
+        "ratio | first flight of an episode, ms | witness | scalar's |"
     )
     println("|---|---|---|---|---|---|---|")
     for
@@ -44,7 +45,8 @@ object TeamRates:
       val (witness, truth) =
         ((0 until 4).map(outcomes.values(0)(_).toDouble).sum / 4, (0 until 4).map(alone).sum / 4)
       println(
-        f"| $name of $vehicles | ${Candidates * steps / again * 1e-6}%.1f | ${steps / one * 1e-6}%.3f | ${Candidates * one / again}%.0f | ${(first - again) * 1e3}%.0f | $witness%.4f | $truth%.4f |"
+        f"| $name of $vehicles | ${Candidates * steps / again * 1e-6}%.1f | ${steps / one * 1e-6}%.3f | " +
+          f"${Candidates * one / again}%.0f | ${(first - again) * 1e3}%.0f | $witness%.4f | $truth%.4f |"
       )
 
   private def surround(vehicles: Int)(number: Int): TeamCandidate =

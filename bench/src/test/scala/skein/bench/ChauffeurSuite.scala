@@ -1,7 +1,8 @@
 package skein.bench
 
 class ChauffeurSuite extends munit.FunSuite:
-  // chauffeur.c prints 17.219968 for `1 64`; the difference is the order of float operations, or floats' rounding.
+  // chauffeur.c prints 17.219968 for `1 64`; the difference is the order of float operations, or floats'
+  // rounding.
   private val blocks = 64
   private val worlds = blocks * ChauffeurKernel.BLOCK
 

@@ -81,7 +81,7 @@ final case class Coordinator private (
     * @return
     *   whether it is the first, which counts
     */
-  def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, Answer) =
+  def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, AnswerKind) =
     def tallied(record: WorkerRecord, accepted: Int) = record.copy(
       holds = record.holds - number,
       accepted = record.accepted + accepted,
@@ -99,7 +99,7 @@ final case class Coordinator private (
           workers = freed.updated(worker, tallied(freed.getOrElse(worker, known), 1)),
           counts = counts.copy(accepted = counts.accepted + 1)
         )
-        (next, Answer.First(lease.block))
+        (next, AnswerKind.First(lease.block))
       case None =>
         waiting.again.get(number) match
           // Its lease was given up, and it came all the same.
@@ -109,13 +109,13 @@ final case class Coordinator private (
               workers = workers.updated(worker, tallied(known, 1)),
               counts = counts.copy(accepted = counts.accepted + 1)
             )
-            (next, Answer.First(block))
+            (next, AnswerKind.First(block))
           case None =>
             val next = copy(
               workers = workers.updated(worker, tallied(known, 0)),
               counts = counts.copy(repeated = counts.repeated + 1)
             )
-            (next, Answer.Repeated)
+            (next, AnswerKind.Repeated)
 
   /** Blocks that have been out for too long wait again; their workers may still answer. */
   def at(nowNanos: Long): Coordinator =
@@ -244,7 +244,7 @@ final case class WorkerRecord(
 )
 
 /** What a worker's answer to a block counts for. */
-enum Answer:
+enum AnswerKind:
   /** The first answer to this block. */
   case First(block: Block)
 

@@ -46,9 +46,11 @@ import java.nio.file.Files
         lost += flown.counts.lost
         overdue += flown.counts.overdue
       println(
-        s"$workers workers: $seeds seeds, each the answer of one process to the bit and each of its $blocks blocks in the ledger once; " +
-          s"$messages messages, $deaths workers died, $cuts times one was cut off, the coordinator died $restarts times; " +
-          s"since its last start $repeated answers came twice, $doubled blocks were given to a second worker, $lost were lost and $overdue overdue"
+        s"$workers workers: $seeds seeds, each the answer of one process to the bit and " +
+          s"each of its $blocks blocks in the ledger once; $messages messages, $deaths " +
+          s"workers died, $cuts times one was cut off, the coordinator died $restarts " +
+          s"times; since its last start $repeated answers came twice, $doubled blocks were " +
+          s"given to a second worker, $lost were lost and $overdue overdue"
       )
   finally
     Files.deleteIfExists(folder.resolve(Ledger.Name)): Unit

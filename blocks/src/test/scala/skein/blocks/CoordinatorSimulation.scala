@@ -160,11 +160,11 @@ final class CoordinatorSimulation(
       val (next, what) = state.answered(worker, number, took)
       state = next
       what match
-        case Answer.First(block) =>
+        case AnswerKind.First(block) =>
           if !ledger.accept(block.key, answer) then acceptedTwice += 1
           answers.update(block.key, answer)
           usefulNanos += took
-        case Answer.Repeated => ()
+        case AnswerKind.Repeated => ()
 
   private val all                                                   = mutable.LinkedHashSet.empty[Worker]
   private var born                                                  = 0

@@ -28,7 +28,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     val (d, first)  = c.answered("ben", 0, 10)
     val (e, second) = d.answered("anna", 0, 10)
     assertEquals(again, Some(0L))
-    assertEquals((first, second), (Answer.First(blocks(1).head), Answer.Repeated))
+    assertEquals((first, second), (AnswerKind.First(blocks(1).head), AnswerKind.Repeated))
     assertEquals(e.counts, Coordinator.Counts(accepted = 1, repeated = 1, doubled = 1, lost = 0, overdue = 0))
     assertEquals((e.workers("ben").accepted, e.workers("anna").repeated), (1L, 1L))
 
@@ -61,14 +61,14 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
         (1L, Seq(0L), 0)
       )
       val (done, answer) = late.answered("anna", 0, 1)
-      assertEquals(answer, Answer.First(blocks(1).head))
+      assertEquals(answer, AnswerKind.First(blocks(1).head))
       assert(done.isIdle)
 
   test("after a cancellation nothing is asked, and what comes is a repeat"):
     val (a, _)    = take(two.offered(blocks(2)), "anna")
     val cancelled = a.cancelled
     assert(cancelled.isIdle)
-    assertEquals(cancelled.answered("anna", 0, 1)._2, Answer.Repeated)
+    assertEquals(cancelled.answered("anna", 0, 1)._2, AnswerKind.Repeated)
 
   /** Flown to the end, with what its ledger holds. */
   private def assertRight(flown: CoordinatorSimulation, blocks: Int, clue: String): Unit =

@@ -30,7 +30,8 @@ import java.nio.file.{Files, Path}
       next += blocks / 8
       most = most.max(Used.heapBytes)
       Console.err.println(
-        f"${flown.seconds}%.0f s: ${flown.done}%,d blocks, heap ${Used.heapBytes / 1e6}%.0f MB, ${(System.nanoTime() - begun) * 1e-9}%.0f s of ours"
+        f"${flown.seconds}%.0f s: ${flown.done}%,d blocks, heap " +
+          f"${Used.heapBytes / 1e6}%.0f MB, ${(System.nanoTime() - begun) * 1e-9}%.0f s of ours"
       )
   val processNanos = Used.cpuNanos - cpuFrom
   val lived        = flown.seconds * workers
@@ -42,17 +43,22 @@ import java.nio.file.{Files, Path}
   require(audit == Ledger.Audit(blocks, 0, 0) && flown.acceptedTwice == 0, audit.toString)
   Files.delete(flown.file)
   println(
-    f"$workers%,d workers, $blocks%,d blocks in ${flown.seconds / 3600}%.2f simulated hours; ${flown.deaths}%,d deaths, ${flown.cuts}%,d times somebody was cut off"
+    f"$workers%,d workers, $blocks%,d blocks in ${flown.seconds / 3600}%.2f simulated " +
+      f"hours; ${flown.deaths}%,d deaths, ${flown.cuts}%,d times somebody was cut off"
   )
   println(
-    f"the answer of one process to the bit; ${audit.blocks}%,d blocks, each once, read in ${(System.nanoTime() - opened) * 1e-9}%.1f s; ${flown.counts}"
+    f"the answer of one process to the bit; ${audit.blocks}%,d blocks, each once, " +
+      f"read in ${(System.nanoTime() - opened) * 1e-9}%.1f s; ${flown.counts}"
   )
   println(
-    f"messages: ${flown.messages}%,d, ${flown.messages / flown.seconds}%,.0f and ${flown.messageBytes / flown.seconds / 1e3}%,.0f kB a second"
+    f"messages: ${flown.messages}%,d, ${flown.messages / flown.seconds}%,.0f " +
+      f"and ${flown.messageBytes / flown.seconds / 1e3}%,.0f kB a second"
   )
   println(
-    f"the coordinator decides for ${flown.decidingNanos * 1e-9}%.1f s, ${1e-7 * flown.decidingNanos / flown.seconds}%.2f %% of a core, and waits ${flown.savingNanos * 1e-9}%.1f s for the disk; " +
-      f"all of this process took ${processNanos * 1e-9}%.0f s, ${1e-7 * processNanos / flown.seconds}%.1f %% of a core"
+    f"the coordinator decides for ${flown.decidingNanos * 1e-9}%.1f s, " +
+      f"${1e-7 * flown.decidingNanos / flown.seconds}%.2f %% of a core, and waits " +
+      f"${flown.savingNanos * 1e-9}%.1f s for the disk; all of this process took " +
+      f"${processNanos * 1e-9}%.0f s, ${1e-7 * processNanos / flown.seconds}%.1f %% of a core"
   )
   println(
     f"heap of all of it, the simulated workers included: ${most / 1e6}%.0f MB; ledger: ${ledger / 1e6}%.1f MB"

@@ -31,8 +31,8 @@ object BudgetFigure:
       grid.width,
       62,
       Vector(
-        Shape.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
-        Shape.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize, Theme.labelColour)
+        Mark.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
+        Mark.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize, Theme.labelColour)
       ) ++
         Legend(
           62,
@@ -55,8 +55,8 @@ object BudgetFigure:
         )
     )
     val panel = Panel(
-      Axis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
-      Axis.exactly("jitter p99 − p50, ms", heat.ys.head, heat.ys.last),
+      PlotAxis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
+      PlotAxis.exactly("jitter p99 − p50, ms", heat.ys.head, heat.ys.last),
       left = 62,
       top = 34,
       width,
@@ -66,24 +66,25 @@ object BudgetFigure:
       for
         level  <- Vector(-1, 1).map(_ * map.tolerance.value * factor)
         (a, b) <- heat.contour(level)
-      yield Shape.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
+      yield Mark.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
     val marks = map.marks.flatMap: link =>
       val (x, y) = (link.roundTrip.mean.toMillis / per, link.roundTrip.jitter.toMillis / per)
       if x > heat.xs.last || y > heat.ys.last then Vector.empty
       else
         val at = panel.at(x, y)
         Vector(
-          Shape.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
-          Shape.Text(at.moved(8, 4), link.name, Theme.labelSize, mark, bold = true)
+          Mark.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
+          Mark.Text(at.moved(8, 4), link.name, Theme.labelSize, mark, bold = true)
         )
     Drawing(
       panel.right + 110,
       panel.bottom + 44,
       Vector(
         panel.title(
-          s"${map.loop} every ${map.periodMs.significant(4)} ms, truth ${budget.truth.significant(4)} ${map.unit}".trim
+          s"${map.loop} every ${map.periodMs.significant(4)} ms, " +
+            s"truth ${budget.truth.significant(4)} ${map.unit}".trim
         ),
-        Shape.box(panel.left, panel.top, panel.right, panel.bottom, empty)
+        Mark.box(panel.left, panel.top, panel.right, panel.bottom, empty)
       ) ++ heat.cells(panel, scale) ++ contours ++ marks ++
         scale.bar(
           panel.right + 20,

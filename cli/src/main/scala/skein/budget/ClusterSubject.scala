@@ -1,7 +1,7 @@
 package skein.budget
 
 import scala.collection.immutable.ArraySeq
-import skein.cluster.Solvers
+import skein.cluster.BlockSolverFactory
 import skein.optimise.RunningStats
 import skein.scenario.Scenarios
 import skein.search.{BlockExecutor, JsonText}
@@ -75,12 +75,13 @@ object ClusterSubject:
     ))
 
   /** Answers the questions of budgets whose scenarios are known here. */
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[ProbedQuestion](asked, "a budget's question")
       came  <- subjects(posed).flatMap(probes)
       _     <- Expect.that(came == posed.probes):
-        "one episode does not come to the same here and at the coordinator; has a file that --plant names another content here?"
+        "one episode does not come to the same here and at the " +
+          "coordinator; has a file that --plant names another content here?"
     yield () =>
       val own = subjects(posed)
       block =>

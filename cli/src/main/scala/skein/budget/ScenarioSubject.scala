@@ -36,7 +36,8 @@ final case class ScenarioQuestion(
     WholeFlights.plane(scenario, conditions.durationS) match
       case Left(reason) if plantIsTold =>
         Left(
-          s"--plant: expected none, since this scenario flies in virtual time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
+          "--plant: expected none, since this scenario flies in virtual " +
+            s"time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
         )
       case Left(reason) => conditions.checked.map(FlownSubject.virtual(this, _, reason))
       case Right(plane) =>

@@ -41,7 +41,8 @@ private[cli] object Arguments:
   def resumed(options: Product, may: Set[String], what: String): Either[String, Unit] =
     val others = told(options) -- may - "--resume"
     Expect.that(others.isEmpty):
-      s"--resume: everything but $what is taken from the folder; expected no other option, came ${others.toSeq.sorted.mkString(", ")}"
+      s"--resume: everything but $what is taken from the folder; expected no " +
+        s"other option, came ${others.toSeq.sorted.mkString(", ")}"
 
   def latency(text: String): Either[String, LatencyProfile] =
     LatencyProfile.parse(text, TextFile.read).left.map(_.message)

@@ -17,7 +17,8 @@ final case class BudgetOptions(
     @arg(doc = "a policy file, or the name of a family (default: paper-pursuer)")
     policy: Option[String],
     @arg(doc =
-      "judges this scenario, by --objective, a sum of its measures (default: its first), instead of a duel's policy"
+      "judges this scenario, by --objective, a sum of its measures " +
+        "(default: its first), instead of a duel's policy"
     )
     scenario: Option[String],
     @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
@@ -188,7 +189,8 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       _ <- Expect.that(means >= 2 && jitters >= 2 && means.toLong * jitters <= MostCells):
         s"--means, --jitters: expected 2 or more each and at most $MostCells cells, came $means and $jitters"
       _ <- Expect.that(mean > 0 && mean <= 500 && jitter > 0 && jitter <= 500):
-        s"--most-mean, --most-jitter: expected round trips of more than 0 and up to 500 ms, came $mean and $jitter ms"
+        "--most-mean, --most-jitter: expected round trips of more " +
+          s"than 0 and up to 500 ms, came $mean and $jitter ms"
     yield BudgetAxes.of(mean, means, jitter, jitters)
 
   private def fly(
@@ -207,7 +209,8 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
         val sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
         shown.say(
           s"$what, ${subject.vehicles}\n" +
-            s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
+            s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of " +
+            s"${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
         )
         val startedAt = System.nanoTime()
         val line      = ProgressLine(sweep.expected, Console.err)

@@ -7,7 +7,8 @@ import skein.cluster.Certificates
 /** Options of `./skein cluster`. */
 final case class ClusterCommandOptions(
     @arg(doc =
-      "of a machine, as its certificate shows it: a name, an address, or *.DOMAIN for all of a domain; can be repeated (default: localhost)"
+      "of a machine, as its certificate shows it: a name, an address, or " +
+        "*.DOMAIN for all of a domain; can be repeated (default: localhost)"
     )
     host: Seq[String],
     @arg(doc =
@@ -31,6 +32,7 @@ object ClusterCommand
         .map: made =>
           Console.out.println(s"written: ${made.mkString(", ")}")
           Console.out.println(
-            s"Copy each folder to its machine alone. Who has $folder/signer.p12 and its password can make more."
+            "Copy each folder to its machine alone. Who has " +
+              s"$folder/signer.p12 and its password can make more."
           )
     case words => Left(s"expected ./skein cluster certificates DIR, came '${words.mkString(" ")}'")

@@ -25,8 +25,8 @@ final case class ClusterOptions(
     )
     ship: Flag,
     @arg(doc =
-      "port, or HOST:PORT, where Prometheus reads the progress; without HOST, on this machine's loopback alone; 0 for " +
-        "any free port"
+      "port, or HOST:PORT, where Prometheus reads the progress; without " +
+        "HOST, on this machine's loopback alone; 0 for any free port"
     )
     metrics: Option[String]
 ):

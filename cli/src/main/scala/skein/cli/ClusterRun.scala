@@ -97,13 +97,16 @@ private[cli] final class ClusterRun private (
     val rate = begun
       .filter(first => accepted > first.accepted)
       .fold("")(first =>
-        f", ${(accepted - first.accepted) * 1e9 / (nanos - first.atNanos) / now.here.max(1)}%.2f blocks/s each"
+        ", " +
+          f"${(accepted - first.accepted) * 1e9 / (nanos - first.atNanos) / now.here.max(1)}%.2f " +
+          "blocks/s each"
       )
     val here = now.here match
       case 0 => "no worker is here"
       case 1 => "1 worker"
       case n => s"$n workers"
-    s"${now.done} of ${now.of} blocks; $here${if now.here == 0 then "" else rate}; ${now.coordinator.workers.size} joined, ${now.died} lost"
+    s"${now.done} of ${now.of} blocks; " +
+      s"$here${if now.here == 0 then "" else rate}; ${now.coordinator.workers.size} joined, ${now.died} lost"
 
   /** Who did how much. */
   private def account: String =

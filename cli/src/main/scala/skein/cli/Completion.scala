@@ -50,7 +50,8 @@ private[cli] object Completion:
           else if option.values.isEmpty then ":value:_files"
           else s":value:(${option.values.mkString(" ")})"
         s"'*${option.flag}[${bracketed(option.summary)}]$value'"
-      s"    ${command.name}) _arguments ${(options :+ "'--help[tells the options]'" :+ "'*:file:_files'").mkString(" ")} ;;"
+      s"    ${command.name}) _arguments " +
+        s"${(options :+ "'--help[tells the options]'" :+ "'*:file:_files'").mkString(" ")} ;;"
     s"""#compdef $program
        |# zsh completion of $program: source <(./$program completion zsh)
        |_$program() {

@@ -23,11 +23,13 @@ import skein.units.{Clock, Expect}
 /** Options of `./skein decide`. */
 final case class DecideOptions(
     @arg(doc =
-      "where flights ask, as they say with --solver: tcp://HOST:PORT of this machine, or kafka://HOST:PORT/PREFIX of a broker"
+      "where flights ask, as they say with --solver: tcp://HOST:PORT of " +
+        "this machine, or kafka://HOST:PORT/PREFIX of a broker"
     )
     at: String = "tcp://127.0.0.1:7400",
     @arg(doc =
-      "starts Kafka's own broker there, in this process; what it holds is deleted at the end. Without --tls, of this machine alone"
+      "starts Kafka's own broker there, in this process; what it holds is " +
+        "deleted at the end. Without --tls, of this machine alone"
     )
     broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
@@ -59,7 +61,8 @@ final class DecideCommand(using scenarios: Scenarios)
         case SolverChoice.Tcp(address) => served(options)(tcp(address, secured))
         case SolverChoice.Link(_)      =>
           Left(
-            s"--at: expected tcp://HOST:PORT, such as tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, came ${options.at}"
+            "--at: expected tcp://HOST:PORT, such as " +
+              s"tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, came ${options.at}"
           )
     yield ()
 
@@ -78,11 +81,13 @@ final class DecideCommand(using scenarios: Scenarios)
     if !options.broker.value then None
     else if options.secured.kafkaSecurity.isDefined then
       Some(
-        "--broker: expected without --kafka-security; the broker of this process has the certificates of --tls, or none"
+        "--broker: expected without --kafka-security; the broker of " +
+          "this process has the certificates of --tls, or none"
       )
     else if at.port == 0 || !isHere && options.secured.tls.isEmpty then
       Some(
-        s"--broker: expected a port of 127.0.0.1, such as kafka://127.0.0.1:9092/skein, or of any address with --tls, came $at"
+        "--broker: expected a port of 127.0.0.1, such as " +
+          s"kafka://127.0.0.1:9092/skein, or of any address with --tls, came $at"
       )
     else None
 
@@ -141,7 +146,8 @@ final class DecideCommand(using scenarios: Scenarios)
         desk.close()
         val stats = desk.stats
         say(
-          s"answered ${stats.answered} questions; refused ${stats.refused} flights; ${stats.garbled} messages were none"
+          s"answered ${stats.answered} questions; refused " +
+            s"${stats.refused} flights; ${stats.garbled} messages were none"
         )
         end
     finally Edge.await(system.terminate()): Unit

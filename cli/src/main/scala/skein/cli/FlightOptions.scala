@@ -35,9 +35,9 @@ final case class FlightOptions(
     @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
-      "flies the scenario with this policy too, beside its own policies: a policy file of the commands search and " +
-        "learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy behind a socket; can be " +
-        "repeated"
+      "flies the scenario with this policy too, beside its own policies: a policy file " +
+        "of the commands search and learn, an ONNX file (evader:FILE.onnx for an " +
+        "evader's), or unix:ROLE:PATH for a policy behind a socket; can be repeated"
     )
     policy: Seq[String],
     @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")
@@ -59,28 +59,28 @@ final case class FlightOptions(
     )
     plant: Option[String],
     @arg(doc =
-      "model that predicts, in `predictive`: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file " +
-        "of `skein identify`, or reduced:FILE for its model of three parameters"
+      "model that predicts, in `predictive`: reduced, drag, quadrotor, constant-velocity, " +
+        "constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
     )
     predictor: Option[String],
     @arg(
       name = "moves-in-flight",
       doc =
-        "unanswered moves of one vehicle; over a long round trip, more moves carry more commands, but several that a " +
-          "stall delivers at once can freeze AirSim"
+        "unanswered moves of one vehicle; over a long round trip, more moves carry more " +
+          "commands, but several that a stall delivers at once can freeze AirSim"
     )
     movesInFlight: Option[Int],
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =
-      "what happens when the deadline is missed: hold, repeat (the last decision), hover, or a policy such as " +
-        "pure-pursuit; with --solver, hover by default"
+      "what happens when the deadline is missed: hold, repeat (the last decision), " +
+        "hover, or a policy such as pure-pursuit; with --solver, hover by default"
     )
     fallback: Option[String],
     @arg(doc =
       "flies each loop but paused also with decisions made elsewhere: tcp://HOST:PORT of ./skein decide, " +
-        "kafka://HOST:PORT/PREFIX of one behind a broker, or in virtual time link:PROFILE, a profile of round trips; " +
-        "the deadline of a decision is then the period by default"
+        "kafka://HOST:PORT/PREFIX of one behind a broker, or in virtual time link:PROFILE, a " +
+        "profile of round trips; the deadline of a decision is then the period by default"
     )
     solver: Option[String],
     @arg(doc =
@@ -88,8 +88,8 @@ final case class FlightOptions(
     )
     mavlink: Flag,
     @arg(doc =
-      "records images and scans: seen, those that policies use, or CAMERA@HZ, images of that camera of every vehicle, " +
-        "for example front_center@10; can be repeated"
+      "records images and scans: seen, those that policies use, or CAMERA@HZ, images of " +
+        "that camera of every vehicle, for example front_center@10; can be repeated"
     )
     images: Seq[String],
     @arg(doc = "a HOCON file with settings of skein.fly")
@@ -190,7 +190,8 @@ object FlightOptions:
   private val loopsOverMavlink = paperLoops :+ LoopKind.Predictive.label
 
   private val slow =
-    "plan: this JVM runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
+    "plan: this JVM runs without jdk.incubator.vector, so " +
+      "candidates are flown one by one, some fifty times fewer"
 
   /** Keys below `skein.fly`. */
   private def configured(values: Seq[(String, Any)]): Config =

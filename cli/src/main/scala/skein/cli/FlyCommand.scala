@@ -5,7 +5,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.TcpTransport
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
@@ -18,8 +18,8 @@ import skein.view.Shows
 final case class FlyOptions(
     flights: FlightOptions,
     @arg(doc =
-      "a simulator that runs already, AirSim for example; with --mavlink by UDP, or by TCP as tcp://HOST:PORT; without it, " +
-        "each flight has a built-in one"
+      "a simulator that runs already, AirSim for example; with --mavlink by UDP, or by " +
+        "TCP as tcp://HOST:PORT; without it, each flight has a built-in one"
     )
     simulator: Option[String],
     @arg(doc =
@@ -27,7 +27,8 @@ final case class FlyOptions(
     )
     clock: String = "real",
     @arg(doc =
-      "how often each live flight is flown again in virtual time, for the report's comparison; 0 for not at all"
+      "how often each live flight is flown again in virtual time, " +
+        "for the report's comparison; 0 for not at all"
     )
     twins: Int = 1,
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
@@ -75,7 +76,8 @@ final class FlyCommand(using Scenarios)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
         "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
       _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
-        "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
+        "--view shows flights in real time; look at what flew by " +
+          "--clock virtual with ./skein replay --view FILE"
       _ <- Expect.that(clock == ClockKind.Real || simulator.isEmpty):
         "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
@@ -123,7 +125,8 @@ final class FlyCommand(using Scenarios)
         yield
           FlyCommand.warm ++= settings.loops
           Console.err.println(
-            s"warmed up by $flights virtual flights and $decisions decisions over loopback, so that none waits for the compiler"
+            s"warmed up by $flights virtual flights and $decisions decisions " +
+              "over loopback, so that none waits for the compiler"
           )
       finally
         val _ = Edge.await(system.terminate())
@@ -135,7 +138,7 @@ final class FlyCommand(using Scenarios)
       count: Int,
       out: Path
   ): Either[String, Vector[FlightResult]] =
-    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(SolverOptions.twins(_, count))
+    val twins = landed.filter(_.outcome == FlightOutcome.Completed).flatMap(SolverOptions.twins(_, count))
     if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
       val seeds = twins.map(_.seed)
@@ -166,7 +169,7 @@ final class FlyCommand(using Scenarios)
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
         val written =
           Report.write(flights, out).map(output => shown.say(s"Report: ${output.page}"))
-        val ended = landed.filter(_.outcome == Outcome.Stopped).map(_.plan.id).toSet
+        val ended = landed.filter(_.outcome == FlightOutcome.Stopped).map(_.plan.id).toSet
         all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)
 
@@ -177,8 +180,8 @@ final class FlyCommand(using Scenarios)
   private def allWell(landed: Vector[FlightResult]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>
       val ended = flight.outcome match
-        case Outcome.Failed(reason)              => Some(reason)
-        case Outcome.Completed | Outcome.Stopped => None
+        case FlightOutcome.Failed(reason)                    => Some(reason)
+        case FlightOutcome.Completed | FlightOutcome.Stopped => None
       ended.orElse(flight.written.left.toOption.map(_.message)).map(reason =>
         s"${flight.plan.id} failed: $reason"
       )
@@ -200,4 +203,5 @@ private[cli] object FlyCommand:
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }
     Expect.that(idle.isEmpty):
-      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${AirSimFleet.askTimeout.toMillis.round} ms?"
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than " +
+        s"the time-out of ${AirSimFleet.askTimeout.toMillis.round} ms?"

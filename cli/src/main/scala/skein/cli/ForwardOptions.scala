@@ -11,7 +11,8 @@ import skein.units.{Expect, Span}
 final case class ForwardOptions(
     @arg(doc =
       "the objective: last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M), or a " +
-        "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' or 'maximise' may precede it (default: last10s)"
+        "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' " +
+        "or 'maximise' may precede it (default: last10s)"
     )
     objective: Option[String],
     @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
@@ -26,7 +27,8 @@ final case class ForwardOptions(
     )
     altitude: Option[Double],
     @arg(doc =
-      "a sensor's FILE of ./skein identify: the pursuer knows the evader by this camera alone (default: true positions)"
+      "a sensor's FILE of ./skein identify: the pursuer knows the " +
+        "evader by this camera alone (default: true positions)"
     )
     eye: Option[String],
     @arg(doc = "the opponent's policy: a policy file or the name of a family (default: the paper's)")

@@ -112,11 +112,13 @@ object LatencyCommand
 
   private def text(table: TextTable, samples: Distribution, failures: Seq[String]): String =
     val lines = Vector(
-      s"${samples.count} round trips: mean ${shown(samples.mean)} ms, standard deviation ${shown(samples.sd)} ms",
+      s"${samples.count} round trips: mean ${shown(samples.mean)} " +
+        s"ms, standard deviation ${shown(samples.sd)} ms",
       "",
       table.render
     ) ++ Option.when(table.rows.size > 1)(
-      "Each direction takes half of a round trip of the profile, drawn independently unless the profile is correlated: independent halves spread less."
+      "Each direction takes half of a round trip of the profile, drawn independently " +
+        "unless the profile is correlated: independent halves spread less."
     ) ++ Vector("", TextHistogram(samples, "ms")) ++
       failures.headOption.map(first => s"\n${failures.size} pings failed, the first: $first")
     lines.mkString("\n")

@@ -20,8 +20,8 @@ final case class LearnOptions(
     @arg(doc = "sac, ddpg or ppo (default: sac)")
     algorithm: Option[String],
     @arg(doc =
-      "the scenario to learn in: the duel, or any with pursuers and evaders; one policy is learned for all of the side " +
-        "(default: duel)"
+      "the scenario to learn in: the duel, or any with pursuers and evaders; " +
+        "one policy is learned for all of the side (default: duel)"
     )
     scenario: Option[String],
     @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
@@ -42,8 +42,8 @@ final case class LearnOptions(
     @arg(doc = "length of a training episode (default: 20s)")
     lesson: Option[String],
     @arg(doc =
-      "distance between the vehicles at the start of a training episode, in metres (default: 3..30); in scenarios other " +
-        "than the duel, distance of each vehicle from the scenario's start (default: 0..5)"
+      "distance between the vehicles at the start of a training episode, in metres (default: 3..30); in " +
+        "scenarios other than the duel, distance of each vehicle from the scenario's start (default: 0..5)"
     )
     start: Option[String],
     @arg(doc = "the largest turn rate, rad/s (default: 3, as for families of search)")
@@ -169,7 +169,8 @@ final class LearnCommand(program: String)(using Scenarios)
     case Some(opponent) => s"against ${opponent.label}"
     case None           =>
       val sharing = setup.game.scenario.agents.count(_.role == setup.role)
-      s"of ${setup.game.scenario.title}, which ${if sharing == 1 then "one flies" else s"$sharing fly"}; ${setup.game.text}"
+      s"of ${setup.game.scenario.title}, which " +
+        s"${if sharing == 1 then "one flies" else s"$sharing fly"}; ${setup.game.text}"
 
   private def progress(setup: LearnSetup, state: LearnState): String =
     val unit = setup.game.unit

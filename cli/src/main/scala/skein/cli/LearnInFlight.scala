@@ -14,7 +14,8 @@ import skein.units.Expect
 /** Whether a policy learns while it flies. */
 final case class LearnInFlight(
     @arg(doc =
-      "a folder of the command learn, by sac or ddpg: its policy replaces the scenario's and goes on learning during the flight"
+      "a folder of the command learn, by sac or ddpg: its policy replaces " +
+        "the scenario's and goes on learning during the flight"
     )
     learn: Option[String],
     @arg(

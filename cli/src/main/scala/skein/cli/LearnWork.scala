@@ -2,7 +2,7 @@ package skein.cli
 
 import scala.collection.immutable.ArraySeq
 import skein.bytes.Codec
-import skein.cluster.{Solver, Solvers}
+import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios
@@ -31,7 +31,7 @@ private[cli] object LearnWork:
   def question(setup: LearnSetup): ArraySeq[Byte] =
     JsonText.bytes(ProbedQuestion(setup.question, probe(setup)))
 
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[ProbedQuestion](asked, "learning's question")
       setup <- posed.question.setup

@@ -14,12 +14,14 @@ final case class LinkOptions(
     @arg(doc = "the server behind the link")
     to: String,
     @arg(doc =
-      "carries datagrams, and not TCP: each comes out as it went in, after a delay of its own, so a later one may come first"
+      "carries datagrams, and not TCP: each comes out as it went in, " +
+        "after a delay of its own, so a later one may come first"
     )
     udp: Flag,
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
-        "lognormal:36ms,0.3 or file:PATH; times are round trips; correlated:250ms,PROFILE holds each for a while"
+        "lognormal:36ms,0.3 or file:PATH; times are round trips; " +
+        "correlated:250ms,PROFILE holds each for a while"
     )
     profile: String = "direct",
     @arg(name = "to-server", doc = "latency towards the server, where it differs")
@@ -33,7 +35,8 @@ final case class LinkOptions(
     @arg(name = "reset-every", doc = "mean time between resets of all connections, for example 5min")
     resetEvery: Option[String],
     @arg(doc =
-      "of each direction, shared by all connections, and the queue before it: 50mbit or 50mbit/64kB; without it, unlimited"
+      "of each direction, shared by all connections, and the queue " +
+        "before it: 50mbit or 50mbit/64kB; without it, unlimited"
     )
     rate: Option[String],
     @arg(doc = "seed of every random choice")
@@ -113,6 +116,7 @@ object LinkCommand
     else s"${profile.toServer.name} to the server, ${profile.toClient.name} to the client"
 
   private def summary(counts: LinkCounts): String =
-    s"${counts.connections} connections, ${counts.bytesToServer} bytes to the server, ${counts.bytesToClient} bytes " +
-      s"to the client, ${counts.bytesLost} bytes lost, ${counts.stalls} stalls, ${counts.disconnects} disconnects, " +
-      s"${counts.bytesHeldBack} bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent"
+    s"${counts.connections} connections, ${counts.bytesToServer} bytes to the server, " +
+      s"${counts.bytesToClient} bytes to the client, ${counts.bytesLost} bytes lost, " +
+      s"${counts.stalls} stalls, ${counts.disconnects} disconnects, ${counts.bytesHeldBack} " +
+      s"bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent"

@@ -60,7 +60,8 @@ private[cli] final class LiveCommand(
   ): Either[String, Flown] =
     if plans.exists(_.loop == LoopKind.Paused) then
       Console.err.println(
-        "paused: the simulator will stand still between steps, for all its clients; other --loop leave it running"
+        "paused: the simulator will stand still between steps, for " +
+          "all its clients; other --loop leave it running"
       )
     val flown = plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
       if before.grounded.isDefined then before

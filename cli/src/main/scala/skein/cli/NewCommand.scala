@@ -53,8 +53,9 @@ object NewCommand
 
   /** Scala's keywords, and packages that the sources need. */
   private val Reserved =
-    ("abstract case catch class def do else enum export extends false final finally for given if implicit import lazy " +
-      "match new null object override package private protected return sealed super then this throw trait true try " +
+    ("abstract case catch class def do else enum export extends false final finally " +
+      "for given if implicit import lazy match new null object override package " +
+      "private protected return sealed super then this throw trait true try " +
       "type val var while with yield java javax munit sbt scala skein").split(' ').toSet
 
   private def write(folder: Path, name: String): Either[String, Unit] =

@@ -8,7 +8,7 @@ import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
 import skein.record.{RecordingHeader, Record, ImagingSensor, Topic}
 import skein.scene.Scene
 import skein.units.Span
-import skein.view.{Control, Feed, Gauge, LiveShow, Shows}
+import skein.view.{FlightControl, Feed, Gauge, LiveShow, Shows}
 
 /** Live flights on show, each with its records and its graph as it runs. */
 private[cli] final class OnShow(
@@ -26,7 +26,7 @@ private[cli] final class OnShow(
     graphs.put(heading.flight.id, gauge): Unit
     val graph    = Gauge(OnShow.topic, Span.ofMillis(500), gauge.json)
     val controls =
-      Control.values.map(control => control -> (() => act(control, heading.flight.id)))
+      FlightControl.values.map(control => control -> (() => act(control, heading.flight.id)))
     shows.add(LiveShow(
       heading,
       feed,
@@ -37,10 +37,10 @@ private[cli] final class OnShow(
     ))
     feed.offer
 
-  private def act(control: Control, id: String): Unit = control match
-    case Control.Pause    => requests.pause(id, "paused from the page")
-    case Control.Continue => requests.continue(id, "continued from the page")
-    case Control.Abort    => requests.stop(id, "ended from the page")
+  private def act(control: FlightControl, id: String): Unit = control match
+    case FlightControl.Pause    => requests.pause(id, "paused from the page")
+    case FlightControl.Continue => requests.continue(id, "continued from the page")
+    case FlightControl.Abort    => requests.stop(id, "ended from the page")
 
   /** These fly now. */
   def flying(flights: LiveFlights): Unit =

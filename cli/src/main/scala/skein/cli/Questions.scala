@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import skein.budget.ClusterSubject
-import skein.cluster.{Solver, Solvers}
+import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.scenario.Scenarios
 import skein.search.VerifiedQuestion
 
@@ -29,15 +29,17 @@ private[cli] object Questions:
     ArraySeq.unsafeWrapArray(s"$kind\n".getBytes(UTF_8)) ++ question
 
   /** Answers every kind, about scenarios that are known here. */
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     val (kind, question) = asked.splitAt(asked.indexOf('\n'.toByte).max(0))
     String(kind.toArray, UTF_8) match
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))
       case Budget  => ClusterSubject.solvers.of(question.drop(1))
-      case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
-      case Spread  => SpreadQuestion.solvers.of(question.drop(1))
-      case Learn   => LearnWork.solvers.of(question.drop(1))
-      case other   =>
+      case Torture =>
+        TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): BlockSolver)
+      case Spread => SpreadQuestion.solvers.of(question.drop(1))
+      case Learn  => LearnWork.solvers.of(question.drop(1))
+      case other  =>
         Left(
-          s"expected a question of $Search, $Budget, $Torture, $Spread or $Learn, came one of '${other.take(40)}'"
+          s"expected a question of $Search, $Budget, $Torture, " +
+            s"$Spread or $Learn, came one of '${other.take(40)}'"
         )

@@ -11,7 +11,8 @@ import skein.settings.{FlightPlan, NamedScene}
 /** Where flights are recorded besides their DuckDB files. */
 final case class RecordOptions(
     @arg(doc =
-      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://HOST/DATABASE writes a live flight's tables there; can be repeated"
+      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; " +
+        "postgres://HOST/DATABASE writes a live flight's tables there; can be repeated"
     )
     record: Seq[String]
 ):
@@ -19,7 +20,8 @@ final case class RecordOptions(
     val unknown = record
       .find(one => one != "mcap" && !isPostgres(one))
       .map(other =>
-        s"--record: expected mcap or postgres://USER:PASSWORD@HOST:PORT/DATABASE, came '${withoutSecrets(other)}'"
+        "--record: expected mcap or " +
+          s"postgres://USER:PASSWORD@HOST:PORT/DATABASE, came '${withoutSecrets(other)}'"
       )
     val untaken = Option.when(clock == ClockKind.Virtual && record.exists(isPostgres))(
       "--record: flights in virtual time are not written to Postgres; expected mcap"

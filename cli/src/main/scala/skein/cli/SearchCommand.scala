@@ -25,7 +25,8 @@ final case class SearchOptions(
     @arg(doc = "candidates to try in all (default: 1000; 40 with flights in virtual time)")
     candidates: Option[Int],
     @arg(doc =
-      "episodes of each candidate; when racing, of the first round (default: 20; 2 with flights in virtual time)"
+      "episodes of each candidate; when racing, of the first " +
+        "round (default: 20; 2 with flights in virtual time)"
     )
     episodes: Option[Int],
     @arg(doc =
@@ -33,11 +34,13 @@ final case class SearchOptions(
     )
     population: Option[Int],
     @arg(doc =
-      "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more); no point of the landscape takes more"
+      "fresh episodes on which the winner is measured (default: 4096 with a reduced model by " +
+        "SIMD, fewer where an episode costs more); no point of the landscape takes more"
     )
     fresh: Option[Int],
     @arg(doc =
-      "searches settings of this scenario, a team's, instead of a duel's policy; the command scenarios lists them"
+      "searches settings of this scenario, a team's, instead of a " +
+        "duel's policy; the command scenarios lists them"
     )
     scenario: Option[String],
     @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")

@@ -43,7 +43,8 @@ private[cli] final class SearchJob(
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
         say(
-          f"$flown%,d episodes of ${ready.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
+          f"$flown%,d episodes of ${ready.durationS}%.0f s flown in " +
+            f"$seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
         candidates.others(ready.engine(ready.space.defaults, Judge.Candidates)).foreach(say)
         val goOn = s"stopped; ./skein search --resume $folder goes on"

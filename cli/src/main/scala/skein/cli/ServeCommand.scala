@@ -20,7 +20,8 @@ final case class ServeOptions(
     @arg(doc = "an AirSim settings.json with the vehicles; without it, one named SimpleFlight")
     settings: Option[String],
     @arg(doc =
-      "workers of the server, each held by a move until it ends, as AirSim's are: a number, vehicles+4, or unlimited"
+      "workers of the server, each held by a move until it ends, as " +
+        "AirSim's are: a number, vehicles+4, or unlimited"
     )
     workers: String = "vehicles+4",
     @arg(doc = "speed of the simulator's clock, relative to the machine's")
@@ -32,19 +33,20 @@ final case class ServeOptions(
     )
     plant: String = "airsim",
     @arg(doc =
-      "speaks MAVLink too, as PX4's simulation does: UDP to 14550 for a ground station, and to 14540, 14541, … for " +
-        "programs, one port for each vehicle; all vehicles also at UDP 18570"
+      "speaks MAVLink too, as PX4's simulation does: UDP to 14550 for a ground station, and to " +
+        "14540, 14541, … for programs, one port for each vehicle; all vehicles also at UDP 18570"
     )
     mavlink: Flag,
     @arg(
       name = "mavlink-instance",
       doc =
-        "for a second serve --mavlink: the first vehicle's number, as PX4's -i, by which ports and systems are higher; 0 unless told otherwise"
+        "for a second serve --mavlink: the first vehicle's number, as PX4's -i, " +
+          "by which ports and systems are higher; 0 unless told otherwise"
     )
     mavlinkInstance: Option[Int],
     @arg(doc =
-      "lets an external autopilot fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), ardupilot (JSON, UDP 9002, 9012, …) " +
-        "or betaflight (UDP 9002, one vehicle)"
+      "lets an external autopilot fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), " +
+        "ardupilot (JSON, UDP 9002, 9012, …) or betaflight (UDP 9002, one vehicle)"
     )
     hil: Option[String],
     view: ViewOptions

@@ -108,8 +108,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   /** Where the locale knows ASCII alone, Java is not told what else a name holds. */
   private def wrongName(mistake: InvalidPathException): String =
     if mistake.getReason.contains("unmappable") then
-      s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot tell a file's name, came '${mistake.getInput}'; " +
-        "a locale with UTF-8, such as LC_ALL=C.UTF-8, can"
+      s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot tell a file's name, " +
+        s"came '${mistake.getInput}'; a locale with UTF-8, such as LC_ALL=C.UTF-8, can"
     else s"expected the name of a file or folder, came '${mistake.getInput}': ${mistake.getReason}"
 
   private def help: String =

@@ -22,7 +22,8 @@ private[cli] object SolverOptions:
   def real(settings: FlySettings): Either[String, Unit] = settings.solver match
     case Some(choice: SolverChoice.Link) =>
       Left(
-        s"--solver ${choice.text} is for --clock virtual; expected tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide"
+        s"--solver ${choice.text} is for --clock virtual; expected " +
+          "tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide"
       )
     case _ => Right(())
 

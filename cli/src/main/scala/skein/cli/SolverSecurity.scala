@@ -15,11 +15,13 @@ import skein.units.Expect
 /** How a flight and a solver trust one another. */
 final case class SolverSecurity(
     @arg(doc =
-      "for a solver or a Kafka broker of another machine: folder of ./skein cluster with this machine's certificate; without it, loopback alone"
+      "for a solver or a Kafka broker of another machine: folder of ./skein " +
+        "cluster with this machine's certificate; without it, loopback alone"
     )
     tls: Option[String],
     @arg(doc =
-      "instead of --tls, for a Kafka broker with other certificates, or with passwords: file with its clients' security.protocol, ssl.… and sasl.…"
+      "instead of --tls, for a Kafka broker with other certificates, or with " +
+        "passwords: file with its clients' security.protocol, ssl.… and sasl.…"
     )
     kafkaSecurity: Option[String]
 ):
@@ -37,8 +39,9 @@ final case class SolverSecurity(
             Either.cond(
               isLoopback(at),
               None,
-              s"--tls: expected certificates of both sides where the solver at $at is reached by other machines; " +
-                "./skein cluster certificates DIR makes a lab's. Without them it is of this machine alone, such as tcp://127.0.0.1:7400"
+              s"--tls: expected certificates of both sides where the solver at $at is reached " +
+                "by other machines; ./skein cluster certificates DIR makes a lab's. Without " +
+                "them it is of this machine alone, such as tcp://127.0.0.1:7400"
             )
       yield Checked(read, Map.empty)
     case Some(SolverChoice.Kafka(broker, _)) =>
@@ -52,9 +55,10 @@ final case class SolverSecurity(
             Either.cond(
               isLoopback(broker),
               Map.empty[String, String],
-              s"--tls: expected certificates where the Kafka broker at $broker is of another machine; ./skein cluster " +
-                "certificates DIR makes a lab's, and --kafka-security FILE tells of others. Without them the broker is " +
-                "of this machine alone, such as kafka://127.0.0.1:9092/PREFIX"
+              s"--tls: expected certificates where the Kafka broker at $broker is of " +
+                "another machine; ./skein cluster certificates DIR makes a lab's, and " +
+                "--kafka-security FILE tells of others. Without them the broker is of " +
+                "this machine alone, such as kafka://127.0.0.1:9092/PREFIX"
             )
       yield Checked(None, read)
     case Some(SolverChoice.Link(_)) | None =>

@@ -16,7 +16,9 @@ final case class SpreadOptions(
     seeds: Int = 100,
     cluster: ClusterOptions,
     @arg(doc =
-      "folder for spread.html and its pictures, and for what workers computed: the same command with the same folder goes on where it was stopped; without it, only the tables are shown (with workers: spread/DATE-TIME)"
+      "folder for spread.html and its pictures, and for what workers computed: the " +
+        "same command with the same folder goes on where it was stopped; without it, " +
+        "only the tables are shown (with workers: spread/DATE-TIME)"
     )
     out: Option[String],
     @arg(doc = Shown.Doc)
@@ -44,7 +46,8 @@ final class SpreadCommand(program: String)(using Scenarios)
       _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
-        s"--block: expected 1, since each flight is a block of its own, came ${options.cluster.block.getOrElse(0)}"
+        "--block: expected 1, since each flight is a block of its " +
+          s"own, came ${options.cluster.block.getOrElse(0)}"
       out <- options.out
         .orElse(cluster.map(_ => OutFolder.dated("spread")))
         .fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
@@ -74,7 +77,7 @@ final class SpreadCommand(program: String)(using Scenarios)
       shown: Shown
   ): Either[String, Vector[Either[NotFlown, FlightSummary]]] =
     val flights = ready.flights(options.seeds).size
-    val landed  = SpreadFlights.FlightProgress(flights, tell = _ => ())
+    val landed  = SpreadFlights.SpreadProgress(flights, tell = _ => ())
     for
       config   <- options.flights.configuration
       question <- SpreadQuestion.of(config, settings)

@@ -2,7 +2,7 @@ package skein.cli
 
 import java.util.concurrent.atomic.AtomicInteger
 import skein.flight.{NotFlown, VirtualFlights}
-import skein.loop.Outcome
+import skein.loop.FlightOutcome
 import skein.measure.FlightSummary
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
@@ -14,7 +14,7 @@ private[cli] object SpreadFlights:
   def fly(settings: FlySettings, plans: Vector[FlightPlan])(using
       Scenarios
   ): Vector[Either[NotFlown, FlightSummary]] =
-    val landed = FlightProgress(plans.size)
+    val landed = SpreadProgress(plans.size)
     landed.tellingIfCut(summaries(settings, plans)(landed.one))
 
   /** One of them, on a thread of its own. Blocks. */
@@ -27,14 +27,14 @@ private[cli] object SpreadFlights:
     VirtualFlights
       .inParallel(settings, plans): flight =>
         val summary = flight.landed.outcome match
-          case Outcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
-          case _                      => Right(FlightSummary.of(flight.recorder.recording))
+          case FlightOutcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
+          case _                            => Right(FlightSummary.of(flight.recorder.recording))
         onLanded
         summary
       .map(_.flatten)
 
   /** How many have landed, told now and then. */
-  final class FlightProgress(of: Int, tell: String => Unit = Console.err.println(_)):
+  final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):
     private val landed     = AtomicInteger()
     private def progress() = s"${landed.get} of $of flights have landed"
 

@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigRender
 import scala.collection.immutable.ArraySeq
 import scala.jdk.CollectionConverters.*
 import skein.bytes.Codec
-import skein.cluster.{Solver, Solvers}
+import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
@@ -53,7 +53,7 @@ private[cli] object SpreadQuestion:
   private val ProbeDuration = Span.ofSeconds(1)
 
   /** Flies what was asked of scenarios that are known here. */
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       question <- JsonText.read[SpreadQuestion](asked, "spread's question")
       config   <-
@@ -62,8 +62,9 @@ private[cli] object SpreadQuestion:
       settings <- FlySettings.read(config)
       came     <- probe(settings)
       _        <- Expect.that(came == question.probe):
-        "short flights are others here than at the coordinator; has a file that --link, --policy, --predictor or --scene names another content here?"
-    yield () => (Ready(settings).answer(_)): Solver
+        "short flights are others here than at the coordinator; has a file that " +
+          "--link, --policy, --predictor or --scene names another content here?"
+    yield () => (Ready(settings).answer(_)): BlockSolver
 
   /** Flies, or has flown. */
   final case class Ready(settings: FlySettings)(using Scenarios):

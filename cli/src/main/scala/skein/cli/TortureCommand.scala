@@ -4,7 +4,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
 import skein.scenario.Scenarios
 import skein.settings.NamedScene
-import skein.torture.{FaultPlan, Verdict}
+import skein.torture.{FaultPlan, FaultVerdict}
 import skein.units.*
 
 /** Options of `./skein torture`. */
@@ -27,7 +27,8 @@ final case class TortureOptions(
     scene: Option[String],
     cluster: ClusterOptions,
     @arg(doc =
-      "folder for what workers computed and their logs; the same command with the same folder goes on where it was stopped (default: torture/DATE-TIME)"
+      "folder for what workers computed and their logs; the same command with the " +
+        "same folder goes on where it was stopped (default: torture/DATE-TIME)"
     )
     out: Option[String],
     @arg(doc = Shown.Doc)
@@ -59,7 +60,8 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
       _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds)):
-        s"--block: expected 1 to ${TortureQuestion.MostSeeds} flights, came ${options.cluster.block.getOrElse(0)}"
+        s"--block: expected 1 to ${TortureQuestion.MostSeeds} " +
+          s"flights, came ${options.cluster.block.getOrElse(0)}"
       _ <- Expect.that(cluster.isDefined || options.out.isEmpty):
         "--out: expected with --workers or --cluster, for what they computed"
       shown = Shown(options.json.value)
@@ -107,23 +109,24 @@ object TortureCommand:
     private val startedAt = System.nanoTime()
     private var flown     = 0
     private var shownAt   = startedAt
-    private var broken    = Vector.empty[Verdict]
+    private var broken    = Vector.empty[FaultVerdict]
 
-    def failed: Vector[Verdict] = broken
+    def failed: Vector[FaultVerdict] = broken
 
     def tellingIfCut[A](body: => A): A =
       Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed")(body)
 
-    def add(verdict: Verdict): Unit =
+    def add(verdict: FaultVerdict): Unit =
       flown += 1
       if !verdict.isClean then
         broken :+= verdict
         shown.say(verdict.faultPlan.toString)
         verdict.violations.foreach(line => shown.say(s"  $line"))
+        val scenario = options.scenario.fold("")(name => s" --scenario $name")
+        val scene    = options.scene.fold("")(name => s" --scene $name")
         shown.say(
-          s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
-              ""
-            )(name => s" --scenario $name")}${options.scene.fold("")(name => s" --scene $name")}"
+          s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 " +
+            s"--duration ${options.duration}$scenario$scene"
         )
       if System.nanoTime() - shownAt > ShowNanos then
         shownAt = System.nanoTime()
@@ -137,7 +140,8 @@ object TortureCommand:
       val seconds = (System.nanoTime() - startedAt) * 1e-9
       val speed   = flown * duration.toSeconds / seconds
       Console.err.println(
-        f"$flown of ${options.seeds} flights of ${options.duration}, ${failed.size} failed, $seconds%.0f s, $speed%.0f times real time"
+        f"$flown of ${options.seeds} flights of ${options.duration}, " +
+          f"${failed.size} failed, $seconds%.0f s, $speed%.0f times real time"
       )
 
     /** A row for each rule that a flight broke. */

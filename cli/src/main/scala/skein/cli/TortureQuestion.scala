@@ -5,7 +5,7 @@ import skein.bytes.Codec
 import skein.scenario.{Scenario, Scenarios}
 import skein.search.{BlockBytes, JsonText}
 import skein.settings.NamedScene
-import skein.torture.{Torture, Verdict}
+import skein.torture.{Torture, FaultVerdict}
 import skein.units.{Expect, Span}
 import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
@@ -29,7 +29,8 @@ private[cli] final case class TortureQuestion(
     for
       task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
       _    <- Expect.that(task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor))):
-        s"--scenario ${scenario.getOrElse("")}: expected multirotors, came cars, whose commands torture does not follow"
+        s"--scenario ${scenario.getOrElse("")}: expected multirotors, " +
+          "came cars, whose commands torture does not follow"
       scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
     yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)
 
@@ -54,7 +55,7 @@ private[cli] object TortureQuestion:
   final case class Ready(duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]):
 
     /** Flies them here, as many at once as there are `threads`. */
-    def fly(seeds: Iterator[Long], threads: Int)(onVerdict: Verdict => Unit): Unit =
+    def fly(seeds: Iterator[Long], threads: Int)(onVerdict: FaultVerdict => Unit): Unit =
       Torture.all(seeds, duration, threads, scenario, scene)(onVerdict)
 
     /** Has them flown elsewhere, in blocks of so many. */
@@ -71,9 +72,9 @@ private[cli] object TortureQuestion:
       BlockBytes.of(broken)
 
     /** What a block's answer says. */
-    def verdicts(answer: ArraySeq[Byte]): Vector[Verdict] =
+    def verdicts(answer: ArraySeq[Byte]): Vector[FaultVerdict] =
       for (seed, violations) <- told[Vector[(Long, Vector[String])]](answer, "torture's answer")
-      yield Verdict(Torture.plan(seed, duration, scenario, scene), violations)
+      yield FaultVerdict(Torture.plan(seed, duration, scenario, scene), violations)
 
     private def told[A: Codec](bytes: ArraySeq[Byte], what: String): A =
       BlockBytes.read[A](bytes, what).fold(wrong => throw IllegalArgumentException(wrong), identity)

@@ -3,7 +3,7 @@ package skein.cli
 import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.duration.DurationInt
-import skein.record.{FlightRow, RecordingHeader, ReadingRow, Vehicle}
+import skein.record.{FlightRow, RecordingHeader, ReadingRow, VehicleRow}
 import skein.signal.Stamped
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -45,7 +45,7 @@ private[cli] object TruthOnShow:
       now
     ),
     settings.world.vehicles.map(vehicle =>
-      Vehicle(vehicle.name, "", MetresPerSecond(0), vehicle.startNed)
+      VehicleRow(vehicle.name, "", MetresPerSecond(0), vehicle.startNed)
     ),
-    settings.world.vehicles.filter(_.isCar).flatMap(car => Vehicle.kind(car.name, VehicleKind.Car))
+    settings.world.vehicles.filter(_.isCar).flatMap(car => VehicleRow.kind(car.name, VehicleKind.Car))
   )

@@ -78,7 +78,8 @@ final case class ViewOptions(
         s"--view-port: expected 0 to 65535, came $port"
       ))
       .orElse(viewOrigin.find(!_.matches(ViewOptions.Site)).map(came =>
-        s"--view-origin: expected a site as browsers name it, for example https://app.foxglove.dev, came '$came'"
+        "--view-origin: expected a site as browsers name it, for " +
+          s"example https://app.foxglove.dev, came '$came'"
       ))
 
 object ViewOptions:

@@ -15,7 +15,8 @@ final case class WorkerOptions(
     @arg(doc = "a coordinator: a command with --cluster")
     join: String,
     @arg(doc =
-      "where the coordinator reaches this worker; with --tls, HOST as in its certificate (default: a free port of 127.0.0.1)"
+      "where the coordinator reaches this worker; with --tls, HOST as " +
+        "in its certificate (default: a free port of 127.0.0.1)"
     )
     listen: Option[String],
     @arg(doc = "number of threads; does not change the result (default: one per core)")
@@ -25,7 +26,8 @@ final case class WorkerOptions(
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
     @arg(doc =
-      "SHA-256 of a program that is run instead of this one if the coordinator ships it (--ship, which prints it); several with commas between"
+      "SHA-256 of a program that is run instead of this one if the coordinator " +
+        "ships it (--ship, which prints it); several with commas between"
     )
     acceptJars: Option[String],
     @arg(doc = "ends when its standard input ends, and so with the process that started it")

@@ -4,7 +4,7 @@ import skein.measure.{FlightSet, FlightSummary, SeeingSummary, Detection}
 import skein.plot.*
 import skein.scenario.Equipment
 import skein.scene.{Moment, Placement, SceneObject}
-import skein.scene.render.{Kind, Image, Png as PngFile, Renderer, View}
+import skein.scene.render.{Kind, PngEncoder, Raster, Renderer, View}
 import skein.settings.NamedScene
 import skein.simulator.MultirotorBody
 import skein.units.Decimals.fixed
@@ -33,7 +33,7 @@ object DetectionFigure:
     yield
       val number = scenario.agents.indexWhere(_.name == seen.eye.target)
       val height = shownPx * camera.height / camera.width
-      val title  = Shape.Text(
+      val title  = Mark.Text(
         at = Point(0, 16),
         s"${flight.name}, ${FlightTheme.link(flight.flight.link)}",
         12,
@@ -55,8 +55,8 @@ object DetectionFigure:
           )
         val file =
           Renderer.draw(Moment(scene.scene, Vector(thing)), view, Set(Kind.Scene), _ => 0)(Kind.Scene) match
-            case Image.Bytes(bgr) => PngFile.encode(bgr, camera.width, camera.height)
-            case other            => throw IllegalStateException(s"expected colours, came $other")
+            case Raster.Bytes(bgr) => PngEncoder.encode(bgr, camera.width, camera.height)
+            case other             => throw IllegalStateException(s"expected colours, came $other")
         val scale = shownPx / camera.width
         val x     = (camera.width / 2.0 + view.focalPx * StrictMath.tan(detection.azimuthRad)) * scale
         val y     =
@@ -69,8 +69,8 @@ object DetectionFigure:
           shownPx + 14,
           height + 44,
           Vector(
-            Shape.Raster(Point(0, 0), shownPx, height, file),
-            Shape.outline(
+            Mark.Raster(Point(0, 0), shownPx, height, file),
+            Mark.outline(
               (x - half).max(0),
               (y - half).max(0),
               (x + half).min(shownPx),
@@ -78,7 +78,7 @@ object DetectionFigure:
               Stroke(red, 1.6)
             )
           ) ++ told(name, detection).zipWithIndex.map((line, index) =>
-            Shape.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
+            Mark.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
           )
         )
       Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))

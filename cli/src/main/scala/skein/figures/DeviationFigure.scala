@@ -21,8 +21,8 @@ object DeviationFigure:
       deviations.filter(_.link == link).map((_, index))
     val width = placed.size * slot + links.size * gap
     val panel = Panel(
-      Axis.exactly("", 0, width, 1),
-      Axis.around(
+      PlotAxis.exactly("", 0, width, 1),
+      PlotAxis.around(
         "deviation from the paused truth, %",
         100 * deviations.map(_.share.least).min.min(0),
         100 * deviations.map(_.share.most).max.max(0)
@@ -38,14 +38,14 @@ object DeviationFigure:
     val names = links.zipWithIndex.map: (link, index) =>
       val members = placed.zipWithIndex.collect { case ((_, `index`), place) => place }
       val middle  = panel.left + (members.sum.toDouble / members.size + 0.5) * slot + (index + 0.5) * gap
-      Shape.Text(
+      Mark.Text(
         Point(middle, panel.bottom + 38),
         FlightTheme.link(link),
         Theme.labelSize,
         Theme.labelColour,
         Anchor.Middle
       )
-    val truth = Shape.line(
+    val truth = Mark.line(
       Point(panel.left, panel.atY(0)),
       Point(panel.right, panel.atY(0)),
       Stroke(FlightTheme.of("paused"), 1.2)
@@ -56,13 +56,13 @@ object DeviationFigure:
       panel.rules(panel.left, panel.right) ++ panel.yAxis ++ (truth +: (marks ++ names))
     )
 
-  private def mark(panel: Panel, deviation: Deviation, x: Double): Vector[Shape] =
+  private def mark(panel: Panel, deviation: Deviation, x: Double): Vector[Mark] =
     val colour                                        = FlightTheme.of(deviation.loop)
     val share                                         = deviation.share
     def line(from: Double, to: Double, width: Double) =
-      Shape.line(Point(x, panel.atY(100 * from)), Point(x, panel.atY(100 * to)), Stroke(colour, width))
+      Mark.line(Point(x, panel.atY(100 * from)), Point(x, panel.atY(100 * to)), Stroke(colour, width))
     val centre = Point(x, panel.atY(100 * share.mean))
-    val ring   = Option.when(deviation.clock != ClockKind.Virtual.label)(Shape.Disc(
+    val ring   = Option.when(deviation.clock != ClockKind.Virtual.label)(Mark.Disc(
       centre,
       6.5,
       Some(Stroke(colour, 1.2))
@@ -70,15 +70,15 @@ object DeviationFigure:
     Vector(
       line(share.least, share.most, 1),
       line(share.mean - share.sd, share.mean + share.sd, 3.2),
-      Shape.Disc(centre, 4, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour)),
-      Shape.Text(
+      Mark.Disc(centre, 4, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour)),
+      Mark.Text(
         Point(x, panel.bottom + 13),
         deviation.name,
         Theme.tickSize - 1,
         Theme.labelColour,
         Anchor.Middle
       ),
-      Shape.Text(
+      Mark.Text(
         Point(x, panel.bottom + 24),
         s"${(100 * share.mean).signed(1)} %",
         Theme.tickSize - 1,

@@ -26,8 +26,8 @@ object DistanceFigure:
       flights.flatMap(summary => summary.published.flatMap(_.distance))
     val highest = (curves.flatMap(_._2.points.map(_._2)) ++ published.map(_.most)).max
     val panel   = Panel(
-      Axis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
-      Axis.around("distance, m", 0, highest),
+      PlotAxis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
+      PlotAxis.around("distance, m", 0, highest),
       left = 52,
       top = 34,
       plotWidth,
@@ -45,7 +45,7 @@ object DistanceFigure:
           summary,
           _
         ))
-    val heading = Shape.Text(
+    val heading = Mark.Text(
       Point(stripsLeft, panel.top - 10),
       "last 10 s: ours ●, paper ◆",
       Theme.tickSize,
@@ -59,15 +59,15 @@ object DistanceFigure:
         lines ++ strips ++ legend(panel, flights)
     )
 
-  private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Shape] =
+  private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Mark] =
     val colour = FlightTheme.of(summary.flight.loop)
     val ours   = Vector(
-      Shape.line(Point(x - 5, panel.atY(last.least)), Point(x - 5, panel.atY(last.most)), Stroke(colour, 2)),
-      Shape.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
+      Mark.line(Point(x - 5, panel.atY(last.least)), Point(x - 5, panel.atY(last.most)), Stroke(colour, 2)),
+      Mark.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
     )
     val paper = summary.published.flatMap(_.distance).toVector.flatMap: published =>
       Vector(
-        Shape.line(
+        Mark.line(
           Point(x + 5, panel.atY(published.least)),
           Point(x + 5, panel.atY(published.most)),
           Stroke(FlightTheme.published, 1.2)
@@ -76,7 +76,7 @@ object DistanceFigure:
       )
     ours ++ paper
 
-  private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Shape] =
+  private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Mark] =
     val names  = flights.distinctBy(_.name)
     val legend = Legend(0, names.map(one => Legend.line(one.name, FlightTheme.of(one, 2.2)))*)
     legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))

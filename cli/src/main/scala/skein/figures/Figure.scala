@@ -20,8 +20,9 @@ object Figure:
       Figure(
         DeviationFigure.name,
         "Deviation from the paused truth",
-        "What stands for a flight, of the duel the mean distance of the last 10 s, against the truth's, by link and loop. Discs are means over the flights, thick lines " +
-          "reach one standard deviation to either side, thin lines from the least to the most; live flights are ringed.",
+        "What stands for a flight, of the duel the mean distance of the last 10 s, against the truth's, " +
+          "by link and loop. Discs are means over the flights, thick lines reach one standard deviation to " +
+          "either side, thin lines from the least to the most; live flights are ringed.",
         drawing
       )
 
@@ -31,8 +32,9 @@ object Figure:
       Figure(
         PredictionFigure.name,
         "Prediction error against age",
-        "Distance between where a vehicle was predicted to be and where it then was, by how far its reading was carried " +
-          s"forward, in bins of ${PredictionErrors.BinMs} ms; full lines are medians, dashed ones 95 % quantiles.",
+        "Distance between where a vehicle was predicted to be and where it then was, " +
+          "by how far its reading was carried forward, in bins of " +
+          s"${PredictionErrors.BinMs} ms; full lines are medians, dashed ones 95 % quantiles.",
         drawing
       )
 
@@ -42,8 +44,9 @@ object Figure:
       Figure(
         "distance",
         "Distance over time",
-        "Horizontal distance between pursuer and evader at equal instants of the simulator's clock. Right of each " +
-          "panel, mean and range over the last 10 s: ours as coloured discs, the paper's as black diamonds.",
+        "Horizontal distance between pursuer and evader at equal instants of the " +
+          "simulator's clock. Right of each panel, mean and range over the last 10 " +
+          "s: ours as coloured discs, the paper's as black diamonds.",
         drawing
       )
 
@@ -52,8 +55,8 @@ object Figure:
     Figure(
       "trajectories",
       "Trajectories",
-      "Seen from above, north up, with equal scales on both axes of a panel. The pursuer has the colour of its " +
-        "loop, the evader is grey; rings are starts, discs are ends.",
+      "Seen from above, north up, with equal scales on both axes of a panel. The pursuer has " +
+        "the colour of its loop, the evader is grey; rings are starts, discs are ends.",
       drawing
     )
 
@@ -87,8 +90,9 @@ object Figure:
     Figure(
       "detections",
       "What cameras saw",
-      "At decisive moments of each flight: drawn anew by the built-in simulator's renderer from where the camera was at " +
-        "the exposure, by the image, and where the vehicle was, by its own readings; the red box is where it was recognised.",
+      "At decisive moments of each flight: drawn anew by the built-in simulator's " +
+        "renderer from where the camera was at the exposure, by the image, and where the " +
+        "vehicle was, by its own readings; the red box is where it was recognised.",
       drawing
     )
 
@@ -98,25 +102,27 @@ object Figure:
       Figure(
         "observations",
         "What decisions were made on",
-        "Means over all decisions. Ages count from a reading's arrival, as published, and so hide the network; the " +
-          "dashed outlines are the true ages, from when physics was sampled. Diamonds are the paper's means.",
+        "Means over all decisions. Ages count from a reading's arrival, as " +
+          "published, and so hide the network; the dashed outlines are the true " +
+          "ages, from when physics was sampled. Diamonds are the paper's means.",
         drawing
       ),
     LatencyFigure(set).map: drawing =>
       Figure(
         "latency",
         "Latency",
-        "Round trips as measured in these flights (bars), and the link's profile (black line) with its 5, 50 and " +
-          "95 % quantiles; direct and vpn are the paper's own samples. An emulated link takes half of one sample there " +
-          "and half of another back, so its round trips spread less (orange line).",
+        "Round trips as measured in these flights (bars), and the link's profile (black line) with its 5, " +
+          "50 and 95 % quantiles; direct and vpn are the paper's own samples. An emulated link takes half " +
+          "of one sample there and half of another back, so its round trips spread less (orange line).",
         drawing
       ),
     TwinFigure(set).map: drawing =>
       Figure(
         TwinFigure.name,
         "Live against virtual",
-        "Each live flight (coloured) and its virtual twins (black, dashed): shares of decisions whose own data was at most " +
-          "so old, counted from when physics was sampled, and whose own last move was at most so long ago; KS is the " +
+        "Each live flight (coloured) and its virtual twins (black, dashed): shares of " +
+          "decisions whose own data was at most so old, counted from when physics was " +
+          "sampled, and whose own last move was at most so long ago; KS is the " +
           "Kolmogorov-Smirnov distance between the two curves, the largest vertical gap.",
         drawing
       )

@@ -2,7 +2,7 @@ package skein.figures
 
 import skein.loop.LoopKind
 import skein.measure.FlightSummary
-import skein.plot.{Colour, Point, Shape, Stroke}
+import skein.plot.{Colour, Point, Mark, Stroke}
 
 /** One colour per loop in every picture: Okabe and Ito's palette, told apart by colour-blind readers too. */
 object FlightTheme:
@@ -33,6 +33,6 @@ object FlightTheme:
   def link(name: String): String = if name == "none" then "no network" else s"$name link"
 
   /** The mark of a published value. */
-  def diamond(centre: Point, radius: Double = 4): Shape =
+  def diamond(centre: Point, radius: Double = 4): Mark =
     val corners = Vector((0.0, -radius), (radius, 0.0), (0.0, radius), (-radius, 0.0)).map(centre.moved(_, _))
-    Shape.Path(corners, Some(Stroke(halo, 0.8)), Some(published), closed = true)
+    Mark.Path(corners, Some(Stroke(halo, 0.8)), Some(published), closed = true)

@@ -1,7 +1,7 @@
 package skein.figures
 
 import skein.loop.{GraphLayout, LoopGraph, Spot}
-import skein.plot.{Anchor, Colour, Drawing, Point, Shape, Stroke}
+import skein.plot.{Anchor, Colour, Drawing, Point, Mark, Stroke}
 
 /** A loop's graph: its parts by their names in the code, what leads where, and below what is fed back. */
 object GraphFigure:
@@ -51,9 +51,9 @@ object GraphFigure:
     )
 
   private def part(name: String, box: Box) = Vector(
-    Shape.box(box.left, box.top, box.right, box.bottom, Colour(0xffffff)),
-    Shape.outline(box.left, box.top, box.right, box.bottom, boxes),
-    Shape.Text(Point(box.middle, box.centre + 4), name, Letter, ink, Anchor.Middle)
+    Mark.box(box.left, box.top, box.right, box.bottom, Colour(0xffffff)),
+    Mark.outline(box.left, box.top, box.right, box.bottom, boxes),
+    Mark.Text(Point(box.middle, box.centre + 4), name, Letter, ink, Anchor.Middle)
   )
 
   /** Behind the boxes between, where it passes any. */
@@ -64,7 +64,7 @@ object GraphFigure:
       if start.y == end.y then Vector.empty
       else Vector(Point(end.x - bend * 1.6, start.y), Point(end.x - bend * 0.8, end.y))
     Vector(
-      Shape.Path(start +: knees :+ end.moved(-6, 0), Some(edges)),
+      Mark.Path(start +: knees :+ end.moved(-6, 0), Some(edges)),
       tip(end, Vector((-7, -4), (-7, 4)), edges.colour)
     )
 
@@ -77,7 +77,7 @@ object GraphFigure:
         Point(to.middle, below),
         end.moved(0, 6)
       )
-    Vector(Shape.Path(way, Some(turns)), tip(end, Vector((-4, 7), (4, 7)), turns.colour))
+    Vector(Mark.Path(way, Some(turns)), tip(end, Vector((-4, 7), (4, 7)), turns.colour))
 
   private def tip(at: Point, corners: Vector[(Int, Int)], colour: Colour) =
-    Shape.Path(at +: corners.map((x, y) => at.moved(x, y)), None, Some(colour), closed = true)
+    Mark.Path(at +: corners.map((x, y) => at.moved(x, y)), None, Some(colour), closed = true)

@@ -40,8 +40,12 @@ object LatencyFigure:
     val density = profile.toVector.flatMap(densityOf(_, step))
     val halves  = profile.toVector.flatMap(densityOfHalves(_, step))
     val panel   = Panel(
-      Axis.around("round trip, ms", 0, most, 6),
-      Axis.around(s"share per $width ms, %", 0, (share.values ++ (density ++ halves).map(_._2)).max * 1.12),
+      PlotAxis.around("round trip, ms", 0, most, 6),
+      PlotAxis.around(
+        s"share per $width ms, %",
+        0,
+        (share.values ++ (density ++ halves).map(_._2)).max * 1.12
+      ),
       left = 52,
       top = 48,
       width = 300,
@@ -49,7 +53,7 @@ object LatencyFigure:
     )
     val bars = share.toVector.sortBy(_._1).collect:
       case (bin, percent) if (bin + 1) * step <= panel.x.to + 1e-9 =>
-        Shape.box(
+        Mark.box(
           panel.atX(bin * step) + 0.5,
           panel.atY(percent),
           panel.atX((bin + 1) * step) - 0.5,
@@ -64,7 +68,7 @@ object LatencyFigure:
       s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
     val titles = Vector(
       panel.title(FlightTheme.link(link)).moved(0, -14),
-      Shape.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize, Theme.labelColour)
+      Mark.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize, Theme.labelColour)
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
 
@@ -78,12 +82,12 @@ object LatencyFigure:
     )
 
   /** The profile's 5, 50 and 95 % quantiles. */
-  private def quantileMarks(panel: Panel, profile: LatencyDistribution): Vector[Shape] =
+  private def quantileMarks(panel: Panel, profile: LatencyDistribution): Vector[Mark] =
     Vector(0.05, 0.5, 0.95).flatMap: p =>
       val x = panel.atX(profile.quantile(p).toMillis)
       Vector(
-        Shape.line(Point(x, panel.bottom), Point(x, panel.top + 13), quantileLine),
-        Shape.Text(
+        Mark.line(Point(x, panel.bottom), Point(x, panel.top + 13), quantileLine),
+        Mark.Text(
           Point(x, panel.top + 9),
           s"${(p * 100).round} %",
           Theme.tickSize - 1,

@@ -28,8 +28,8 @@ object ObservationFigure:
     val lefts   = placed(flights)
     val width   = lefts.last + widthOf(flights.last) + loopGap
     val panel   = Panel(
-      Axis.exactly("", 0, width, 1),
-      Axis.around("ms", 0, highest * 1.06),
+      PlotAxis.exactly("", 0, width, 1),
+      PlotAxis.around("ms", 0, highest * 1.06),
       left = 46,
       top = 34,
       width,
@@ -39,7 +39,7 @@ object ObservationFigure:
       val drawn = summary.roles.zipWithIndex.flatMap: (role, index) =>
         draw(panel, bar(observation, summary, role), panel.left + left + index * barWidth, pale = index > 0)
       val middle = panel.left + left + widthOf(summary) / 2
-      drawn :+ Shape.Text(
+      drawn :+ Mark.Text(
         Point(middle, panel.bottom + 13),
         summary.flight.loop,
         Theme.tickSize - 1,
@@ -50,8 +50,8 @@ object ObservationFigure:
       val from = panel.left + members.map(_._2).min
       val to   = panel.left + members.map((summary, left) => left + widthOf(summary)).max
       Vector(
-        Shape.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Theme.axisLine),
-        Shape.Text(
+        Mark.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Theme.axisLine),
+        Mark.Text(
           Point((from + to) / 2, panel.bottom + 30),
           FlightTheme.link(link),
           Theme.tickSize,
@@ -83,14 +83,14 @@ object ObservationFigure:
       trueAge.map(_.mean)
     )
 
-  private def draw(panel: Panel, bar: Bar, left: Double, pale: Boolean): Vector[Shape] =
+  private def draw(panel: Panel, bar: Bar, left: Double, pale: Boolean): Vector[Mark] =
     val right   = left + barWidth - 2
     val middle  = (left + right) / 2
     val outline = bar.trueAge.toVector.map: age =>
-      Shape.outline(left, panel.atY(age), right, panel.bottom, trueAgeLine(bar.colour))
+      Mark.outline(left, panel.atY(age), right, panel.bottom, trueAgeLine(bar.colour))
     val filled = bar.mean.toVector.flatMap: mean =>
       val colour = if pale then bar.colour.tinted(palePart) else bar.colour
-      Vector(Shape.box(left, panel.atY(mean), right, panel.bottom, colour))
+      Vector(Mark.box(left, panel.atY(mean), right, panel.bottom, colour))
     val mark = bar.published.toVector.map(mean => FlightTheme.diamond(Point(middle, panel.atY(mean)), 3.6))
     outline ++ filled ++ mark
 
@@ -117,7 +117,7 @@ object ObservationFigure:
       Legend.Item(
         "true age, by the simulator's clock",
         12,
-        at => Vector(Shape.outline(at.x, at.y - 6, at.x + 12, at.y + 6, trueAgeLine(grey)))
+        at => Vector(Mark.outline(at.x, at.y - 6, at.x + 12, at.y + 6, trueAgeLine(grey)))
       )
     )
     Legend(46, items*)

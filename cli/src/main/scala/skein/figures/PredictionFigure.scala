@@ -19,8 +19,8 @@ object PredictionFigure:
     val all        = curves.flatMap(_._1)
     val (from, to) = (all.map(_._1).min, all.map(_._1).max)
     val panel      = Panel(
-      Axis.around("carried forward by, ms", from.toDouble, to.toDouble.max(from + 1.0), 5),
-      Axis.around("error, mm", 0, 1000 * all.map(_._2.quantile(0.95)).max, 4),
+      PlotAxis.around("carried forward by, ms", from.toDouble, to.toDouble.max(from + 1.0), 5),
+      PlotAxis.around("error, mm", 0, 1000 * all.map(_._2.quantile(0.95)).max, 4),
       left = 52,
       top = 34,
       width = 290,
@@ -39,10 +39,10 @@ object PredictionFigure:
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
   /** A single age is a disc. */
-  private def curve(panel: Panel, points: Vector[(Double, Double)], stroke: Stroke): Vector[Shape] =
+  private def curve(panel: Panel, points: Vector[(Double, Double)], stroke: Stroke): Vector[Mark] =
     points match
       case Vector()       => Vector.empty
-      case Vector((x, y)) => Vector(Shape.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour)))
+      case Vector((x, y)) => Vector(Mark.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour)))
       case several        => Vector(panel.curve(several, stroke))
 
   private val dashes = Vector(4.0, 2.5)

@@ -22,12 +22,12 @@ object ResponseFigure:
   private def panel(model: ReducedModel, flown: Flown): Drawing =
     val modelled = flight(model, flown)
     val samples  = flown.samples
-    val time     = Axis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
-    val speeds   = samples.flatMap(sample => Vector(sample.vx, sample.vy))
-    val top      =
+    val time   = PlotAxis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
+    val speeds = samples.flatMap(sample => Vector(sample.vx, sample.vy))
+    val top    =
       Panel(
         time.copy(label = ""),
-        Axis.around("velocity, m/s", speeds.min, speeds.max),
+        PlotAxis.around("velocity, m/s", speeds.min, speeds.max),
         52,
         34,
         width,
@@ -37,7 +37,7 @@ object ResponseFigure:
       samples.zip(modelled).flatMap((sample, model) => Vector(sample.vx - model._1, sample.vy - model._2))
     val most  = remains.map(math.abs).max.max(0.05)
     val below =
-      Panel(time, Axis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
+      Panel(time, PlotAxis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
     val shapes =
       for
         (colour, measured, model) <- Vector(
@@ -59,8 +59,8 @@ object ResponseFigure:
       (top.title(f"${flown.name}: residual $rms%.3f m/s rms") +: top.axes) ++ below.axes ++ shapes
     )
 
-  private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Shape] =
-    values.map((at, value) => Shape.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
+  private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Mark] =
+    values.map((at, value) => Mark.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
 
   /** The modelled velocity at every sample. */
   private def flight(model: ReducedModel, flown: Flown): Vector[(Double, Double)] =
@@ -75,7 +75,7 @@ object ResponseFigure:
 
   private def legend: Drawing =
     def dot(label: String, colour: Colour) =
-      Legend.Item(label, 8, at => Vector(Shape.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
+      Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
     Legend(
       52,
       dot("north, measured", north),

@@ -21,7 +21,7 @@ object ScenarioFigure:
     val span   = (norths.max - norths.min).max(easts.max - easts.min).max(1) * 1.06
     def axis(label: String, values: Vector[Double]) =
       val middle = (values.min + values.max) / 2
-      Axis.exactly(label, middle - span / 2, middle + span / 2)
+      PlotAxis.exactly(label, middle - span / 2, middle + span / 2)
     val panels = flown.flights.map: flight =>
       val panel = Panel(axis("east y, m", easts), axis("north x, m", norths), 52, 34, side, side)
       val title =
@@ -36,7 +36,7 @@ object ScenarioFigure:
       Legend(52, legend(flown)*)
     )
 
-  private def paths(panel: Panel, result: Result): Vector[Shape] =
+  private def paths(panel: Panel, result: Result): Vector[Mark] =
     val track = result.tracks
     track.vehicles.toVector.flatMap: vehicle =>
       val colour           = colourOf(result.scenario, vehicle)
@@ -46,18 +46,18 @@ object ScenarioFigure:
           track.eastM(vehicle).toVector.zip(track.northM(vehicle).toVector),
           Stroke(colour.faded(0.8), 1)
         ),
-        Shape.Disc(at(track.instants.head), 2.8, Some(Stroke(colour, 1.2)), Some(FlightTheme.halo)),
-        Shape.Disc(at(track.instants.last), 3, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
+        Mark.Disc(at(track.instants.head), 2.8, Some(Stroke(colour, 1.2)), Some(FlightTheme.halo)),
+        Mark.Disc(at(track.instants.last), 3, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
       )
 
-  private def broken(panel: Panel, result: Result): Vector[Shape] =
+  private def broken(panel: Panel, result: Result): Vector[Mark] =
     for
       violation <- result.violations
       vehicle   <- violation.vehicles
     yield
       val instant = (violation.worstAtS / result.tracks.stepS).round.toInt
       val place   = panel.at(result.tracks.eastM(vehicle)(instant), result.tracks.northM(vehicle)(instant))
-      Shape.Disc(place, 5, Some(Stroke(red, 1.2)))
+      Mark.Disc(place, 5, Some(Stroke(red, 1.2)))
 
   /** Every vehicle's altitude over time, one panel per flight, all panels of one scale. */
   def altitudes(flown: ScenarioFlights): Drawing =
@@ -67,8 +67,8 @@ object ScenarioFigure:
     val panels = flown.flights.map: flight =>
       val track = flight.result.tracks
       val panel = Panel(
-        Axis.around("time, s", 0, tracks.map(_.lastS).max, 8),
-        Axis.around("altitude, m", least.min(0), most),
+        PlotAxis.around("time, s", 0, tracks.map(_.lastS).max, 8),
+        PlotAxis.around("altitude, m", least.min(0), most),
         52,
         34,
         plotWidth / 2,
@@ -107,8 +107,8 @@ object ScenarioFigure:
     val curves                                                = flights.map(drawn(_)._2.points)
     val highest = (curves.map(highestShown) ++ bound.map(_.value)).max
     val panel   = Panel(
-      Axis.around("time, s", 0, curves.map(_.last._1).max, 8),
-      Axis.around(series.title, (0.0 +: curves.map(_.map(_._2).min)).min, highest),
+      PlotAxis.around("time, s", 0, curves.map(_.last._1).max, 8),
+      PlotAxis.around(series.title, (0.0 +: curves.map(_.map(_._2).min)).min, highest),
       left = 52,
       top = 34,
       plotWidth,
@@ -118,7 +118,7 @@ object ScenarioFigure:
       panel.curve(drawn(flight)._2.points.dropWhile(_._2 > panel.y.to), FlightTheme.of(flight.summary))
     )
     val held = bound.map: bound =>
-      Shape.line(
+      Mark.line(
         Point(panel.left, panel.atY(bound.value)),
         Point(panel.right, panel.atY(bound.value)),
         boundLine
@@ -174,13 +174,13 @@ object ScenarioFigure:
         )
 
   private def disc(label: String, radius: Double, edge: Option[Stroke], fill: Option[Colour]): Legend.Item =
-    Legend.Item(label, 8, at => Vector(Shape.Disc(at.moved(4, 0), radius, edge, fill)))
+    Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), radius, edge, fill)))
 
   private def many(label: String, count: Int): Legend.Item = Legend.Item(
     label,
     count * 9.0,
     at =>
       Vector.tabulate(count)(index =>
-        Shape.line(at.moved(index * 9, 0), at.moved(index * 9 + 8, 0), Stroke(colours(index), 2.2))
+        Mark.line(at.moved(index * 9, 0), at.moved(index * 9 + 8, 0), Stroke(colours(index), 2.2))
       )
   )

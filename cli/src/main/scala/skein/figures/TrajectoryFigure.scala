@@ -27,7 +27,7 @@ object TrajectoryFigure:
     val span                                        = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
     def axis(label: String, values: Vector[Double]) =
       val middle = (values.min + values.max) / 2
-      Axis.exactly(label, middle - span / 2, middle + span / 2)
+      PlotAxis.exactly(label, middle - span / 2, middle + span / 2)
     val panel = Panel(axis("east y, m", ys), axis("north x, m", xs), 52, 34, side, side)
     val title = panel.title(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
     Drawing(
@@ -36,7 +36,7 @@ object TrajectoryFigure:
       (title +: panel.axes) ++ summary.tracks.sortBy(_.role).flatMap(path(panel, summary, _))
     )
 
-  private def path(panel: Panel, summary: FlightSummary, track: Track): Vector[Shape] =
+  private def path(panel: Panel, summary: FlightSummary, track: Track): Vector[Mark] =
     val colour = if track.isA(Role.Pursuer) then FlightTheme.of(summary.flight.loop) else FlightTheme.evader
     def at(p: Vector3) = panel.at(p.y, p.x)
     Vector(
@@ -54,7 +54,7 @@ object TrajectoryFigure:
         loops.size * 9,
         at =>
           loops.indices.toVector.map(index =>
-            Shape.line(
+            Mark.line(
               at.moved(index * 9, 0),
               at.moved(index * 9 + 8, 0),
               thick(FlightTheme.of(loops(index)))
@@ -68,8 +68,8 @@ object TrajectoryFigure:
 
   private def thick(colour: Colour): Stroke = FlightTheme.line(colour, 2.2)
 
-  private def start(at: Point, colour: Colour): Shape =
-    Shape.Disc(at, 3.4, Some(Stroke(colour, 1.4)), Some(FlightTheme.halo))
+  private def start(at: Point, colour: Colour): Mark =
+    Mark.Disc(at, 3.4, Some(Stroke(colour, 1.4)), Some(FlightTheme.halo))
 
-  private def end(at: Point, colour: Colour): Shape =
-    Shape.Disc(at, 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
+  private def end(at: Point, colour: Colour): Mark =
+    Mark.Disc(at, 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))

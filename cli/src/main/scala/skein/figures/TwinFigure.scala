@@ -24,7 +24,7 @@ object TwinFigure:
     val distance = twin.converged.zip(twin.difference).map: (converged, difference) =>
       s": last 10 s ${converged._1.fixed(2)} m live, ${converged._2.fixed(2)} m virtual " +
         s"(${(100 * difference).signed(1)} %)"
-    val title = Shape.Text(
+    val title = Mark.Text(
       Point(46, 16),
       s"${twin.live.name}, ${FlightTheme.link(flight.link)}${distance.getOrElse("")}",
       Theme.titleSize,
@@ -37,14 +37,14 @@ object TwinFigure:
   private def panel(loop: String, compared: Compared): Drawing =
     val most  = compared.live.quantile(0.995).max(compared.virtual.quantile(0.995))
     val panel = Panel(
-      Axis.around(s"${compared.quantity}, ms", 0, most, 4),
-      Axis.exactly("share of decisions", 0, 1, 4),
+      PlotAxis.around(s"${compared.quantity}, ms", 0, most, 4),
+      PlotAxis.exactly("share of decisions", 0, 1, 4),
       left = 46,
       top = 20,
       panelWidth,
       panelHeight
     )
-    val title = Shape.Text(
+    val title = Mark.Text(
       Point(panel.left, panel.top - 6),
       s"${compared.role}: KS ${compared.distance.fixed(2)}",
       Theme.labelSize,
@@ -60,7 +60,7 @@ object TwinFigure:
     )
 
   /** From the panel's left edge to its right one; the last half per cent may lie beyond. */
-  private def curve(panel: Panel, samples: Distribution, stroke: Stroke): Shape =
+  private def curve(panel: Panel, samples: Distribution, stroke: Stroke): Mark =
     val rising = Vector
       .tabulate(points + 1)(index => index.toDouble / points)
       .map(share => (samples.quantile(share), share))

@@ -10,27 +10,27 @@ final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
     ColourScale.mixed(stops(below), stops(below + 1), at - below)
 
   /** A bar that shows the scale, with ticks at its right and the label above. */
-  def bar(left: Double, top: Double, bottom: Double, label: String): Vector[Shape] =
+  def bar(left: Double, top: Double, bottom: Double, label: String): Vector[Mark] =
     val slices = 64
     val width  = 14.0
     val height = bottom - top
     val boxes  = Vector.tabulate(slices): i =>
-      Shape.box(
+      Mark.box(
         left,
         bottom - height * (i + 1) / slices,
         left + width,
         (bottom - height * i / slices + 0.5).min(bottom),
         of(from + (to - from) * (i + 0.5) / slices)
       )
-    val axis  = Axis.exactly(label, from, if to > from then to else from + 1)
+    val axis  = PlotAxis.exactly(label, from, if to > from then to else from + 1)
     val ticks = axis.ticks.map: tick =>
-      Shape.Text(
+      Mark.Text(
         Point(left + width + 5, bottom - height * axis.share(tick) + 3.5),
         axis.text(tick),
         Theme.tickSize,
         Theme.tickColour
       )
-    boxes ++ ticks :+ Shape.Text(Point(left, top - 8), label, Theme.tickSize, Theme.labelColour)
+    boxes ++ ticks :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize, Theme.labelColour)
 
 object ColourScale:
   /** Matplotlib's viridis by nine of its colours: even in lightness, also for colour-blind readers. */

@@ -3,7 +3,7 @@ package skein.plot
 /** A picture: shapes on a canvas, in the order in which they are painted. Lengths are in CSS pixels, 1/96 inch, from
   * the top left corner, y downwards. [[Svg]] and [[Png]] render it.
   */
-final case class Drawing(width: Double, height: Double, shapes: Vector[Shape])
+final case class Drawing(width: Double, height: Double, shapes: Vector[Mark])
 
 object Drawing:
 
@@ -64,7 +64,7 @@ enum Anchor:
   case Start, Middle, End
 
 /** What a drawing consists of. */
-enum Shape:
+enum Mark:
   /** Straight lines from point to point. */
   case Path(
       points: Vector[Point],
@@ -101,19 +101,19 @@ enum Shape:
     */
   case Raster(at: Point, width: Double, height: Double, png: Array[Byte])
 
-  def moved(dx: Double, dy: Double): Shape = this match
+  def moved(dx: Double, dy: Double): Mark = this match
     case raster: Raster => raster.copy(at = raster.at.moved(dx, dy))
     case path: Path     => path.copy(points = path.points.map(_.moved(dx, dy)))
     case disc: Disc     => disc.copy(centre = disc.centre.moved(dx, dy))
     case text: Text     => text.copy(at = text.at.moved(dx, dy))
 
-object Shape:
-  def line(from: Point, to: Point, stroke: Stroke): Shape = Path(Vector(from, to), Some(stroke))
+object Mark:
+  def line(from: Point, to: Point, stroke: Stroke): Mark = Path(Vector(from, to), Some(stroke))
 
-  def box(left: Double, top: Double, right: Double, bottom: Double, fill: Colour): Shape =
+  def box(left: Double, top: Double, right: Double, bottom: Double, fill: Colour): Mark =
     Path(rectangle(left, top, right, bottom), stroke = None, Some(fill), closed = true)
 
-  def outline(left: Double, top: Double, right: Double, bottom: Double, stroke: Stroke): Shape =
+  def outline(left: Double, top: Double, right: Double, bottom: Double, stroke: Stroke): Mark =
     Path(rectangle(left, top, right, bottom), Some(stroke), closed = true)
 
   private def rectangle(left: Double, top: Double, right: Double, bottom: Double): Vector[Point] =

@@ -21,13 +21,13 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     if all.isEmpty then (0, 1) else (all.min, all.max)
 
   /** Cut to the panel. */
-  def cells(panel: Panel, scale: ColourScale): Vector[Shape] =
+  def cells(panel: Panel, scale: ColourScale): Vector[Mark] =
     for
       (row, i) <- values.zipWithIndex
       case (Some(value), j) <- row.zipWithIndex
     yield
       // Neighbours overlap by half a pixel: where they only touched, the white below would shine through.
-      Shape.box(
+      Mark.box(
         panel.atX(edge(xs, j)).max(panel.left),
         panel.atY(edge(ys, i + 1)).max(panel.top),
         (panel.atX(edge(xs, j + 1)) + 0.5).min(panel.right),

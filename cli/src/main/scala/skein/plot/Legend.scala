@@ -12,13 +12,13 @@ object Legend:
     * @param mark
     *   its shapes, when its left end's middle is at the point
     */
-  final case class Item(label: String, width: Double, mark: Point => Vector[Shape])
+  final case class Item(label: String, width: Double, mark: Point => Vector[Mark])
 
   def line(label: String, stroke: Stroke): Item =
-    Item(label, 20, at => Vector(Shape.line(at, at.moved(20, 0), stroke)))
+    Item(label, 20, at => Vector(Mark.line(at, at.moved(20, 0), stroke)))
 
   def box(label: String, fill: Colour): Item =
-    Item(label, 12, at => Vector(Shape.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))
+    Item(label, 12, at => Vector(Mark.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))
 
   /** Items from left to right; texts may be a little narrower or wider than the room they get. */
   def apply(left: Double, items: Item*): Drawing =
@@ -26,5 +26,5 @@ object Legend:
       items.scanLeft(left)((start, item) => start + item.width + 6 + item.label.length * letterWidth + gap)
     val shapes = items.zip(starts).flatMap: (item, start) =>
       item.mark(Point(start, middle)) :+
-        Shape.Text(Point(start + item.width + 6, middle + 4), item.label, Theme.labelSize, Theme.labelColour)
+        Mark.Text(Point(start + item.width + 6, middle + 4), item.label, Theme.labelSize, Theme.labelColour)
     Drawing(starts.last - gap / 2, height, shapes.toVector)

@@ -1,7 +1,7 @@
 package skein.plot
 
 /** A rectangle of a drawing with an axis below and one at its left; turns values into points. */
-final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Double, height: Double):
+final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, width: Double, height: Double):
   import Theme.*
 
   def right: Double  = left + width
@@ -12,40 +12,40 @@ final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Doubl
   def atY(value: Double): Double                = bottom - y.share(value) * height
 
   /** A line through values; at most one point per tenth of a pixel is kept. */
-  def curve(values: Iterable[(Double, Double)], stroke: Stroke): Shape =
+  def curve(values: Iterable[(Double, Double)], stroke: Stroke): Mark =
     val points = values.iterator.map(at(_, _)).toVector
     val kept   = points.foldLeft(Vector.empty[Point]): (kept, point) =>
       if kept.lastOption.exists(last => math.hypot(point.x - last.x, point.y - last.y) < 0.1) then kept
       else kept :+ point
-    Shape.Path(kept, Some(stroke))
+    Mark.Path(kept, Some(stroke))
 
   /** Grid lines, and lines, numbers and names of both axes; to be painted below the values. */
-  def axes: Vector[Shape] = grid ++ xAxis ++ yAxis
+  def axes: Vector[Mark] = grid ++ xAxis ++ yAxis
 
-  private def grid: Vector[Shape] =
-    x.ticks.map(tick => Shape.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++ rules(
+  private def grid: Vector[Mark] =
+    x.ticks.map(tick => Mark.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++ rules(
       left,
       right
     )
 
   /** Horizontal lines at the ticks of the axis at the left. */
-  def rules(from: Double, to: Double): Vector[Shape] =
-    y.ticks.map(tick => Shape.line(Point(from, atY(tick)), Point(to, atY(tick)), gridLine))
+  def rules(from: Double, to: Double): Vector[Mark] =
+    y.ticks.map(tick => Mark.line(Point(from, atY(tick)), Point(to, atY(tick)), gridLine))
 
-  def xAxis: Vector[Shape] =
+  def xAxis: Vector[Mark] =
     x.ticks.map: tick =>
-      Shape.Text(Point(atX(tick), bottom + 14), x.text(tick), tickSize, tickColour, Anchor.Middle)
+      Mark.Text(Point(atX(tick), bottom + 14), x.text(tick), tickSize, tickColour, Anchor.Middle)
     ++ Vector(
-      Shape.line(Point(left, bottom), Point(right, bottom), axisLine),
-      Shape.Text(Point(left + width / 2, bottom + 30), x.label, labelSize, labelColour, Anchor.Middle)
+      Mark.line(Point(left, bottom), Point(right, bottom), axisLine),
+      Mark.Text(Point(left + width / 2, bottom + 30), x.label, labelSize, labelColour, Anchor.Middle)
     )
 
-  def yAxis: Vector[Shape] =
+  def yAxis: Vector[Mark] =
     y.ticks.map: tick =>
-      Shape.Text(Point(left - 6, atY(tick) + 3.5), y.text(tick), tickSize, tickColour, Anchor.End)
+      Mark.Text(Point(left - 6, atY(tick) + 3.5), y.text(tick), tickSize, tickColour, Anchor.End)
     ++ Vector(
-      Shape.line(Point(left, top), Point(left, bottom), axisLine),
-      Shape.Text(
+      Mark.line(Point(left, top), Point(left, bottom), axisLine),
+      Mark.Text(
         Point(left - 36, top + height / 2),
         y.label,
         labelSize,
@@ -55,8 +55,8 @@ final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Doubl
       )
     )
 
-  def title(text: String): Shape =
-    Shape.Text(Point(left, top - 10), text, titleSize, titleColour, bold = true)
+  def title(text: String): Mark =
+    Mark.Text(Point(left, top - 10), text, titleSize, titleColour, bold = true)
 
 /** The looks that all pictures share. */
 object Theme:

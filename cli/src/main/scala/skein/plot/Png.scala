@@ -44,23 +44,23 @@ object Png:
     stream.close()
     out.toByteArray
 
-  private def draw(shape: Shape, graphics: Graphics2D): Unit = shape match
-    case Shape.Path(points, stroke, fill, closed) =>
+  private def draw(shape: Mark, graphics: Graphics2D): Unit = shape match
+    case Mark.Path(points, stroke, fill, closed) =>
       val path = Path2D.Double()
       points.headOption.foreach(start => path.moveTo(start.x, start.y))
       points.drop(1).foreach(point => path.lineTo(point.x, point.y))
       if closed then path.closePath()
       paint(path, stroke, fill, graphics)
-    case Shape.Disc(centre, radius, stroke, fill) =>
+    case Mark.Disc(centre, radius, stroke, fill) =>
       val disc = Ellipse2D.Double(centre.x - radius, centre.y - radius, 2 * radius, 2 * radius)
       paint(disc, stroke, fill, graphics)
-    case Shape.Raster(at, width, height, png) =>
+    case Mark.Raster(at, width, height, png) =>
       val place = AffineTransform.getTranslateInstance(at.x, at.y)
       val image = ImageIO.read(MemoryCacheImageInputStream(ByteArrayInputStream(png)))
       place.scale(width / image.getWidth, height / image.getHeight)
       graphics.setRenderingHint(RenderingHints.KEY_INTERPOLATION, RenderingHints.VALUE_INTERPOLATION_BICUBIC)
       val _ = graphics.drawImage(image, place, null)
-    case text: Shape.Text => write(text, graphics)
+    case text: Mark.Text => write(text, graphics)
 
   private def paint(
       outline: java.awt.Shape,
@@ -79,7 +79,7 @@ object Png:
       )
       graphics.draw(outline)
 
-  private def write(text: Shape.Text, graphics: Graphics2D): Unit =
+  private def write(text: Mark.Text, graphics: Graphics2D): Unit =
     val font =
       Font(Font.SANS_SERIF, if text.bold then Font.BOLD else Font.PLAIN, 1).deriveFont(text.size.toFloat)
     val width = font.getStringBounds(text.content, graphics.getFontRenderContext).getWidth

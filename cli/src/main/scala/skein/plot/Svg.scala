@@ -27,13 +27,13 @@ object Svg:
   def file(drawing: Drawing, description: String): String =
     s"""<?xml version="1.0" encoding="UTF-8"?>\n${element(drawing, description).render}\n"""
 
-  private def render(shape: Shape): TypedTag[String] = shape match
-    case Shape.Path(points, line, area, closed) =>
+  private def render(shape: Mark): TypedTag[String] = shape match
+    case Mark.Path(points, line, area, closed) =>
       val steps = points.map(point => s"${number(point.x)} ${number(point.y)}")
       path(d := steps.mkString("M", "L", if closed then "Z" else ""), paint(line, area))
-    case Shape.Disc(centre, radius, line, area) =>
+    case Mark.Disc(centre, radius, line, area) =>
       circle(cx := number(centre.x), cy := number(centre.y), r := number(radius), paint(line, area))
-    case Shape.Raster(at, wide, high, png) =>
+    case Mark.Raster(at, wide, high, png) =>
       image(
         x            := number(at.x),
         y            := number(at.y),
@@ -41,7 +41,7 @@ object Svg:
         height       := number(high),
         attr("href") := s"data:image/png;base64,${Base64.getEncoder.encodeToString(png)}"
       )
-    case Shape.Text(at, content, size, colour, anchor, bold, upwards) =>
+    case Mark.Text(at, content, size, colour, anchor, bold, upwards) =>
       text(
         x          := number(at.x),
         y          := number(at.y),

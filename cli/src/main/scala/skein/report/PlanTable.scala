@@ -47,7 +47,8 @@ object PlanTable:
 
   /** How to read it. */
   def note(set: FlightSet): String =
-    "Candidate manoeuvres flown forward per vehicle and tick, all searches together; slices are of all vehicles planned for together; ms from the tick to the decision; a deadline is " +
+    "Candidate manoeuvres flown forward per vehicle and tick, all searches together; slices are " +
+      "of all vehicles planned for together; ms from the tick to the decision; a deadline is " +
       "missed where no slice was ready, and the last plan went on or the policy decided" +
       (if hasDuels(set) then
          "; captured where the distance first is below 1.5 m, and the share of the flight below it"

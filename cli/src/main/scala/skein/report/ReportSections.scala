@@ -75,5 +75,6 @@ object ReportSections:
     figures.filter(_.name == name).toVector
 
   private val observationsNote =
-    "Mean/median/99th percentile in ms, by the role that was decided for. Ages count from the arrival of the reading used, as published; the true " +
-      "ages, means, count from when physics was sampled, by the simulator's clock."
+    "Mean/median/99th percentile in ms, by the role that was decided for. Ages " +
+      "count from the arrival of the reading used, as published; the true ages, " +
+      "means, count from when physics was sampled, by the simulator's clock."

@@ -70,8 +70,8 @@ object ScenarioTables:
 
   /** How to read [[violations]]. */
   def limits(scenario: Scenario): String =
-    s"Limits: ${scenario.limits.map(_.text).mkString("; ")}. A row is a stretch of time in which a vehicle or a pair " +
-      s"broke one; the first $MostListed of each flight and limit are listed."
+    s"Limits: ${scenario.limits.map(_.text).mkString("; ")}. A row is a stretch of time in which a " +
+      s"vehicle or a pair broke one; the first $MostListed of each flight and limit are listed."
 
   private val MostListed = 5
 

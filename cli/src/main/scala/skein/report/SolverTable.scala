@@ -37,7 +37,8 @@ object SolverTable:
   /** The same loop over the same link by the same policy, decided in the flight's own process. */
   private def beside(set: FlightSet, flight: FlightSummary): Option[FlightSummary] =
     set.flights.find: other =>
-      other.solver.isEmpty && other.flight.loop == flight.flight.loop && other.flight.link == flight.flight.link &&
+      other.solver.isEmpty &&
+        other.flight.loop == flight.flight.loop && other.flight.link == flight.flight.link &&
         other.policy == flight.policy && other.scenario == flight.scenario
 
   private def difference(flight: FlightSummary, here: Option[FlightSummary]): String =
@@ -47,8 +48,10 @@ object SolverTable:
       .fold("")((there, own) => s"${((there / own - 1) * 100).signed(1)} %")
 
   val note: String =
-    "Beside the same loop that decides in its own process (here). Added: ms from question to answer, of answers that were used, of which " +
-      "the solver was thinking for so long. Age at command: from when the vehicle's own physics was sampled to the sending of the command " +
-      "that was decided upon it, with all ways. Missed: decisions that the fallback had to make; late: answers that came after their " +
-      "deadline and were not used; twice: messages that came more than once and count once; left: questions that the solver left for " +
-      "newer ones; lost: connections. The result is the scenario's first measure, such as the distance of the last 10 s."
+    "Beside the same loop that decides in its own process (here). Added: ms from question to answer, " +
+      "of answers that were used, of which the solver was thinking for so long. Age at command: from " +
+      "when the vehicle's own physics was sampled to the sending of the command that was decided upon " +
+      "it, with all ways. Missed: decisions that the fallback had to make; late: answers that came " +
+      "after their deadline and were not used; twice: messages that came more than once and count " +
+      "once; left: questions that the solver left for newer ones; lost: connections. The result is the " +
+      "scenario's first measure, such as the distance of the last 10 s."

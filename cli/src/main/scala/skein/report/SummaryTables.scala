@@ -103,8 +103,9 @@ object SummaryTables:
 
   /** How to read [[seen]]. */
   val seenNote: String =
-    "Images that were searched until the last detection, and detections that were used. Ages of detections count from the " +
-      "exposure to each decision made from them; off: how far the estimate for the exposure lay from the truth."
+    "Images that were searched until the last detection, and detections that were " +
+      "used. Ages of detections count from the exposure to each decision made from " +
+      "them; off: how far the estimate for the exposure lay from the truth."
 
   /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, by
     * role, and how far apart they converged.
@@ -141,13 +142,13 @@ object SummaryTables:
     for
       summary <- set.all
       span    <- summary.paused
-    yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and nothing was decided, " +
-      "which its times and distances include; it stands beside no other flight"
+    yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
+      "nothing was decided, which its times and distances include; it stands beside no other flight"
 
   /** How to read [[twins]]. */
   val twinsNote: String =
-    "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data and " +
-      "of the time since the own last move; mean distance of the last 10 s, or a team's first measure"
+    "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data " +
+      "and of the time since the own last move; mean distance of the last 10 s, or a team's first measure"
 
   /** `TimedOut` as `timed out`. */
   def label(kind: EventKind): String =

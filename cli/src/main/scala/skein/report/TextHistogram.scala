@@ -1,7 +1,7 @@
 package skein.report
 
 import skein.measure.Distribution
-import skein.plot.Axis
+import skein.plot.PlotAxis
 
 /** A histogram in monospaced text, one line per bin. */
 object TextHistogram:
@@ -11,7 +11,7 @@ object TextHistogram:
     *   of the samples, for the bins' names
     */
   def apply(samples: Distribution, unit: String): String =
-    val axis   = Axis.around(unit, samples.least, samples.most, ticks = 16)
+    val axis   = PlotAxis.around(unit, samples.least, samples.most, ticks = 16)
     val bins   = axis.ticks.zip(axis.ticks.drop(1))
     val counts = bins.map: (from, to) =>
       samples.sorted.count(value => value >= from && (value < to || to == axis.to && value == to))

@@ -67,7 +67,8 @@ object Conditions:
     LoopTimings
       .of(loop, settings, AirSimFleet.askTimeout)
       .toRight(
-        s"forward simulation has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
+        s"forward simulation has no ${loop.label} loop; expected " +
+          "paused, sequential, futures, stream or predictive"
       )
 
   def delays(link: String): Either[String, Delays] =

@@ -25,8 +25,8 @@ object LandscapeFigure:
     val low    = points.map((_, tally) => tally.mean - tally.sd).min
     val high   = points.map((_, tally) => tally.mean + tally.sd).max
     val panel  = Panel(
-      Axis.exactly(axis.name, axis.least, axis.most),
-      Axis.around(value, low, high),
+      PlotAxis.exactly(axis.name, axis.least, axis.most),
+      PlotAxis.around(value, low, high),
       left = 62,
       top = 52,
       width,
@@ -35,7 +35,7 @@ object LandscapeFigure:
     val band = points.map((x, tally) => panel.at(x, tally.mean + tally.sd)) ++
       points.reverse.map((x, tally) => panel.at(x, tally.mean - tally.sd))
     def marked(x: Double, colour: Colour) =
-      Shape.line(
+      Mark.line(
         Point(panel.atX(x), panel.top),
         Point(panel.atX(x), panel.bottom),
         Stroke(colour, 1.6, Vector(5, 3))
@@ -51,7 +51,7 @@ object LandscapeFigure:
       panel.right + 40,
       panel.bottom + 44,
       (panel.title(title).moved(0, -22) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ Vector(
-        Shape.Path(band, None, Some(line.faded(0.25)), closed = true),
+        Mark.Path(band, None, Some(line.faded(0.25)), closed = true),
         panel.curve(points.map((x, tally) => (x, tally.mean)), Stroke(line, 2)),
         marked(axis.default, plain),
         marked(landscape.best.head, found)
@@ -61,8 +61,8 @@ object LandscapeFigure:
   private def map(landscape: Landscape, title: String, value: String): Drawing =
     val (xAxis, yAxis) = (landscape.space.axes(landscape.x), landscape.space.axes(landscape.y.get))
     val panel          = Panel(
-      Axis.exactly(xAxis.name, xAxis.least, xAxis.most),
-      Axis.exactly(yAxis.name, yAxis.least, yAxis.most),
+      PlotAxis.exactly(xAxis.name, xAxis.least, xAxis.most),
+      PlotAxis.exactly(yAxis.name, yAxis.least, yAxis.most),
       left = 62,
       top = 52,
       height * 1.2,
@@ -71,7 +71,7 @@ object LandscapeFigure:
     val heat  = HeatMap(landscape.xs, landscape.ys, landscape.cells.map(_.map(tally => Some(tally.mean))))
     val scale = heat.range
     def mark(x: Double, y: Double, colour: Colour) =
-      Shape.Disc(panel.at(x, y), 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
+      Mark.Disc(panel.at(x, y), 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
     val best   = mark(landscape.best(landscape.x), landscape.best(landscape.y.get), found)
     val paper  = mark(xAxis.default, yAxis.default, plain)
     val legend = Legend(

@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.optimise.{CmaEs, Course, Scored, SearchState, RunningStats}
+import skein.optimise.{CmaEs, MethodState, Scored, SearchState, RunningStats}
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
 
 /** A search as it stands on disk: the question, and the state it has come to. */
@@ -17,7 +17,7 @@ object SearchFile:
   given ReadWriter[RunningStats]        = ReadWriter.derived
   private given ReadWriter[Scored]      = ReadWriter.derived
   private given ReadWriter[CmaEs.State] = ReadWriter.derived
-  private given ReadWriter[Course]      = ReadWriter.derived
+  private given ReadWriter[MethodState] = ReadWriter.derived
   private given ReadWriter[SearchState] = ReadWriter.derived
   given ReadWriter[Question]            = readwriter[ujson.Value].bimap(
     {

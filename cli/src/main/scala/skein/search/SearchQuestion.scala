@@ -99,9 +99,10 @@ object SearchQuestion:
             _ <- Expect.that(candidates <= MostRacing):
               s"--candidates: a race takes at most $MostRacing, came $candidates"
             _ <- Expect.that(race.mostOfOne <= Search.PlayOffFrom):
-              s"--episodes: the last of $candidates candidates in a race may fly at most ${Search.PlayOffFrom} episodes, " +
-                s"and came to ${race.mostOfOne}, ${race.mostOfOne / episodes} times those of the first round: " +
-                s"expected at most ${Search.PlayOffFrom / (race.mostOfOne / episodes)}, came $episodes"
+              s"--episodes: the last of $candidates candidates in a race may fly at most " +
+                s"${Search.PlayOffFrom} episodes, and came to ${race.mostOfOne}, " +
+                s"${race.mostOfOne / episodes} times those of the first round: expected at " +
+                s"most ${Search.PlayOffFrom / (race.mostOfOne / episodes)}, came $episodes"
           yield race
         case other => Left(s"--method: expected one of $Methods, came '$other'")
     yield method

@@ -35,7 +35,8 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
         Left(s"expected the state of $what with its checksum at the end, came a file that is cut off")
       case Versioned(_) if text.substring(at + Seal.length, text.length - 1) != sumOf(text.take(at)) =>
         Left(
-          s"expected the state of $what as it was written; its checksum says that it was damaged or edited since"
+          s"expected the state of $what as it was written; its " +
+            "checksum says that it was damaged or edited since"
         )
       case Versioned(_) => JsonText.parse[A](text.take(at) + "}", s"the state of $what")
       case _            => Left(s"expected the state of $what, which begins with its version")

@@ -74,7 +74,8 @@ final case class TeamQuestion(
     for
       ready <- read
       _     <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
-        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} flights in virtual time, came some ${ready.search.expected}"
+        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} " +
+          s"flights in virtual time, came some ${ready.search.expected}"
     yield ready
 
   /** The same, however many flights it asks for. */
@@ -113,7 +114,8 @@ final case class TeamQuestion(
     refused.orElse(moved) match
       case Some(reason) if conditions.plant != Plant =>
         Left(
-          s"--plant: expected none, since this scenario flies in virtual time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
+          "--plant: expected none, since this scenario flies in virtual " +
+            s"time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
         )
       case Some(reason) =>
         for
@@ -121,7 +123,7 @@ final case class TeamQuestion(
           profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
         yield TeamEngine.Whole(
           WholeFlights.virtual(conditions, loop, profile, seed, reason),
-          isVirtual = true
+          virtually = true
         )
       case None =>
         for
@@ -130,7 +132,7 @@ final case class TeamQuestion(
         yield
           val plain = by.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
           if plain.isEmpty then TeamEngine.Reduced(flown, delays)
-          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain), isVirtual = false)
+          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain), virtually = false)
 
 object TeamQuestion:
   /** What flies where nothing is told: teams fly low, where the model of three parameters does not hold. */
@@ -156,16 +158,23 @@ object TeamQuestion:
         )
       case None =>
         Left(
-          s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
+          s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the " +
+            s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** What flies a team's candidates. */
-enum TeamEngine:
+/** What flies a team's candidates.
+  *
+  * @param isVirtual
+  *   whether candidates fly some a second
+  */
+enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
   /** By measures of quantities. */
   case Reduced(conditions: Conditions.Resolved, delays: Delays)
+      extends TeamEngine(false, conditions.vehicle.description, conditions.vehicle.name)
 
   /** By measures of whole flights. */
-  case Whole(flights: WholeFlights, isVirtual: Boolean)
+  case Whole(flights: WholeFlights, virtually: Boolean)
+      extends TeamEngine(virtually, flights.vehicles, flights.model)
 
 /** A search over a scenario's settings, ready to run.
   *
@@ -180,10 +189,7 @@ final case class TeamSetup(
     flownBy: TeamEngine,
     by: SearchMethod
 ) extends ReadySearch:
-  /** Whether candidates fly some a second. */
-  def isVirtual: Boolean = flownBy match
-    case TeamEngine.Whole(_, isVirtual) => isVirtual
-    case _: TeamEngine.Reduced          => false
+  export flownBy.{isVirtual, model, vehicles}
 
   val search: Search =
     if isVirtual then Search(space, by, objective.direction, question.seed, TeamSetup.LeastPlayOff)
@@ -261,14 +267,6 @@ final case class TeamSetup(
   def effort: Effort = flownBy match
     case _: TeamEngine.Reduced        => Effort.ofTeam(byLanes)
     case TeamEngine.Whole(flights, _) => flights.effort
-
-  def vehicles: String = flownBy match
-    case TeamEngine.Reduced(conditions, _) => conditions.vehicle.description
-    case TeamEngine.Whole(flights, _)      => flights.vehicles
-
-  def model: String = flownBy match
-    case TeamEngine.Reduced(conditions, _) => conditions.vehicle.name
-    case TeamEngine.Whole(flights, _)      => flights.model
 
   def blockEpisodes: Int = flownBy match
     case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(byLanes, conditions.vehicle)

@@ -1,7 +1,7 @@
 package skein.search
 
 import scala.collection.immutable.ArraySeq
-import skein.cluster.Solvers
+import skein.cluster.BlockSolverFactory
 import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios
 import skein.units.Expect
@@ -28,7 +28,7 @@ object VerifiedQuestion:
     JsonText.bytes(VerifiedQuestion(question, probe(ready, ready.judges(1))))
 
   /** Answers the questions of searches whose scenarios are known here. */
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[VerifiedQuestion](asked, "a search's question")
       ready <- setup(posed.question)

@@ -75,7 +75,8 @@ final case class LearnQuestion(
       _      <- within("--fresh", fresh, 2, MostEpisodes)
       _      <- learner.mistake.map(asOption).toLeft(())
       _      <- Expect.that(algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments):
-        s"--batch: expected at most the ${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
+        "--batch: expected at most the " +
+          s"${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
     yield LearnSetup(this, algorithm, role, game, flown, delays)
 
   private def duel(role: Role)(using Scenarios): Either[String, LearnGame] =
@@ -107,7 +108,8 @@ object LearnQuestion:
       unit: String = ""
   ): Either[String, Unit] =
     Expect.that(value >= least && value <= most):
-      s"$option: expected ${least.significant(4)} to ${most.significant(4)}$unit, came ${value.significant(4)}$unit"
+      s"$option: expected ${least.significant(4)} to " +
+        s"${most.significant(4)}$unit, came ${value.significant(4)}$unit"
 
   /** `learning rate: …` as `--learning-rate: …`. */
   private def asOption(mistake: String) =

@@ -4,7 +4,7 @@ import java.nio.file.Path
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, ExecutionContext, Future, blocking}
 import scala.util.Try
-import skein.learn.{SideTask, Learner, Training, Workers}
+import skein.learn.{SideTask, Learner, Training, BatchThreads}
 import skein.optimise.{Direction, Evaluator, RunningStats}
 import skein.scenario.Scenarios
 
@@ -48,7 +48,7 @@ final class LearnRun(
       onRound: LearnState => Unit,
       task: SideTask
   ): Either[String, LearnState] =
-    val workers = Workers(threads)
+    val workers = BatchThreads(threads)
     try
       for
         _ <- Right(())

@@ -65,7 +65,8 @@ object LearnFile:
           learner.load(DataInputStream(CheckedInputStream(bytes, sum)))
           val isWhole = DataInputStream(bytes).readLong() == sum.getValue && bytes.read() < 0
           Expect.that(isWhole && learner.isFinite):
-            s"$file: expected the learner's numbers as they were written; their checksum says that they were damaged since"
+            s"$file: expected the learner's numbers as they were written; " +
+              "their checksum says that they were damaged since"
       catch
         case _: NoSuchFileException =>
           Left(s"there is no $file; expected the learner's numbers there, beside $Name")

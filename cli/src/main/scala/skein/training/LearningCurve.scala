@@ -20,8 +20,8 @@ object LearningCurve:
   ): Drawing =
     val all   = scores.flatMap(_._3)
     val panel = Panel(
-      Axis.around("steps of all environments, thousand", 0, all.map(_.steps / 1e3).max),
-      Axis.around(value, 0, (all.map(score => score.mean + score.sd) ++ levels.map(_._3)).max),
+      PlotAxis.around("steps of all environments, thousand", 0, all.map(_.steps / 1e3).max),
+      PlotAxis.around(value, 0, (all.map(score => score.mean + score.sd) ++ levels.map(_._3)).max),
       left = 62,
       top = 52,
       width = 560,
@@ -31,12 +31,12 @@ object LearningCurve:
       panel.at(score.steps / 1e3, (score.mean + off * score.sd).max(0))
     val bands = scores.map: (_, colour, curve) =>
       val outline = curve.map(point(_, 1)) ++ curve.reverse.map(point(_, -1))
-      Shape.Path(outline, None, Some(colour.faded(0.2)), closed = true)
+      Mark.Path(outline, None, Some(colour.faded(0.2)), closed = true)
     val curves = scores.map: (_, colour, curve) =>
       panel.curve(curve.map(score => (score.steps / 1e3, score.mean)), Stroke(colour, 2))
     def dashed(colour: Colour) = Stroke(colour, 1.6, Vector(5, 3))
     val lines                  = levels.map: (_, colour, level) =>
-      Shape.line(Point(panel.left, panel.atY(level)), Point(panel.right, panel.atY(level)), dashed(colour))
+      Mark.line(Point(panel.left, panel.atY(level)), Point(panel.right, panel.atY(level)), dashed(colour))
     val legend = Legend(
       panel.left,
       (scores.map((name, colour, _) => Legend.line(name, Stroke(colour, 2))) ++

@@ -1,7 +1,7 @@
 package skein.budget
 
 import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
-import skein.plot.Shape
+import skein.plot.Mark
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions
@@ -80,7 +80,8 @@ class BudgetSuite extends munit.FunSuite, Optimised:
       case other            => fail(s"$other")
     assertEquals(
       leaves.sentence(18),
-      "holds within 5 % of the truth, 8 m, up to 75 ms mean at 20 ms jitter (round trips; stream every 100 ms)"
+      "holds within 5 % of the truth, 8 m, up to 75 ms mean at " +
+        "20 ms jitter (round trips; stream every 100 ms)"
     )
     assertEquals(
       leaves.copy(legs = Legs.OneWay).sentence(18),
@@ -97,5 +98,5 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assertEquals(json("engine").str, "SIMD")
     assertEquals(json("cells")(1)("meanMs").num, 25.0)
     assertEquals(json("truth").num, 8.0)
-    val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Shape.Text => text.content }
+    val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)

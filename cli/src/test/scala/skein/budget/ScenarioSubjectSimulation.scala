@@ -74,7 +74,8 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     assertEquals(
       question(surround, Some("speed"), Conditions("stream", "drag", 100, 20), 1).map(_.formula),
       Left(
-        "--objective: objective 'speed', at character 1: expected one of off-ring, ring, nearest, gap, surrounded-after, came 'speed'"
+        "--objective: objective 'speed', at character 1: expected one of " +
+          "off-ring, ring, nearest, gap, surrounded-after, came 'speed'"
       )
     )
     assert(

@@ -20,7 +20,8 @@ class ArgumentsSuite extends munit.FunSuite:
     assertEquals(
       Arguments.resumed(options, may, "--threads"),
       Left(
-        "--resume: everything but --threads is taken from the folder; expected no other option, came --plant, --steps, --turn-rate"
+        "--resume: everything but --threads is taken from the folder; " +
+          "expected no other option, came --plant, --steps, --turn-rate"
       )
     )
     assertEquals(Arguments.resumed(options.cluster, may, "--threads"), Right(()))

@@ -149,7 +149,8 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
         (
           FlyCommand(),
           virtual ++ Seq("--solver", "link:vpn", "--loop", "plan", "--deadline", "50ms"),
-          "deadline: expected more than planning.deadline, for which a solver searches its plans, 60.0 ms; came 50.0 ms"
+          "deadline: expected more than planning.deadline, for which a " +
+            "solver searches its plans, 60.0 ms; came 50.0 ms"
         ),
         (
           FlyCommand(),

@@ -55,7 +55,8 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     isSo
 
   test(
-    "a search whose coordinator is killed leaves no worker behind; it goes on, and finds what one process finds, to the bit, though a worker is killed at its work"
+    "a search whose coordinator is killed leaves no worker behind; it goes on, and finds " +
+      "what one process finds, to the bit, though a worker is killed at its work"
   ):
     val out     = folder("resumed")
     val command =

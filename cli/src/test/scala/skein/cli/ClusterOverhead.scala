@@ -89,7 +89,8 @@ import skein.signal.SplitMix64
       val there = taken(elsewhere)
       require(here.tallies == there.tallies, s"pair $pair: other bits")
       println(
-        f"pair $pair: here ${here.s}%.2f s (${here.cpuS}%.2f s of the processor), two workers ${there.s}%.2f s (${there.cpuS}%.2f s): ${here.s / there.s}%.3f of the rate"
+        f"pair $pair: here ${here.s}%.2f s (${here.cpuS}%.2f s of the processor), two workers " +
+          f"${there.s}%.2f s (${there.cpuS}%.2f s): ${here.s / there.s}%.3f of the rate"
       )
       (rate = here.s / there.s, cpu = here.cpuS / there.cpuS)
     def told(of: Seq[Double]) =

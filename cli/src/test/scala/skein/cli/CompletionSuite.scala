@@ -14,7 +14,8 @@ class CompletionSuite extends munit.FunSuite:
     val script  = printed("completion", "bash")._2
     val words   = line.map(word => s"'$word'").mkString(" ")
     val program =
-      s"$script\nCOMP_WORDS=($words); COMP_CWORD=${line.size - 1}; _skein; printf '%s\\n' \"$${COMPREPLY[@]}\""
+      s"$script\nCOMP_WORDS=($words); " +
+        s"COMP_CWORD=${line.size - 1}; _skein; printf '%s\\n' \"$${COMPREPLY[@]}\""
     val out    = StringBuilder()
     val status =
       Process(Seq("bash", "-c", program)).!(ProcessLogger(text => out.append(text).append('\n'): Unit))

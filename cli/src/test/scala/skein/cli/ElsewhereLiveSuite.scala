@@ -17,7 +17,8 @@ class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     ran.said
 
   test(
-    "flights through faults are flown by two processes, each once, and not again by the same command, which starts nobody"
+    "flights through faults are flown by two processes, each once, " +
+      "and not again by the same command, which starts nobody"
   ):
     val out = temporaryFolder()
     for found <- Seq("2 blocks counted, 0 more", "0 blocks counted, 2 more") do

@@ -39,9 +39,11 @@ import skein.scenario.Scenarios
         case event: skein.record.Event
             if event.kind == EventKind.Dropped && event.detail.contains("not recorded") => event
       println(
-        f"$what%-20s ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
-          f"${images.size.toDouble / seconds}%.0f images/s of ${images.headOption.fold(0)(_.pixels.size)}%,d bytes, ${lost.size} not recorded; " +
-          f"${spent * 100}%.0f %% of one core; load ${load()}"
+        f"$what%-20s ${late.questions}%,d questions, late p50 " +
+          f"${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f " +
+          f"ms; ${images.size.toDouble / seconds}%.0f images/s of " +
+          f"${images.headOption.fold(0)(_.pixels.size)}%,d bytes, ${lost.size} " +
+          f"not recorded; ${spent * 100}%.0f %% of one core; load ${load()}"
       )
   finally
     Using.resource(Files.walk(folder))(_.sorted(java.util.Comparator.reverseOrder()).forEach((path: Path) =>

@@ -8,7 +8,7 @@ import skein.cluster.Certificates
 import skein.flight.SolvedFlight
 import skein.kafka.{KafkaBroker, KafkaLink, KafkaSolver, KafkaTopics}
 import skein.link.Address
-import skein.loop.Outcome
+import skein.loop.FlightOutcome
 import skein.record.MemoryRecorder
 import skein.scenario.Scenarios
 import skein.settings.SolverChoice
@@ -55,7 +55,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     val flight =
       SolvedFlight(SolverChoice.Kafka(broker.address, prefix), KafkaLink(topics), patience = patience)
     Await.result(flight.start(), 60.seconds).map: flying =>
-      assertEquals(Await.result(flying.landed, 60.seconds).outcome, Outcome.Completed)
+      assertEquals(Await.result(flying.landed, 60.seconds).outcome, FlightOutcome.Completed)
       flight.recorder
 
   test("with certificates of one set a flight is decided by a solver behind a broker"):

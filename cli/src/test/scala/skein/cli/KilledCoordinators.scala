@@ -23,9 +23,8 @@ import skein.cluster.WorkerProcesses
   */
 @main def killCoordinator(candidates: Int, first: Int, last: Int, everyS: Int, out: String): Unit =
   val question =
-    s"search --family lead-pursuit --method random --candidates $candidates --episodes 10 --fresh 16 --duration 20s"
-      .split(' ')
-      .toSeq
+    ("search --family lead-pursuit --method random " +
+      s"--candidates $candidates --episodes 10 --fresh 16 --duration 20s").split(' ').toSeq
   val alone  = Path.of(out).resolve("alone")
   val said   = ByteArrayOutputStream()
   val status =
@@ -82,5 +81,7 @@ import skein.cluster.WorkerProcesses
     val audit = Ledger.audit(ledger)
     require(audit.repeats == 0 && audit.broken == 0, audit.toString)
     println(
-      f"run $run: $count workers, of whom $workers were killed, coordinator killed $killed times; the same files to the bit; ${audit.blocks} blocks, each counted once; the last life found $resumed in the ledger; ${(System.nanoTime() - begun) * 1e-9}%.0f s"
+      f"run $run: $count workers, of whom $workers were killed, coordinator killed $killed " +
+        f"times; the same files to the bit; ${audit.blocks} blocks, each counted once; the last " +
+        f"life found $resumed in the ledger; ${(System.nanoTime() - begun) * 1e-9}%.0f s"
     )

@@ -17,9 +17,8 @@ import skein.blocks.Ledger
 @main def killWorkers(candidates: Int, kills: Int, out: String): Unit =
   given ExecutionContext = ExecutionContext.global
   val question           =
-    s"search --family lead-pursuit --method random --candidates $candidates --episodes 10 --fresh 16 --duration 20s"
-      .split(' ')
-      .toSeq
+    ("search --family lead-pursuit --method random " +
+      s"--candidates $candidates --episodes 10 --fresh 16 --duration 20s").split(' ').toSeq
   val Seq(together, alone)           = Seq("together", "alone").map(Path.of(out).resolve(_))
   def search(words: String*): String =
     val ran = Ran.of(Main.run(question ++ words))

@@ -34,7 +34,8 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
   test(
-    "pursuers of a team learn one policy, which flights and forward simulation fly in the place of all of theirs"
+    "pursuers of a team learn one policy, which flights and " +
+      "forward simulation fly in the place of all of theirs"
   ):
     val folder = temporaryFolder().resolve("learned")
     val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq

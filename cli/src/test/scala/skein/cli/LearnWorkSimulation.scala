@@ -50,7 +50,8 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
 
   test("learning goes on while a worker judges what was learned, and comes to the same, to the bit"):
     val words =
-      "--steps 2000 --environments 16 --lesson 5s --network 4 --episodes 4 --duration 12s --updates-per-step 0.02"
+      "--steps 2000 --environments 16 --lesson 5s --network 4 " +
+        "--episodes 4 --duration 12s --updates-per-step 0.02"
     val short = LearnCommand
       .question(mainargs.ParserForClass[LearnOptions].constructOrThrow(words.split(' ').toSeq))
       .flatMap(_.setup)

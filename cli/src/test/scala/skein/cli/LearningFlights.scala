@@ -33,8 +33,8 @@ import skein.scenario.Scenarios
     val told = RecordingReader.read(file).fold(error => sys.error(error.message), _.events)
     val news = told.count(_.kind == EventKind.Learned)
     println(
-      f"$what%-9s ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
-        f"$news versions, ${told.size - news} other events; load ${load()}"
+      f"$what%-9s ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most " +
+        f"${late.mostMs}%.2f ms; $news versions, ${told.size - news} other events; load ${load()}"
     )
 
 private def flownIn(out: Path): Path =

@@ -40,7 +40,8 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
 
   folder.test("a family of one's own is searched by SIMD, flown, replayed and swept, by its name"): folder =>
     val found = done(
-      s"search --family doubting --candidates 16 --episodes 2 --fresh 16 --duration 12s --link vpn --out $folder/found"
+      "search --family doubting --candidates 16 --episodes 2 --fresh " +
+        s"16 --duration 12s --link vpn --out $folder/found"
     )
     assert(found.contains("SIMD"), found)
     val policy = folder.resolve("found/policy.conf")

@@ -29,7 +29,8 @@ class ServerNewsSuite extends munit.FunSuite:
     assertEquals(
       ServerNews.line(calm.copy(turnedAway = 2, tooSlow = 1, dropped = 7), limits),
       Some(
-        "clients: 2 turned away because 4 connections were open, 1 closed for messages or replies that took too long; " +
-          "7 calls of closed connections dropped; at most 3 of 10 MiB were held for clients at any time"
+        "clients: 2 turned away because 4 connections were open, 1 closed for " +
+          "messages or replies that took too long; 7 calls of closed connections " +
+          "dropped; at most 3 of 10 MiB were held for clients at any time"
       )
     )

@@ -41,7 +41,8 @@ class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy,
     started(name, command.updated(command.indexOf("-cp") + 1, plain))
 
   test(
-    "a plain worker fetches the program whose digest it was given, and finds what one process finds, to the bit"
+    "a plain worker fetches the program whose digest it was " +
+      "given, and finds what one process finds, to the bit"
   ):
     val (out, alone) = (parent.resolve("found"), parent.resolve("alone"))
     val coordinator  = started(

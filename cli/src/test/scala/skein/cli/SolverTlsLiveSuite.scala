@@ -11,7 +11,7 @@ import scala.concurrent.{Await, Future}
 import skein.cluster.{Certificates, Tls}
 import skein.flight.SolvedFlight
 import skein.link.{Address, Listening, TcpTransport, TransportError}
-import skein.loop.Outcome
+import skein.loop.FlightOutcome
 import skein.scenario.Scenarios
 import skein.settings.SolverChoice
 import skein.solver.*
@@ -113,5 +113,5 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("a flight is decided by a solver over TLS"):
     served(own): at =>
       val flight = SolvedFlight(SolverChoice.Tcp(at), TcpLink(transport(Some(own)), at))
-      assertEquals(Await.result(flight.flown(), 60.seconds), Outcome.Completed)
+      assertEquals(Await.result(flight.flown(), 60.seconds), FlightOutcome.Completed)
       assert(flight.recorder.recording.solved.sizeIs > 10)

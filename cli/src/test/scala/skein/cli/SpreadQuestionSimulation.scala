@@ -88,7 +88,8 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
     )
 
   test(
-    "a worker whose flights are others refuses, and so does the command where workers could not ask the policy"
+    "a worker whose flights are others refuses, and so does the " +
+      "command where workers could not ask the policy"
   ):
     val other = String(question(duels).bytes.toArray, UTF_8).replace("vpn", "direct")
     val told  = SpreadQuestion.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))

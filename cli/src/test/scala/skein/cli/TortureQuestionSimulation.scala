@@ -3,7 +3,7 @@ package skein.cli
 import skein.policy.*
 import skein.scenario.*
 import skein.testing.Unhurried
-import skein.torture.Verdict
+import skein.torture.FaultVerdict
 import skein.units.*
 
 class TortureQuestionSimulation extends munit.FunSuite, Unhurried:
@@ -15,7 +15,7 @@ class TortureQuestionSimulation extends munit.FunSuite, Unhurried:
 
   test("flown in blocks elsewhere, flights tell what they tell here, broken rules included"):
     val question = TortureQuestion.of(duration, Some("failing"), None)
-    var here     = Vector.empty[Verdict]
+    var here     = Vector.empty[FaultVerdict]
     ready(question).fly(Iterator(3, 4, 5), threads = 1)(here :+= _)
     val worker    = TortureQuestion.read(question.bytes).fold(fail(_), identity)
     val elsewhere = ready(question).blocks(3, 3, atMost = 2).flatMap: block =>

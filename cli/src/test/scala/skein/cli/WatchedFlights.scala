@@ -91,6 +91,7 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
       .sum
     val late = Lateness.of(out.resolve("predictive-none.duckdb"))
     println(
-      f"$viewers%2d viewers: ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
+      f"$viewers%2d viewers: ${late.questions}%,d questions, late p50 " +
+        f"${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
         f"$bytes%,d bytes seen; heap ${heap >> 20} MiB after its last collection"
     )

@@ -96,8 +96,11 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
   val tookS                             = (answers("to")(0).num - answers("from")(0).num) / 1000
   val rate                              = frames / tookS
   println(
-    f"${if plain then "software" else "imitated card"}: server ${serverShare * 100}%.1f %% of one core; page $rate%.1f frames a second; browser: ${browserShare * 100}%.0f %% of one core, " +
-      f"${browserShare / rate * 1000}%.1f ms of processor time a frame; load ${load()}; problems: ${seen("problems")}"
+    f"${if plain then "software" else "imitated card"}: server " +
+      f"${serverShare * 100}%.1f %% of one core; page $rate%.1f frames a " +
+      f"second; browser: ${browserShare * 100}%.0f %% of one core, " +
+      f"${browserShare / rate * 1000}%.1f ms of processor time a frame; " +
+      f"load ${load()}; problems: ${seen("problems")}"
   )
 
 /** Processor time of a process and all below it, s. */

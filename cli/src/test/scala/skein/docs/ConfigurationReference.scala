@@ -40,7 +40,8 @@ object ConfigurationReference:
 
   private val scenariosComment =
     "A scenario's settings stand under its name, for example `skein.fly { surround { ring-m = 10 } }`. " +
-      "On the command line it is `--set ring-m=10`. `./skein scenarios` lists them too, those of your own program among them."
+      "On the command line it is `--set ring-m=10`. `./skein scenarios` " +
+      "lists them too, those of your own program among them."
 
   private def inOrder(of: ConfigObject): Vector[(String, ConfigValue)] =
     of.asScala.toVector.sortBy(_._2.origin.lineNumber)

@@ -3,7 +3,7 @@ package skein.flight
 import skein.cli.OurScenarios
 import skein.forward.{DelayTable, Rollout}
 import skein.identify.SensorFit
-import skein.loop.{LoopKind, Outcome, Replay}
+import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.measure.{FlightSummary, RecordedSeeing}
 import skein.recognition.BlindPursuit
 import skein.scenario.Scenarios
@@ -34,7 +34,7 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
 
   private def fly(settings: FlySettings): VirtualFlightResult =
     val flown = VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown
 
   private def twentySeconds(loop: LoopKind) = fly(settings(loop, 20)).recorder.recording

@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.measure.{DistanceCurve, FlightSummary}
 import skein.record.{EventKind, Recording}
 import skein.report.DuelReport
@@ -31,7 +31,7 @@ class ExperimentSimulation extends munit.FunSuite:
       )
     val flown =
       VirtualFlights.fly(settings, FlightPlan(loop.label, loop, link, seed = 1)).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder.recording
 
   private def distance(

@@ -3,7 +3,7 @@ package skein.flight
 import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.cli.OurScenarios
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.*
 import skein.recognition.BlindPursuit
 import skein.scenario.{Forest, Scenario, Scenarios}
@@ -33,7 +33,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
       images = images.toList
     )
     val flown = VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder
 
   folder.test(

@@ -2,7 +2,7 @@ package skein.flight
 
 import java.nio.file.Files
 import skein.cli.OurScenarios
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.report.Report
 import skein.scenario.{Scenarios, Surround}
 import skein.settings.{FlySettings, Wire}
@@ -27,7 +27,7 @@ class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, O
     )
     val plan  = settings.plans.last
     val flown = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     val file = plan.file(folder)
     assert(flown.recorder.writeTo(file).isRight)
     val set    = Report.read(Seq(file)).fold(errors => fail(errors.toString), identity)

@@ -1,7 +1,7 @@
 package skein.flight
 
 import java.nio.file.Files
-import skein.loop.{LoopKind, Outcome, Replay}
+import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.measure.FlightSummary
 import skein.record.{EventKind, Recording}
 import skein.report.DuelReport
@@ -31,7 +31,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
 
   private def fly(settings: FlySettings): Recording =
     val flown = VirtualFlights.fly(settings, settings.plans.head).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder.recording
 
   private def resultOf(recording: Recording): Result =
@@ -91,7 +91,8 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
     )
   do
     test(
-      s"${scenario.name} by ${loop.label} decides the same when it is decided upon again, and when flown again"
+      s"${scenario.name} by ${loop.label} decides the same when " +
+        "it is decided upon again, and when flown again"
     ):
       val chosen   = settings(scenario, loop, LatencyProfile.vpn, 2)
       val plan     = chosen.plans.head

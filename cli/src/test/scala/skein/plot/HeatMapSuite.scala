@@ -14,7 +14,7 @@ class HeatMapSuite extends munit.FunSuite:
     val holed = HeatMap(places, places, places.map(_ => places.map(x => Option.when(x < 0)(x))))
     assertEquals(holed.contour(0.5), Vector.empty)
     assertEquals(holed.contour(-0.55).size, 20)
-    val panel = Panel(Axis.exactly("x", -1, 1), Axis.exactly("y", -1, 1), 0, 0, 100, 100)
+    val panel = Panel(PlotAxis.exactly("x", -1, 1), PlotAxis.exactly("y", -1, 1), 0, 0, 100, 100)
     assertEquals(holed.cells(panel, ColourScale.viridis(-1, 0)).size, 10 * 21)
 
   test("a scale's ends have its first and last colours, and values beyond them too"):

@@ -31,8 +31,8 @@ class SummarySuite extends munit.FunSuite:
       second(0)
     ),
     Seq(
-      Vehicle("Red", "Pursuer", MetresPerSecond(10), Vector3.Zero),
-      Vehicle("Blue", "Evader", MetresPerSecond(5), Vector3.Zero)
+      VehicleRow("Red", "Pursuer", MetresPerSecond(10), Vector3.Zero),
+      VehicleRow("Blue", "Evader", MetresPerSecond(5), Vector3.Zero)
     )
   )
 

@@ -59,7 +59,7 @@ object SyntheticFlight:
           headings(agent) = decision.heading.value
           val velocity = scenario.agents(agent).velocityNed(headings(agent))
           recorder.offer(
-            Command(
+            CommandRow(
               sequence,
               decision.vehicle,
               Some(sequence),
@@ -143,7 +143,8 @@ object SyntheticFlight:
       seconds: Int,
       scenario: Fleet
   ): RecordingHeader =
-    def vehicle(agent: Agent) = Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+    def vehicle(agent: Agent) =
+      VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
     RecordingHeader(
       FlightRow(
         s"$loop-$link",

@@ -18,8 +18,8 @@ class TeamMeasuresSuite extends munit.FunSuite:
   ): Recording =
     val agents   = scenario.agents
     val vehicles =
-      agents.map(agent => Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
-    val settings = scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
+      agents.map(agent => VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
+    val settings = scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value))
     val flight   = FlightRow(
       s"$loop-none",
       loop,
@@ -94,7 +94,8 @@ class TeamMeasuresSuite extends munit.FunSuite:
   test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
     val scenario = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val goals    = scenario.goals
-    // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from 8 s on.
+    // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from
+    // 8 s on.
     val result = resultOf(flown(scenario, 12): (vehicle, second) =>
       vehicle match
         case 0 => ((second - 5) * 4, 200.0)

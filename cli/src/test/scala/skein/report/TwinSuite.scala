@@ -45,7 +45,8 @@ class TwinSuite extends munit.FunSuite:
     assertEquals(twin.unlike, Vector.empty)
 
   test(
-    "data that grew older on another link is that far apart, and the difference of the distances is relative to the twin"
+    "data that grew older on another link is that far apart, and the " +
+      "difference of the distances is relative to the twin"
   ):
     val other = live("stream", "vpn", 1)
     val vpn   = other.copy(heading =

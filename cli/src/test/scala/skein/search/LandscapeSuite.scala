@@ -1,7 +1,7 @@
 package skein.search
 
 import skein.optimise.{Evaluator, RunningStats}
-import skein.plot.Shape
+import skein.plot.Mark
 import skein.policy.{Axis, SearchSpace}
 import skein.testing.Optimised
 
@@ -35,5 +35,5 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assertEquals(land.y, None)
     assertEqualsDouble(land.cells.head.map(_.mean).min, 0, 1e-12)
     val drawing = LandscapeFigure(land, "title", "value")
-    val texts   = drawing.shapes.collect { case text: Shape.Text => text.content }
+    val texts   = drawing.shapes.collect { case text: Mark.Text => text.content }
     assert(texts.contains("title") && texts.contains("x") && texts.contains("value"), texts)

@@ -74,7 +74,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       case TeamEngine.Reduced(conditions, delays) =>
         TeamEngine.Whole(
           WholeFlights.scalar(conditions, delays, question.seed, Seq("off-ring")),
-          isVirtual = false
+          virtually = false
         )
       case other => fail(other.toString)
     def mean(of: TeamSetup) =
@@ -127,7 +127,8 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     assertEquals(
       Varied.parse("ring-m=12..4"),
       Left(
-        "expected a setting and its bounds, the lower one first, for example ring-m=4..12, came 'ring-m=12..4'"
+        "expected a setting and its bounds, the lower one first, " +
+          "for example ring-m=4..12, came 'ring-m=12..4'"
       )
     )
 

@@ -78,7 +78,8 @@ object Certificates:
         if host == "localhost" then "dns:localhost,ip:127.0.0.1"
         else if isAddress then s"ip:${InetAddress.getByName(host).getHostAddress}"
         else s"dns:$host"
-      // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is kept.
+      // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is
+      // kept.
       val signing = Files.readString(folder.resolve("signer.password")).trim
       val both    =
         Files.copy(folder.resolve(Signer), own.resolve("both.p12"), COPY_ATTRIBUTES, REPLACE_EXISTING)

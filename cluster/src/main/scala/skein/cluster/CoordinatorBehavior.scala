@@ -8,7 +8,7 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import scala.concurrent.Promise
 import scala.concurrent.duration.DurationInt
-import skein.blocks.{Answer, Block, BlockKey, Coordinator, Ledger}
+import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
 import skein.cluster.jars.Shipment
 
 /** What a coordinator works on.
@@ -39,8 +39,8 @@ private[cluster] final class CoordinatorBehavior private (
     context: ActorContext[CoordinatorBehavior.Command],
     job: Job,
     ledger: Ledger,
-    tell: News => Unit,
-    onProgress: Progress => Unit,
+    tell: WorkerEvent => Unit,
+    onProgress: ClusterProgress => Unit,
     down: Address => Unit
 ) extends AbstractBehavior[CoordinatorBehavior.Command](context):
   import CoordinatorBehavior.*
@@ -61,7 +61,7 @@ private[cluster] final class CoordinatorBehavior private (
   private var hungry = Set.empty[String]
 
   /** What is told once. */
-  private var told = Set.empty[News]
+  private var told = Set.empty[WorkerEvent]
 
   def onMessage(command: Command): Behavior[Command] =
     command match
@@ -72,7 +72,7 @@ private[cluster] final class CoordinatorBehavior private (
       case ToCoordinator.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
       case ToCoordinator.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
-      case ToCoordinator.Unable(job.run, worker, reason) => once(News.Refused(worker, reason))
+      case ToCoordinator.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
       case fetch: ToCoordinator.Fetch                    => fetched(fetch)
       case _: ToCoordinator                              => () // Of an earlier run.
       case asked: Compute                                => compute(asked)
@@ -106,13 +106,14 @@ private[cluster] final class CoordinatorBehavior private (
         case Some(shipment) => say(ask.replyTo, ToWorker.Offered(job.run, reason, shipment.program.digest))
         case None           =>
           say(ask.replyTo, ToWorker.Refused(reason))
-          once(News.Refused(ask.worker, reason))
+          once(WorkerEvent.Refused(ask.worker, reason))
     else if isDone then say(ask.replyTo, ToWorker.Goodbye)
     else
       addresses += ask.worker -> ask.replyTo
       if ask.run != job.run then say(ask.replyTo, ToWorker.Welcome(job.run, job.question))
       else
-        if !state.workers.get(ask.worker).exists(_.isHere) then tell(News.Joined(ask.worker, ask.cores))
+        if !state.workers.get(ask.worker).exists(_.isHere) then
+          tell(WorkerEvent.Joined(ask.worker, ask.cores))
         state = state.joined(ask.worker, ask.cores)
         serve(ask.worker, ask.holding)
 
@@ -122,15 +123,15 @@ private[cluster] final class CoordinatorBehavior private (
 
   private def fetched(fetch: ToCoordinator.Fetch): Unit = for shipment <- job.shipment do
     import fetch.*
-    once(News.Fetching(worker))
+    once(WorkerEvent.Fetching(worker))
     val bytes = shipment.piece(content, offset) match
       case Right(piece) => piece
       case Left(reason) =>
-        once(News.Unread(worker, reason))
+        once(WorkerEvent.Unread(worker, reason))
         ArraySeq.empty[Byte]
     say(replyTo, ToWorker.Piece(content, offset, bytes))
 
-  private def once(news: News): Unit =
+  private def once(news: WorkerEvent): Unit =
     if !told(news) && told.size < MostTold then
       told += news
       tell(news)
@@ -154,8 +155,8 @@ private[cluster] final class CoordinatorBehavior private (
     val (after, what) = state.answered(worker, number, busyNanos)
     state = after
     what match
-      case Answer.Repeated     => ()
-      case Answer.First(block) =>
+      case AnswerKind.Repeated     => ()
+      case AnswerKind.First(block) =>
         keep(block.key, answer) match
           case Left(mistake) => ended(Left(mistake))
           case Right(())     =>
@@ -185,7 +186,7 @@ private[cluster] final class CoordinatorBehavior private (
         died += 1
         state = state.lost(worker)
         hungry -= worker
-        tell(News.Lost(worker, record.holds.size))
+        tell(WorkerEvent.Lost(worker, record.holds.size))
         feed()
 
   private def compute(asked: Compute): Unit =
@@ -218,7 +219,7 @@ private[cluster] final class CoordinatorBehavior private (
     call = None
 
   private def publish(): Unit =
-    onProgress(Progress(
+    onProgress(ClusterProgress(
       state,
       call.fold(0)(_.answers.size),
       call.fold(0)(_.asked),
@@ -276,8 +277,8 @@ private[cluster] object CoordinatorBehavior:
   def apply(
       job: Job,
       ledger: Ledger,
-      tell: News => Unit,
-      onProgress: Progress => Unit,
+      tell: WorkerEvent => Unit,
+      onProgress: ClusterProgress => Unit,
       down: Address => Unit
   ): Behavior[Command] =
     Behaviors.withTimers: (timers: TimerScheduler[Command]) =>

@@ -24,14 +24,14 @@ import skein.cluster.jars.Shipment
 final class CoordinatorNode private (
     system: ActorSystem,
     coordinator: ActorRef[CoordinatorBehavior.Command],
-    latest: AtomicReference[Progress]
+    latest: AtomicReference[ClusterProgress]
 ):
   /** Where workers join. */
   val address: Endpoint =
     val own = CoordinatorNode.addressOf(system)
     Endpoint(own.host.get, own.port.get)
 
-  def progress: Progress = latest.get
+  def progress: ClusterProgress = latest.get
 
   /** How it goes, for Prometheus. */
   def metrics: String = Metrics.text(progress, Cluster(system.toTyped).state.members.size)
@@ -93,7 +93,7 @@ object CoordinatorNode:
       ledger: Ledger,
       build: String = BuildId.current,
       shipment: Option[Shipment] = None
-  )(tell: News => Unit): Either[String, CoordinatorNode] =
+  )(tell: WorkerEvent => Unit): Either[String, CoordinatorNode] =
     for
       _ <- Either.cond(
         question.length <= MessageCodec.MostBytes,
@@ -105,7 +105,7 @@ object CoordinatorNode:
         try Right(ActorSystem(NodeConfig.System, config))
         catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${reason(failed)}")
     yield
-      val latest  = AtomicReference(Progress())
+      val latest  = AtomicReference(ClusterProgress())
       val job     = Job(SecureRandom().nextLong() | 1, build, question, shipment)
       val manager = Cluster(system.toTyped).manager
       val actor   =

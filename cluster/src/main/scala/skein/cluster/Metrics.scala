@@ -15,7 +15,7 @@ private[cluster] object Metrics:
   /** @param members
     *   processes of the cluster, the coordinator's own among them
     */
-  def text(progress: Progress, members: Int): String =
+  def text(progress: ClusterProgress, members: Int): String =
     val state            = progress.coordinator
     val counts           = state.counts
     val (listed, others) = state.workers.toVector

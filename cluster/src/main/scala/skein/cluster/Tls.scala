@@ -74,5 +74,6 @@ object Tls:
         folder.resolve(TrustStore),
         Files.readString(folder.resolve(Password)).trim
       ),
-      s"--tls: expected $KeyStore, $TrustStore and $Password in $folder, cannot read ${missing.mkString(", ")}"
+      s"--tls: expected $KeyStore, $TrustStore and $Password in " +
+        s"$folder, cannot read ${missing.mkString(", ")}"
     )

@@ -30,7 +30,7 @@ private[cluster] final class WorkerBehavior private (
   import WorkerBehavior.*
 
   private var run     = 0L
-  private var solvers = Option.empty[ArrayBlockingQueue[Solver]]
+  private var solvers = Option.empty[ArrayBlockingQueue[BlockSolver]]
   private var member  = false
   private var held    = Set.empty[Long]
   private var begun   = 0L
@@ -115,10 +115,10 @@ private[cluster] final class WorkerBehavior private (
     val me = context.self
     pool.execute(() => me ! body)
 
-  private def prepared(question: ArraySeq[Byte]): Either[String, ArrayBlockingQueue[Solver]] =
+  private def prepared(question: ArraySeq[Byte]): Either[String, ArrayBlockingQueue[BlockSolver]] =
     try
       self.solvers.of(question).map: make =>
-        val ready = ArrayBlockingQueue[Solver](self.cores)
+        val ready = ArrayBlockingQueue[BlockSolver](self.cores)
         for _ <- 0 until self.cores do ready.put(make())
         ready
     catch
@@ -129,7 +129,7 @@ private[cluster] final class WorkerBehavior private (
       of: Long,
       number: Long,
       work: ArraySeq[Byte],
-      ready: ArrayBlockingQueue[Solver]
+      ready: ArrayBlockingQueue[BlockSolver]
   ): Solved =
     // There are as many as threads, so that one is always free.
     val solver = ready.take()
@@ -152,7 +152,7 @@ private[cluster] object WorkerBehavior:
       name: String,
       cores: Int,
       build: String,
-      solvers: Solvers,
+      solvers: BlockSolverFactory,
       startedAt: Long,
       programs: Acceptance = Acceptance.none
   ):
@@ -172,8 +172,9 @@ private[cluster] object WorkerBehavior:
     case Offered(run: Long, program: Sha256)
 
   sealed trait Local
-  private case object Beat                                                                       extends Local
-  private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[Solver]]) extends Local
+  private case object Beat extends Local
+  private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[BlockSolver]])
+      extends Local
   private final case class Solved(
       run: Long,
       number: Long,

@@ -38,7 +38,7 @@ final class WorkerNode(
     listen: Endpoint,
     tls: Option[Tls],
     cores: Int,
-    solvers: Solvers,
+    solvers: BlockSolverFactory,
     patience: FiniteDuration,
     name: String = WorkerNode.nameOf(ProcessHandle.current().pid()),
     build: String = BuildId.current,

@@ -63,7 +63,8 @@ final class WorkerProcesses(
     if again then begin(number)
     else if synchronized(!isClosing && processes.isEmpty) then
       onGivenUp(
-        s"the workers on this machine end soon after their start, with status ${process.exitValue}: see ${log(number)}"
+        "the workers on this machine end soon after their start, with " +
+          s"status ${process.exitValue}: see ${log(number)}"
       )
 
   /** Ends all, and waits for them, but not for long. */

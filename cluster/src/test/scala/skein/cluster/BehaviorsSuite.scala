@@ -40,7 +40,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     val heard  = Heard[ToCoordinator]()
     val told   = ConcurrentLinkedQueue[String]()
     val ready  = LinkedBlockingQueue[Int]()
-    val solver = new Solvers:
+    val solver = new BlockSolverFactory:
       def of(asked: ArraySeq[Byte]) = Right(() =>
         ready.add(1)
         work => work
@@ -60,7 +60,8 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
 
   test(
-    "who has ended or is out of reach is taken out of the cluster; when all is done everybody else is told: who works, who is still preparing, and who asks only then"
+    "who has ended or is out of reach is taken out of the cluster; when all is done " +
+      "everybody else is told: who works, who is still preparing, and who asks only then"
   ):
     val ledger = Ledger
       .open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7))

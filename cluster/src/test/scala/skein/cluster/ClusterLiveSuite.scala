@@ -27,7 +27,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     * @param before
     *   called before each block
     */
-  private final class Reversing(before: () => Unit = () => ()) extends Solvers:
+  private final class Reversing(before: () => Unit = () => ()) extends BlockSolverFactory:
     val solved                    = AtomicInteger()
     def of(asked: ArraySeq[Byte]) =
       Either.cond(
@@ -47,15 +47,15 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       tls: Option[Tls] = None,
       shipment: Option[Shipment] = None
   ):
-    val news   = ConcurrentLinkedQueue[News]()
+    val news   = ConcurrentLinkedQueue[WorkerEvent]()
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
       .start(loopback.copy(port = port), tls, question, ledger, "one", shipment)(heard)
       .fold(fail(_), identity)
 
-    private def heard(one: News): Unit =
-      if one.isInstanceOf[News.Joined] then joined.release()
+    private def heard(one: WorkerEvent): Unit =
+      if one.isInstanceOf[WorkerEvent.Joined] then joined.release()
       news.add(one): Unit
 
     def close(): Unit =
@@ -70,7 +70,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private def worker(
       to: Endpoint,
       name: String,
-      solvers: Solvers,
+      solvers: BlockSolverFactory,
       build: String = "one",
       cores: Int = 1,
       tls: Option[Tls] = None,
@@ -142,7 +142,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(told).exists(_.contains("refused anna: its build is two")))
 
   test(
-    "a worker of another build has the coordinator's program from it if it accepts that one, and else is refused"
+    "a worker of another build has the coordinator's program " +
+      "from it if it accepts that one, and else is refused"
   ):
     val jar = Files.write(temporaryFolder().resolve("ridge.jar"), scala.util.Random(1).nextBytes(3 << 20))
     val shipment = Shipment.of("ridge.Main", Vector(jar)).fold(fail(_), identity)
@@ -257,7 +258,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
   test(
-    "with certificates of one set nodes work together; without, of another set, or of another host, nobody joins"
+    "with certificates of one set nodes work together; without, " +
+      "of another set, or of another host, nobody joins"
   ):
     val Vector(own, elsewhere) = lab.map(tls): @unchecked
     val strangers              = tls(Await.result(makingOthers, 60.seconds).head)

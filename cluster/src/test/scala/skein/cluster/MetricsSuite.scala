@@ -12,7 +12,7 @@ class MetricsSuite extends munit.FunSuite:
     val (first, _)    = offered.asked("anna", Set.empty, 0)
     val (answered, _) = first.answered("anna", 0, 1_500_000_000L)
     val (again, _)    = answered.asked("anna", Set.empty, 0)
-    Progress(
+    ClusterProgress(
       again.lost("ben \"2\""),
       done = 1,
       of = 3,

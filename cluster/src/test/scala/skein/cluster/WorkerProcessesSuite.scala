@@ -14,7 +14,8 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(WorkerProcesses.ofWorkers("-Xmx1g"), "-Xmx1g")
 
   test(
-    "workers that are killed again and again are replaced while they compute; those that never do are given up"
+    "workers that are killed again and again are replaced while " +
+      "they compute; those that never do are given up"
   ):
     val folder    = temporaryFolder()
     val ended     = AtomicInteger()

@@ -15,11 +15,12 @@ import skein.vehicle.VehicleModel
   */
 final case class Forecast private (
     models: Vector[VehicleModel[?]],
-    tracks: Vector[Option[Track[?]]],
+    tracks: Vector[Option[VehicleForecast[?]]],
     alignment: Option[ClockAlignment],
     delays: Option[OneWayDelays]
 ):
-  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the others.
+  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the
+  // others.
   @volatile private var told: Option[(Instant, Vector[Estimate])] = None
 
   def withEvent(event: ForecastEvent): Forecast = event match
@@ -71,10 +72,11 @@ final case class Forecast private (
       delays = Some(current)
     )
 
-  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): Track[?] = models(vehicle) match
-    case model: VehicleModel[s] => Track(model, reading)
+  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): VehicleForecast[?] =
+    models(vehicle) match
+      case model: VehicleModel[s] => VehicleForecast(model, reading)
 
-  private def updated(vehicle: Int)(change: Track[?] => Track[?]): Forecast =
+  private def updated(vehicle: Int)(change: VehicleForecast[?] => VehicleForecast[?]): Forecast =
     copy(tracks = tracks.updated(vehicle, tracks(vehicle).map(change)))
 
 object Forecast:

@@ -61,7 +61,8 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
           trace.where(holds(a), asNumber(trace.not(holds(b))), asNumber(holds(b)))
         case other =>
           refuse(
-            s"${other.name.toLowerCase(java.util.Locale.ROOT)} of a whole number that depends on what is observed"
+            s"${other.name.toLowerCase(java.util.Locale.ROOT)} of a " +
+              "whole number that depends on what is observed"
           )
 
   def asNumber(condition: Node): Node        = trace.where(condition, trace.const(1), trace.const(0))
@@ -124,7 +125,8 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
       case _ if Composed(name)      => None
       case ("(II)I" | "(I)I", _, _) => None
       case _                        => refuse(
-          s"$name is not among the functions of formulas (${(Unary.keys ++ Binary.keys).toSeq.sorted.mkString(", ")})"
+          s"$name is not among the functions of formulas " +
+            s"(${(Unary.keys ++ Binary.keys).toSeq.sorted.mkString(", ")})"
         )
 
   def number(value: Value): Node = decided(value) match

@@ -124,7 +124,8 @@ object Formula:
           )
         )
       val args = method.getParameters.toVector.map(each => argument(each.getType, each.getName))
-      val self = if code.isStatic then Vector.empty else Vector(Known(target, Some(Path(None, Step.Itself))))
+      val self =
+        if code.isStatic then Vector.empty else Vector(Known(target, Some(Path(None, PathStep.Itself))))
       val answer = lifter.call(code, self ++ args)
 
       def outputsOf(value: Value, name: String): Vector[(String, Node)] = value match
@@ -239,8 +240,8 @@ private final class NumberReader(paths: Vector[Path]):
   private val walk    = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
   private val indices = paths.map(indexOf).toArray
   private def indexOf(of: Path) = of.step match
-    case Step.At(index) => index
-    case _              => -1
+    case PathStep.At(index) => index
+    case _                  => -1
 
   def read(root: AnyRef): Array[Double] =
     val found   = walk(root)
@@ -269,7 +270,7 @@ private final class PathWalk(paths: Vector[Path]):
 
   private val steps  = all.keysIterator.map(_.step).toArray
   private val before = all.keysIterator.map(_.before.fold(-1)(all)).toArray
-  for case Step.Of(field) <- steps do field.setAccessible(true)
+  for case PathStep.Of(field) <- steps do field.setAccessible(true)
 
   /** Nothing stands behind what is not of the form. */
   def apply(root: AnyRef): Array[AnyRef] =
@@ -278,11 +279,11 @@ private final class PathWalk(paths: Vector[Path]):
     while i < steps.length do
       val from = if before(i) < 0 then root else found(before(i))
       found(i) = steps(i) match
-        case Step.Itself       => root
-        case _ if from == null => null
-        case Step.Of(field)    =>
+        case PathStep.Itself    => root
+        case _ if from == null  => null
+        case PathStep.Of(field) =>
           if field.getDeclaringClass.isInstance(from) then field.get(from) else null
-        case Step.At(index) =>
+        case PathStep.At(index) =>
           if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)
           else null
       i += 1

@@ -98,7 +98,7 @@ private[formula] final class Objects(
       case Made(id)                                        => Some(in(id))
       case Known(what, path) if isOfDoubles(what.getClass) =>
         val fields = doublesOf(what.getClass).map: field =>
-          val way = path.map(before => Path(Some(before), Step.Of(field)))
+          val way = path.map(before => Path(Some(before), PathStep.Of(field)))
           field.getName -> held(open(field).get(what), way, field.getType)
         Some(Record(ClassFiles.nameOf(what.getClass), fields.toMap))
       case _ => None
@@ -147,7 +147,7 @@ private[formula] final class Objects(
       then
         refuse(s"it reads the variable $name; a formula's object has values alone")
       val value = open(field).get(what)
-      held(value, path.map(way => Path(Some(way), Step.Of(field))), field.getType)
+      held(value, path.map(way => Path(Some(way), PathStep.Of(field))), field.getType)
     case Null => refuse(s"it reads $name of nothing")
     case _    => refuse(s"it reads $name of a number")
 
@@ -206,7 +206,7 @@ private[formula] final class Objects(
     case Known(what, path) if what.getClass.isArray =>
       val size = java.lang.reflect.Array.getLength(what)
       if index < 0 || index >= size then refuse(s"index $index of an array of $size")
-      val way = path.map(before => Path(Some(before), Step.At(index)))
+      val way = path.map(before => Path(Some(before), PathStep.At(index)))
       held(java.lang.reflect.Array.get(what, index), way, what.getClass.getComponentType)
     case _ => refuse("an element of what is no array")
 

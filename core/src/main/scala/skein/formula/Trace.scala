@@ -162,7 +162,8 @@ object Trace:
   def needed(of: Seq[Node]): Vector[Node] =
     val seen  = mutable.HashSet.empty[Int]
     val order = Vector.newBuilder[Node]
-    // Expressions may be deeper than a thread's stack: nodes with how many of their arguments have been gone to.
+    // Expressions may be deeper than a thread's stack: nodes with how many of their arguments have been gone
+    // to.
     val walk = mutable.Stack.empty[(Node, Int)]
     for node <- of if seen.add(node.id) do
       walk.push((node, 0))

@@ -55,13 +55,13 @@ private[formula] object Thing:
     case Static, Instance, Constructor
 
 /** A way from an object to a number or object inside of it. */
-private[formula] final case class Path(before: Option[Path], step: Step):
+private[formula] final case class Path(before: Option[Path], step: PathStep):
   override def toString: String = before.fold("")(_.toString) + (step match
-    case Step.At(index) => s"($index)"
-    case Step.Of(field) => (if before.isEmpty then "" else ".") + field.getName
-    case Step.Itself    => "")
+    case PathStep.At(index) => s"($index)"
+    case PathStep.Of(field) => (if before.isEmpty then "" else ".") + field.getName
+    case PathStep.Itself    => "")
 
-private[formula] enum Step:
+private[formula] enum PathStep:
   case Itself
   case Of(field: Field)
   case At(index: Int)

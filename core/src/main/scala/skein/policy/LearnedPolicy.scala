@@ -92,7 +92,9 @@ object LearnedPolicy:
         Right(NeuralShape(layers.flatten.map(_._1), Inputs, layers.flatten.map(_._2) :+ kind))
       case None =>
         Left(
-          s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to ${NeuralShape.MostWidth}, each with relu, tanh or clip behind it, and :tanh or :clip of the output, for example 64x64 or 64tanhx64tanh:clip, came '$text'"
+          s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to " +
+            s"${NeuralShape.MostWidth}, each with relu, tanh or clip behind it, and :tanh or " +
+            s":clip of the output, for example 64x64 or 64tanhx64tanh:clip, came '$text'"
         )
 
   private def named(text: String) = Activation.values.find(_.label == text)

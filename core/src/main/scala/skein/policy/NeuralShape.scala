@@ -13,7 +13,8 @@ final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vect
     hidden.forall(width =>
       width >= 1 && width <= NeuralShape.MostWidth
     ) && hidden.sizeIs <= NeuralShape.MostLayers && activations.sizeIs == hidden.size + 1,
-    s"expected at most ${NeuralShape.MostLayers} hidden layers of 1 to ${NeuralShape.MostWidth} neurons, came $this"
+    s"expected at most ${NeuralShape.MostLayers} hidden layers of " +
+      s"1 to ${NeuralShape.MostWidth} neurons, came $this"
   )
 
   /** Of all layers, the inputs first. */
@@ -50,7 +51,8 @@ object NeuralShape:
     if widths.sizeIs <= MostLayers && widths.forall(_.exists(isWidth)) then Right(NeuralShape(widths.flatten))
     else
       Left(
-        s"expected up to $MostLayers widths of hidden layers from 1 to $MostWidth, for example 8x8, came '$text'"
+        s"expected up to $MostLayers widths of hidden layers from 1 " +
+          s"to $MostWidth, for example 8x8, came '$text'"
       )
 
   private[policy] def isWidth(width: Int): Boolean = width >= 1 && width <= MostWidth

@@ -177,5 +177,6 @@ object PolicyFamily:
       known
         .find(_.name == text)
         .toRight(
-          s"expected a family of policies (${known.map(_.name).mkString(", ")}, ${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), came '$text'"
+          s"expected a family of policies (${known.map(_.name).mkString(", ")}, " +
+            s"${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), came '$text'"
         )

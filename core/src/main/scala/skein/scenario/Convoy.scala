@@ -73,7 +73,8 @@ final case class Convoy(
 
   override def note: String =
     s"Off places: distance of the drones to their places after the first $SettlingS s, root mean square. " +
-      s"Between cars: in the plane. Out of view: how long a car had no drone within $sightM m, seen from above."
+      "Between cars: in the plane. Out of view: how long a car " +
+      s"had no drone within $sightM m, seen from above."
 
   private def offPlaces =
     val (ahead, right) = places.unzip

@@ -67,8 +67,8 @@ final case class Crossing(
   )
 
   override def note: String =
-    s"Smallest separation of any two vehicles, and how often two came nearer than the set minimum of $minimumM m; " +
-      s"arrived: within $ArrivedM m of the goal."
+    "Smallest separation of any two vehicles, and how often two came nearer than the " +
+      s"set minimum of $minimumM m; arrived: within $ArrivedM m of the goal."
 
   /** By stream. */
   override def shade(vehicle: Int): Int = vehicle % streams

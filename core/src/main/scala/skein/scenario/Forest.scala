@@ -55,7 +55,8 @@ final case class Forest(
   )
 
   override def note: String =
-    s"To cross: mean time to $lengthM m to the north, of the vehicles that came there. Trees are known by lidar alone."
+    s"To cross: mean time to $lengthM m to the north, of the " +
+      "vehicles that came there. Trees are known by lidar alone."
 
   private def crossedS(tracks: Tracks): Vector[Double] =
     for

@@ -64,7 +64,8 @@ final case class Formation(
     )
 
   override def note: String =
-    s"Distance of the followers to their slots after the first $SettlingS s: root mean square, and the largest."
+    "Distance of the followers to their slots after the first " +
+      s"$SettlingS s: root mean square, and the largest."
 
   private def offSlots =
     val (ahead, right) = slots.unzip

@@ -49,28 +49,10 @@ final class Limit private (
 object Limit:
 
   /** Between any two vehicles, in space. */
-  def separation(least: Metres): Limit =
-    new Limit(
-      "separation",
-      "m",
-      least.value,
-      true,
-      pairs,
-      Some(Kept.Apart(least.value)),
-      (tracks, two) => tracks.separationM(two(0), two(1), _)
-    )
+  def separation(least: Metres): Limit = apart(least)((tracks, a, b) => tracks.separationM(a, b, _))
 
   /** Between any two vehicles, in the horizontal plane alone. */
-  def horizontalSeparation(least: Metres): Limit =
-    new Limit(
-      "separation",
-      "m",
-      least.value,
-      true,
-      pairs,
-      Some(Kept.Apart(least.value)),
-      (tracks, two) => tracks.distanceM(two(0), two(1), _)
-    )
+  def horizontalSeparation(least: Metres): Limit = apart(least)((tracks, a, b) => tracks.distanceM(a, b, _))
 
   /** Of every vehicle, above the origin. */
   def floor(altitude: Metres): Limit =
@@ -131,6 +113,17 @@ object Limit:
       _.toVector.map(Vector(_)),
       kept,
       (tracks, one) => of(tracks, one.head)
+    )
+
+  private def apart(least: Metres)(of: (Tracks, Int, Int) => Int => Double): Limit =
+    new Limit(
+      "separation",
+      "m",
+      least.value,
+      true,
+      pairs,
+      Some(Kept.Apart(least.value)),
+      (tracks, two) => of(tracks, two(0), two(1))
     )
 
   private def pairs(vehicles: Range) =

@@ -48,9 +48,10 @@ final case class Surround(
     )
 
   override def note: String =
-    s"Over the last 10 s: how far the pursuers are from the ring of $ringM m, root mean square; their mean distance to " +
-      "the evader, the smallest, and the mean of the largest angle between neighbours as the evader sees them " +
-      s"(${(360.0 / (vehicles - 1)).round}° is even); surrounded: from when on no such angle reaches 180°."
+    s"Over the last 10 s: how far the pursuers are from the ring of $ringM m, root mean " +
+      "square; their mean distance to the evader, the smallest, and the mean of the largest " +
+      s"angle between neighbours as the evader sees them (${(360.0 / (vehicles - 1)).round}° " +
+      "is even); surrounded: from when on no such angle reaches 180°."
 
 object Surround:
   private val gap = Series.of("gap", "°", WidestGap)

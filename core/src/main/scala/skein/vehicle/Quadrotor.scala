@@ -133,7 +133,8 @@ final class Quadrotor(
     val r12 = 2 * (qy * qz - qw * qx)
     val r22 = 1 - 2 * (qx * qx + qy * qy)
 
-    // The faces' centres lie on the body's axes, so turning neither adds to their normal speed nor gets torque.
+    // The faces' centres lie on the body's axes, so turning neither adds to their normal speed nor gets
+    // torque.
     val density    = Atmosphere.SeaLevelDensity * densityRatio
     val airX       = vx - environment.windNed.x
     val airY       = vy - environment.windNed.y

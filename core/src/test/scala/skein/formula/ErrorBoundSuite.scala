@@ -14,7 +14,8 @@ class ErrorBoundSuite extends munit.FunSuite:
     assert(bound(product, Array(0.0, 1.0), off = 0.01).error(product) < 0.011)
 
   test(
-    "of two ways near a threshold, one unbounded, the choice is unbounded, and the threshold is told with how near"
+    "of two ways near a threshold, one unbounded, the choice is " +
+      "unbounded, and the threshold is told with how near"
   ):
     val choice = trace.where(trace.lt(a, b), quotient, trace.neg(quotient))
     val near   = bound(choice, Array(1e-3, 2e-3), off = 0.01)

@@ -84,15 +84,16 @@ class GuidanceSuite extends munit.FunSuite:
     assertEqualsDouble(lead, PurePursuit(1).heading(7, -3, 1, 2, 0.4, 2.2, 0.1), 1e-12)
 
   test(
-    "the chauffeur's evader keeps one direction while the pursuer turns hard and dashes: the line of the chase"
+    "the chauffeur's evader keeps one direction while the " +
+      "pursuer turns hard and dashes: the line of the chase"
   ):
     val evader = ChauffeurEvader(8, 0.5, dodgeM = 0)
     for (x, y) <- Seq((20.0, 15.0), (-12.0, 18.0), (-30.0, -9.0), (25.0, -2.0)) do
       val flown    = chase(PurePursuit(1.25), evader, Mover(0, 0, 0, 10), Mover(x, y, 0, 5), 0.001, 3)
       val headings = flown.drop(1).map(_._2.headingRad)
       val bend     = headings.map(h => math.abs(math.IEEEremainder(h - headings.head, 2 * math.Pi))).max
-      // Pure pursuit turns as hard as it can until the target is ahead, which is the end of the hard turn but for
-      // the target's own way meanwhile.
+      // Pure pursuit turns as hard as it can until the target is ahead, which is the end of the hard turn but
+      // for the target's own way meanwhile.
       val turning = flown.zip(flown.drop(1)).takeWhile((a, b) =>
         math.abs(b._1.headingRad - a._1.headingRad) > 0.00125 - 1e-9
       ).size
@@ -108,7 +109,8 @@ class GuidanceSuite extends munit.FunSuite:
       assertEqualsDouble(evader, 0.7 + side * math.Pi / 2, 1e-12)
 
   test(
-    "near ahead the chauffeur's evader breaks away at a right angle and keeps that course, not crossing the bow"
+    "near ahead the chauffeur's evader breaks away at a right " +
+      "angle and keeps that course, not crossing the bow"
   ):
     def ahead(right: Double, own: Double) = ChauffeurEvader().heading(-3, -right, 0, 0, own, 0, 0.1)
     assertEqualsDouble(ahead(0.1, own = 0.2), math.Pi / 2, 1e-12)

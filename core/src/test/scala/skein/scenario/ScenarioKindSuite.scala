@@ -69,7 +69,8 @@ class ScenarioKindSuite extends munit.FunSuite:
     assertEquals(
       Scenarios.ours.kind("crosing"),
       Left(
-        "expected duel, surround, formation, crossing, forest, convoy, came 'crosing'; the nearest is 'crossing'"
+        "expected duel, surround, formation, crossing, forest, " +
+          "convoy, came 'crosing'; the nearest is 'crossing'"
       )
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))

@@ -88,7 +88,8 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
           assertEquals(aligned.restarts, 0, s"seed $seed")
 
   test(
-    "clocks that run at rates 50 parts in a million apart stay aligned over ten minutes, also without a network"
+    "clocks that run at rates 50 parts in a million apart stay " +
+      "aligned over ten minutes, also without a network"
   ):
     for
       legMs <- Seq(0.01, 9.0)

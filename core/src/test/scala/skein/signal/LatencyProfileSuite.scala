@@ -72,7 +72,8 @@ class LatencyProfileSuite extends munit.FunSuite:
     )
     assertEquals(
       messageOf("lognormal:36ms,-1"),
-      "latency profile \"lognormal:36ms,-1\": expected a standard deviation of the logarithm from 0 to 3, got \"-1\""
+      "latency profile \"lognormal:36ms,-1\": expected a standard " +
+        "deviation of the logarithm from 0 to 3, got \"-1\""
     )
 
   test("a mistake in a file is answered with the file and the line"):

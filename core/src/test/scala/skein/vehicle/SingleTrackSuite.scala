@@ -41,7 +41,8 @@ class SingleTrackSuite extends munit.FunSuite:
     assert(rested.rightMps.abs < 1e-6 && rested.yawRadPerS.abs < 1e-6, rested)
 
   test(
-    "with tyres alike at both axles it neither understeers nor oversteers: v · angle / wheelbase, at every speed"
+    "with tyres alike at both axles it neither understeers nor " +
+      "oversteers: v · angle / wheelbase, at every speed"
   ):
     for frontMps <- Seq(4.0, 8.0, 14.0) do
       val steered = 0.01

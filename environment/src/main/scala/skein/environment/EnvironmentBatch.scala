@@ -98,7 +98,8 @@ final class EnvironmentBatch private (
       if ended >= 0 then
         throw IllegalStateException(s"environment $ended has ended; reset it before the next step()")
       i += 1
-    // A step lasts microseconds: the common pool hands out its parts without a thread being started or woken by us.
+    // A step lasts microseconds: the common pool hands out its parts without a thread being started or woken
+    // by us.
     if groups.length < EnvironmentBatch.Together then groups.foreach(_.step())
     else IntStream.range(0, groups.length).parallel().forEach(groups(_).step())
 

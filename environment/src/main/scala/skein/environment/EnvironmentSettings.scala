@@ -75,7 +75,8 @@ final case class EnvironmentSettings(
     for
       roles <- roles
       _     <- Expect.that(objective.isEmpty):
-        s"objective: expected with another scenario than the duel, whose distance is rewarded, came '$objective'"
+        "objective: expected with another scenario than the duel, " +
+          s"whose distance is rewarded, came '$objective'"
       flown <- flown(altitudeM, "reduced")
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
@@ -120,7 +121,8 @@ final case class EnvironmentSettings(
       timing <- LoopTimings
         .of(kind, loopSettings, AirSimFleet.askTimeout)
         .toRight(
-          s"loop: expected paused, sequential, futures, stream or predictive, came '${kind.label}', which plans"
+          "loop: expected paused, sequential, futures, stream or " +
+            s"predictive, came '${kind.label}', which plans"
         )
     yield (timing, delays, vehicle)
 

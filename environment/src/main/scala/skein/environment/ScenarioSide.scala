@@ -90,7 +90,8 @@ private[environment] object ScenarioSide:
         "learners: expected pursuer or evader, came 'both', which is the duel's"
       )
       _ <- Expect.that(settings.opponent.isEmpty):
-        s"opponent: expected none with scenario ${settings.scenario}, whose others fly their own policies, came '${settings.opponent}'"
+        s"opponent: expected none with scenario ${settings.scenario}, whose " +
+          s"others fly their own policies, came '${settings.opponent}'"
       kind     <- scenarios.kind(settings.scenario).left.map("scenario: " + _)
       scenario <- ScenarioSettings.ofKeys(kind, settings.set).left.map("set: " + _)
       agents = scenario.agents
@@ -99,7 +100,8 @@ private[environment] object ScenarioSide:
       ).toLeft(())
       members = agents.indices.filter(agents(_).role == role).toVector
       _ <- Expect.that(members.nonEmpty && members.size < agents.size):
-        s"scenario: expected one with a ${role.name.toLowerCase(java.util.Locale.ROOT)} and vehicles of another role, came ${scenario.name} of ${roles(agents)}"
+        s"scenario: expected one with a ${role.name.toLowerCase(java.util.Locale.ROOT)} " +
+          s"and vehicles of another role, came ${scenario.name} of ${roles(agents)}"
       objective <-
         if settings.objective.isEmpty then Right(None)
         else
@@ -111,7 +113,8 @@ private[environment] object ScenarioSide:
       _ <- objective.toVector.flatMap(_.measures).find(measure =>
         !isSummed(measure.reduced.get.reduction)
       ).map: measure =>
-        s"objective: expected means over time, which can be rewarded as they come, came ${TeamObjective.keyOf(measure)}"
+        "objective: expected means over time, which can be rewarded " +
+          s"as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
       // Teams fly low, where the model of three parameters does not hold.
       flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag")

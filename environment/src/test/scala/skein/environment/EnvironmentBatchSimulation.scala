@@ -1,7 +1,7 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder}
-import skein.forward.{Delays, Duel, Outcome, Reduced, Rollout}
+import skein.forward.{Delays, Duel, DuelOutcome, Reduced, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.lanes.SteppedDuels.FIELDS
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
@@ -47,7 +47,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       if right != 0 then math.signum(right) else if ahead < 0 then 1 else 0
 
   /** What the engine says of the paper's pursuer over the link of a run. */
-  private def engine(settings: EnvironmentSettings, seed: Long): (Outcome, Float, Float) =
+  private def engine(settings: EnvironmentSettings, seed: Long): (DuelOutcome, Float, Float) =
     val config = settings.resolved.fold(fail(_), identity)
     val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)
     val runKey = EnvironmentTimetables.keyOf(EnvironmentTimetables.indexOf(SplitMix64.seedOf(seed, 0)))

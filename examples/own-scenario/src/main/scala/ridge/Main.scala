@@ -19,7 +19,14 @@ object RidgeKind extends ScenarioKind(OverTheRidge()), ScenarioReport:
         case ridge: OverTheRidge => Land(60, ridge.crestM, ridge.widthM)
         case _                   => Land(0, 0, 1)
       val panel =
-        Panel(Axis.exactly("north, m", -20, 130, 8), Axis.exactly("altitude, m", 0, 50), 52, 34, 560, 187)
+        Panel(
+          PlotAxis.exactly("north, m", -20, 130, 8),
+          PlotAxis.exactly("altitude, m", 0, 50),
+          52,
+          34,
+          560,
+          187
+        )
       val ground = panel.curve(
         (-20 to 130).map(north => (north.toDouble, land.heightM(north))),
         Stroke(Colour(0x8c6d46), 2)

@@ -64,7 +64,8 @@ class CommandsSimulation extends munit.FunSuite:
 
   folder.test("search chooses its settings by flights in virtual time, and says so"): out =>
     val searched = run(
-      ("search --objective lowest-view --vary cruise-mps=3..6 --method random --candidates 4 --episodes 1 --fresh 2 " +
+      ("search --objective lowest-view --vary cruise-mps=3..6 " +
+        "--method random --candidates 4 --episodes 1 --fresh 2 " +
         "--duration 12s --out").split(' ') :+ out.toString*
     )
     assertEquals(searched._1, 0, searched._2)

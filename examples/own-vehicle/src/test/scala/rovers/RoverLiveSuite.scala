@@ -4,7 +4,7 @@ import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
-import skein.loop.{LoopKind, Outcome, Replay}
+import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.record.{DuckDbRecorder, RecordingReader}
 import skein.units.*
 
@@ -18,7 +18,7 @@ class RoverLiveSuite extends munit.FunSuite:
     val file   = Files.createTempDirectory("rovers").resolve("live.duckdb")
     val landed = Chase.live(LoopKind.Stream, Span.ofSeconds(4)): flight =>
       DuckDbRecorder.open(file, flight.heading).map(_.fold(error => fail(error.message), identity))
-    assertEquals(Await.result(landed, 60.seconds).outcome, Outcome.Completed)
+    assertEquals(Await.result(landed, 60.seconds).outcome, FlightOutcome.Completed)
     val recording = RecordingReader.read(file).fold(error => fail(error.message), identity)
     val driven    = recording.readings.filter(_.vehicle == "Hound").map(_.state.value.positionNed)
     assert(driven.head.horizontalDistance(driven.last) > 2, driven.last.toString)

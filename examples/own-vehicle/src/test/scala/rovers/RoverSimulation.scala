@@ -22,7 +22,8 @@ class RoverSimulation extends munit.FunSuite:
 
   for loop <- loops do
     test(
-      s"${loop.label}: after 10 s the hound is at the hare's heels, and everything is decided again from the recording"
+      s"${loop.label}: after 10 s the hound is at the hare's heels, " +
+        "and everything is decided again from the recording"
     ):
       val recording = Chase.virtual(loop, Span.ofSeconds(20), seed = 1).recording
       assertEquals(recording.ending.map(_.how.toString), Some("Completed"))

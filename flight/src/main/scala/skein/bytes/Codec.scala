@@ -136,6 +136,6 @@ object Codec:
       def read(in: DataInputStream): A =
         val kind = in.readUnsignedByte()
         if kind < 1 || kind > all.size then
-          val what = label.toLowerCase(Locale.ROOT)
+          val what = label.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)
           throw IOException(s"expected a kind of $what from 1 to ${all.size}, came $kind")
         all(kind - 1).read(in).asInstanceOf[A]

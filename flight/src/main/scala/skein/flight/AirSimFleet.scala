@@ -175,7 +175,8 @@ object AirSimFleet:
         answers.collectFirst { case Right((name, false)) => name } match
           case Some(name) =>
             Right(Some(
-              s"the simulator at $simulator no longer gives $name to this flight: it was started again, or another took api control away"
+              s"the simulator at $simulator no longer gives $name to this flight: " +
+                "it was started again, or another took api control away"
             ))
           case None => answers.collectFirst { case Left(error) => error.message }.toLeft(None)
 

@@ -56,7 +56,8 @@ private[flight] final class Approach(
         val off = (state.positionNed - goalNed).norm
         park(before).map(_ =>
           Left(
-            s"'$name' did not come to rest at its start: ${off.fixed(1)} m off, at ${state.velocityNed.norm.fixed(2)} m/s; is something in its way?"
+            s"'$name' did not come to rest at its start: ${off.fixed(1)} m off, at " +
+              s"${state.velocityNed.norm.fixed(2)} m/s; is something in its way?"
           )
         )
       else

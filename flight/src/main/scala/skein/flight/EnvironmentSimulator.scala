@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.policy.Action
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
-import skein.record.{Measurement, Recorder}
+import skein.record.{MeasurementRow, Recorder}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.GoTo
@@ -85,7 +85,7 @@ final class EnvironmentSimulator private (
       last = moment
       val now = clock.now()
       for (name, agent) <- names.zip(moment.agents) do
-        recorder.offer(Measurement(
+        recorder.offer(MeasurementRow(
           steps,
           name,
           Sensor,

@@ -86,9 +86,9 @@ final class FlightAssembler(
       FlightAssembler.version,
       clock.now()
     ),
-    fleet.agents.map(Vehicle.of),
+    fleet.agents.map(VehicleRow.of),
     RecordedPlan.parameters(settings, plan) ++ fleet.agents.flatMap(agent =>
-      Vehicle.kind(agent.name, agent.kind)
+      VehicleRow.kind(agent.name, agent.kind)
     )
   )
 

@@ -41,26 +41,26 @@ final class FlightAssembly private[skein] (
       hold.release(): Unit
 
   /** How far it is, in the controller's time. */
-  def progress: Progress =
+  def progress: FlightProgress =
     val now = clock.now()
-    Progress(plan.id, now.since(startedAt), monitor.lastSeen(now), watchdog.silentFor)
+    FlightProgress(plan.id, now.since(startedAt), monitor.lastSeen(now), watchdog.silentFor)
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
   val landed: Future[FlightResult] =
     for
       outcome <- flight.outcome
       closed  <- shutDown().transform(Success(_))
-      notClosed = closed.failed.toOption.map(error => Outcome.Failed(s"it could not be closed: $error"))
-      ended     = notClosed.filter(_ => outcome == Outcome.Completed).getOrElse(outcome)
+      notClosed = closed.failed.toOption.map(error => FlightOutcome.Failed(s"it could not be closed: $error"))
+      ended     = notClosed.filter(_ => outcome == FlightOutcome.Completed).getOrElse(outcome)
       _         = monitor.offer(FlightAssembly.ending(ended, clock.now()))
       written <- monitor.close()
     yield FlightResult(plan, ended, written, solver.fold(Vector.empty)(_.roundTrips))
 
 private object FlightAssembly:
-  def ending(outcome: Outcome, at: Instant): Ending = outcome match
-    case Outcome.Completed      => Ending(at, EndingKind.Completed, None)
-    case Outcome.Stopped        => Ending(at, EndingKind.Stopped, Some("it was stopped from outside"))
-    case Outcome.Failed(reason) => Ending(at, EndingKind.Failed, Some(reason))
+  def ending(outcome: FlightOutcome, at: Instant): Ending = outcome match
+    case FlightOutcome.Completed      => Ending(at, EndingKind.Completed, None)
+    case FlightOutcome.Stopped        => Ending(at, EndingKind.Stopped, Some("it was stopped from outside"))
+    case FlightOutcome.Failed(reason) => Ending(at, EndingKind.Failed, Some(reason))
 
 /** How a flight ended, and what is on record.
   *
@@ -69,7 +69,7 @@ private object FlightAssembly:
   */
 final case class FlightResult(
     plan: FlightPlan,
-    outcome: Outcome,
+    outcome: FlightOutcome,
     written: Either[RecordError, Written],
     solverTrips: Vector[Span] = Vector.empty
 )

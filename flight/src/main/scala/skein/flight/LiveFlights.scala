@@ -48,7 +48,7 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
   def graphs: Vector[(id: String, graph: RunningGraph)] =
     assembler.map(assembly => (assembly.plan.id, assembly.graph))
 
-  def progress: Vector[Progress] = assembler.map(_.progress)
+  def progress: Vector[FlightProgress] = assembler.map(_.progress)
 
 object LiveFlights:
 

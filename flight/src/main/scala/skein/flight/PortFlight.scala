@@ -51,7 +51,7 @@ final case class PortFlight(
       FlightAssembler.version,
       clock.now()
     ),
-    scenario.agents.map(Vehicle.of),
+    scenario.agents.map(VehicleRow.of),
     ScenarioSettings.recorded(scenario)
   )
 
@@ -86,5 +86,5 @@ object PortFlight:
     */
   final case class UnderWay(
       flight: Flight,
-      landed: Future[(outcome: Outcome, written: Either[RecordError, Written])]
+      landed: Future[(outcome: FlightOutcome, written: Either[RecordError, Written])]
   )

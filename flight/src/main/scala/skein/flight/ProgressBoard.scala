@@ -10,7 +10,12 @@ import skein.units.Decimals.fixed
   * @param silentFor
   *   how long nothing was heard of the simulator, where it is silent
   */
-final case class Progress(id: String, flown: Span, seen: Option[LastSeen], silentFor: Option[Span] = None):
+final case class FlightProgress(
+    id: String,
+    flown: Span,
+    seen: Option[LastSeen],
+    silentFor: Option[Span] = None
+):
   def text: String =
     val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
     val shown   = seen.map(seen =>
@@ -21,7 +26,7 @@ final case class Progress(id: String, flown: Span, seen: Option[LastSeen], silen
 /** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */
 trait ProgressBoard extends AutoCloseable:
   /** To be called about twice a second. */
-  def show(progress: Seq[Progress]): Unit
+  def show(progress: Seq[FlightProgress]): Unit
 
 object ProgressBoard:
 
@@ -33,7 +38,7 @@ object ProgressBoard:
     private val width                          = ids.map(_.length).maxOption.getOrElse(0)
     private val bars: Map[String, ProgressBar] = ids.map(id => id -> bar(id)).toMap
 
-    def show(progress: Seq[Progress]): Unit =
+    def show(progress: Seq[FlightProgress]): Unit =
       for one <- progress do
         val _ = bars(one.id).stepTo(one.flown.toSeconds.round).setExtraMessage(one.text)
 
@@ -52,7 +57,7 @@ object ProgressBoard:
     private val every   = Span.ofSeconds(10)
     private var shownAt = Span.Zero
 
-    def show(progress: Seq[Progress]): Unit =
+    def show(progress: Seq[FlightProgress]): Unit =
       for furthest <- progress.map(_.flown).maxOption if furthest >= shownAt + every do
         shownAt = furthest
         val flights = progress.map(one => s"${one.id} ${one.text.trim}").mkString("; ")

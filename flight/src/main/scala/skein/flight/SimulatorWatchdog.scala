@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import scala.util.Success
-import skein.loop.{Flight, Outcome}
+import skein.loop.{Flight, FlightOutcome}
 import skein.record.{Event, EventKind}
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -36,7 +36,8 @@ private[flight] final class SimulatorWatchdog(
 
   @volatile private var life = SignsOfLife()
 
-  // When a silence ended last, and when the simulator was known last to be the one that the flight began with.
+  // When a silence ended last, and when the simulator was known last to be the one that the flight began
+  // with.
   @volatile private var backAt, knownAt = startedAt
   @volatile private var asking          = false
 
@@ -44,15 +45,15 @@ private[flight] final class SimulatorWatchdog(
   def silentFor: Option[Span] = life.silentSince.map(clock.now().since(_))
 
   /** How the flight has ended when its time is over. */
-  def onTime: Outcome = silentFor.fold(Outcome.Completed)(lasts =>
-    Outcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
+  def onTime: FlightOutcome = silentFor.fold(FlightOutcome.Completed)(lasts =>
+    FlightOutcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
   )
 
   def over(flight: Flight): Unit =
     val looking =
       system.scheduler.scheduleAtFixedRate(Offset.toDuration, LookEvery.toDuration)(() => look(flight))
     flight.outcome.onComplete(_ => looking.cancel())
-    for case Outcome.Failed(reason) <- flight.ending do tell(s"$reason; the vehicles are told to hover")
+    for case FlightOutcome.Failed(reason) <- flight.ending do tell(s"$reason; the vehicles are told to hover")
 
   private def look(flight: Flight): Unit =
     val now          = clock.now()
@@ -121,7 +122,8 @@ private[flight] object SimulatorWatchdog:
       .map(one => (one.vehicle, now.since(one.since)))
       .collect:
         case (vehicle, since) if since > Slow =>
-          s": it is not asked while $vehicle's policy has not decided for ${seconds(since)}; --deadline limits that"
+          s": it is not asked while $vehicle's policy has not decided " +
+            s"for ${seconds(since)}; --deadline limits that"
     s"no answer from the simulator at $simulator for $lasts${why.getOrElse("")}"
 
   private def seconds(span: Span): String = span.toSeconds.fixed(1) + " s"

@@ -5,7 +5,7 @@ import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
-import skein.loop.{LoopKind, Outcome, PlanSettings}
+import skein.loop.{LoopKind, FlightOutcome, PlanSettings}
 import skein.measure.RecordedTracks
 import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
 import skein.record.{Digest, MemoryRecorder}
@@ -121,8 +121,8 @@ object VirtualFlights:
     for
       flown <- fly(settings, settings.plans.last.copy(seed = settings.seed))
       _     <- flown.landed.outcome match
-        case Outcome.Failed(reason) => Left(reason)
-        case _                      => Right(())
+        case FlightOutcome.Failed(reason) => Left(reason)
+        case _                            => Right(())
       tracks <- Tracks
         .of(RecordedTracks.of(flown.recorder.recording))
         .filter(_.vehicles.size == settings.fleet.agents.size)

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.annotation.tailrec
 import scala.concurrent.Future
 import skein.link.{BackgroundThread, ControlThreads, Transport}
-import skein.loop.Outcome
+import skein.loop.FlightOutcome
 import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile
@@ -56,8 +56,8 @@ object WarmUp:
           case Left(reason)  => Left(s"${plan.id}, to warm up: $reason")
           case Right(flight) =>
             flight.landed.outcome match
-              case Outcome.Failed(reason) => Left(s"${plan.id}, to warm up: $reason")
-              case _                      => next(flown + 1)
+              case FlightOutcome.Failed(reason) => Left(s"${plan.id}, to warm up: $reason")
+              case _                            => next(flown + 1)
 
     next(0)
 

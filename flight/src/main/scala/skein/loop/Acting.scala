@@ -36,7 +36,7 @@ private object Acting:
     case Action.Land  => Setpoint.velocity(0, 0, LandingMps)
 
   /** What a model of the vehicle is told by a move that was sent. */
-  def guidance(fleet: Fleet, move: Move): Guidance =
+  def guidance(fleet: Fleet, move: SentCommand): Guidance =
     val agent = fleet.agents(move.vehicle)
     move.action.fold {
       val velocity = agent.velocityNed(move.headingRad, move.speed)

@@ -35,4 +35,5 @@ final case class Decision(
     action: Option[Action] = None
 ):
   /** As the other vehicles' policies see it, once it was sent. */
-  def move(sentAt: Instant): Move = Move(vehicle, sequence, heading.value, sentAt, speed, action)
+  def move(sentAt: Instant): SentCommand =
+    SentCommand(vehicle, sequence, heading.value, sentAt, speed, action)

@@ -13,7 +13,7 @@ import skein.units.*
 export skein.record.LoopKind
 
 /** How a flight ended. */
-enum Outcome:
+enum FlightOutcome:
   /** It flew its whole time, or its scenario was over. */
   case Completed
 
@@ -26,22 +26,22 @@ enum Outcome:
 /** A flight under way. Whatever ends it, the vehicles are told to hover and every call has ended when `outcome`
   * completes.
   */
-final class Flight private (stopping: Promise[Outcome], val outcome: Future[Outcome]):
+final class Flight private (stopping: Promise[FlightOutcome], val outcome: Future[FlightOutcome]):
 
   /** How it ends, as soon as that is decided: before the vehicles hover. */
-  def ending: Future[Outcome] = stopping.future
+  def ending: Future[FlightOutcome] = stopping.future
 
   /** Ends the flight now, because it cannot go on. */
   def fail(reason: String): Unit =
-    val _ = stopping.trySuccess(Outcome.Failed(reason))
+    val _ = stopping.trySuccess(FlightOutcome.Failed(reason))
 
   /** Ends the flight now, since there is nothing more to fly. */
   def complete(): Unit =
-    val _ = stopping.trySuccess(Outcome.Completed)
+    val _ = stopping.trySuccess(FlightOutcome.Completed)
 
   /** Ends the flight now. */
   def stop(): Unit =
-    val _ = stopping.trySuccess(Outcome.Stopped)
+    val _ = stopping.trySuccess(FlightOutcome.Stopped)
 
 object Flight:
 
@@ -61,7 +61,7 @@ object Flight:
       duration: Span,
       clock: Clock,
       recorder: Recorder,
-      onTime: () => Outcome = () => Outcome.Completed
+      onTime: () => FlightOutcome = () => FlightOutcome.Completed
   )(using
       system: ActorSystem
   ): Flight =
@@ -69,13 +69,13 @@ object Flight:
     val isPaused = loop == LoopKind.Paused
     require(!isPaused || time.isDefined, "paused needs a simulator whose time passes in steps")
     val switch   = KillSwitches.shared("flight")
-    val stopping = Promise[Outcome]()
+    val stopping = Promise[FlightOutcome]()
     val running  = loop match
       case own: OwnLoop   => runOwn(own, team, switch, stopping.future)
       case kind: LoopKind =>
         graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()
 
-    recorder.failure.foreach(error => stopping.trySuccess(Outcome.Failed(error.message)))
+    recorder.failure.foreach(error => stopping.trySuccess(FlightOutcome.Failed(error.message)))
     val timer = Option.when(!isPaused):
       system.scheduler.scheduleOnce(duration.toDuration)(stopping.trySuccess(onTime()): Unit)
     stopping.future.foreach(_ => switch.shutdown())
@@ -83,7 +83,7 @@ object Flight:
     val landed = running.transformWith: ended =>
       timer.foreach(_.cancel())
       val failure = ended.failed.toOption.map(error => Option(error.getMessage).getOrElse(error.toString))
-      stopping.trySuccess(failure.fold(onTime())(Outcome.Failed(_)))
+      stopping.trySuccess(failure.fold(onTime())(FlightOutcome.Failed(_)))
       failure.foreach(team.log.note(EventKind.Aborted, None, _))
       val hovering = loop match
         // It has told them already.
@@ -94,13 +94,18 @@ object Flight:
     Flight(stopping, landed.map(recorded(recorder, _)))
 
   /** The last answers come after the flight's time is over; where they could not be kept, it has failed all the same. */
-  private def recorded(recorder: Recorder, outcome: Outcome): Outcome =
+  private def recorded(recorder: Recorder, outcome: FlightOutcome): FlightOutcome =
     recorder.failure.value.flatMap(_.toOption) match
-      case Some(error) if !outcome.isInstanceOf[Outcome.Failed] => Outcome.Failed(error.message)
-      case _                                                    => outcome
+      case Some(error) if !outcome.isInstanceOf[FlightOutcome.Failed] => FlightOutcome.Failed(error.message)
+      case _                                                          => outcome
 
   /** Nothing says that a user's graph minds the switch: one that does not is broken off. */
-  private def runOwn(own: OwnLoop, team: Team, switch: SharedKillSwitch, stopping: Future[Outcome])(using
+  private def runOwn(
+      own: OwnLoop,
+      team: Team,
+      switch: SharedKillSwitch,
+      stopping: Future[FlightOutcome]
+  )(using
       system: ActorSystem
   ): Future[Done] =
     import system.dispatcher

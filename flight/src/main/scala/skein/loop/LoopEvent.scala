@@ -17,7 +17,7 @@ enum LoopEvent:
   case Due(deciders: Set[Int])
 
   /** A command that was sent. */
-  case Moved(move: Move)
+  case Moved(move: SentCommand)
 
   /** What a forecast is told of besides. */
   case Heard(event: ForecastEvent)

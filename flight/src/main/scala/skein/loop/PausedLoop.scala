@@ -49,7 +49,8 @@ object PausedLoop:
     val stepped       = Option.when(before.nonEmpty)(now.since(newest(before)))
     Vector(
       Option.when(oldest != now)(
-        s"${now.since(oldest).toMillis} ms of simulator time passed while step $step was read: it did not stand still"
+        s"${now.since(oldest).toMillis} ms of simulator time passed " +
+          s"while step $step was read: it did not stand still"
       ),
       stepped.filter(_ != period).map(took =>
         s"step $step took ${took.toMillis} ms of simulator time instead of ${period.toMillis} ms"
@@ -60,7 +61,7 @@ object PausedLoop:
   private[loop] def timeless[A](read: Stamped[A]): Stamped[A] =
     read.copy(sentAt = read.validAt, receivedAt = read.validAt)
 
-private final case class Step(number: Long, memories: Vector[Memory], view: TeamView)
+private final case class PausedStep(number: Long, memories: Vector[Memory], view: TeamView)
 
 /** One flight of [[PausedLoop]]. */
 private final class PausedFlight(
@@ -75,10 +76,10 @@ private final class PausedFlight(
   // The moves of the newest step, and those of the one before, which they replace.
   @volatile private var newest, replaced = Vector.empty[Future[Either[VehicleError, Boolean]]]
 
-  val start: Step =
-    Step(0, team.vehicles.map(team.start).toVector, TeamView.empty(team.vehicles.size))
+  val start: PausedStep =
+    PausedStep(0, team.vehicles.map(team.start).toVector, TeamView.empty(team.vehicles.size))
 
-  def next(step: Step): Future[Option[(Step, Done)]] =
+  def next(step: PausedStep): Future[Option[(PausedStep, Done)]] =
     if step.number == steps || stopped() then Future.successful(None)
     else if team.hold.isHeld then
       for
@@ -104,7 +105,7 @@ private final class PausedFlight(
             Future.fromTry(ended)
       yield done
 
-  private def fly(step: Step): Future[Option[(Step, Done)]] =
+  private def fly(step: PausedStep): Future[Option[(PausedStep, Done)]] =
     for
       _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
       readings <- orFail(team.readAll())
@@ -126,7 +127,7 @@ private final class PausedFlight(
     yield
       val moved = decided.foldLeft(view):
         case (seen, (_, decision)) => seen.withMove(decision.move(now))
-      Some((Step(step.number + 1, decided.map(_._1), moved), Done))
+      Some((PausedStep(step.number + 1, decided.map(_._1), moved), Done))
 
   private def send(decisions: Vector[Decision]): Unit =
     replaced = newest
@@ -135,7 +136,7 @@ private final class PausedFlight(
       team.log.sent(decision, clock.now())
       team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
-  private def verifyStep(step: Step, readings: Vector[Reading]): Unit =
+  private def verifyStep(step: PausedStep, readings: Vector[Reading]): Unit =
     PausedLoop
       .drift(
         step.number,

@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.planning.*
 import skein.policy.{Agent, Fleet}
-import skein.record.Course
+import skein.record.PlannedPath
 import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{ReducedModel, VehicleKind}
@@ -59,10 +59,10 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
     (next, PlannedDecision(atAltitude(decision), action, plan, isOld, chosen.map(course(part, _))))
 
   /** Where the plan leads. */
-  private def course(part: Part, manoeuvre: Manoeuvre): Course =
+  private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
     val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).fly(manoeuvre).track
     val steps = Vector.range(0, track.steps)
-    Course(steps.map(track.x), steps.map(track.y), Span.ofSeconds(planner.dtS))
+    PlannedPath(steps.map(track.x), steps.map(track.y), Span.ofSeconds(planner.dtS))
 
   private def atAltitude(decision: Decision): Decision =
     if altitudeM == startM then decision
@@ -88,7 +88,7 @@ final case class PlannedDecision(
     action: PlannedMove,
     plan: Plan,
     byPolicy: Boolean,
-    course: Option[Course] = None
+    course: Option[PlannedPath] = None
 ):
   /** @param slices
     *   that each search has finished
@@ -129,7 +129,7 @@ final case class PlanReport(
     byPolicy: Boolean,
     breaches: Int,
     breach: Option[String],
-    course: Option[Course]
+    course: Option[PlannedPath]
 )
 
 /** Which vehicles plan, and how their plans begin. */

@@ -26,7 +26,7 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
     closest = PursuitPlanning.Closest,
     capture = PursuitPlanning.Capture,
     cruiseSpeed = speed,
-    separation = Separation(leastM, margin = if leastM > 0 then 1 else 0),
+    separation = SeparationCost(leastM, margin = if leastM > 0 then 1 else 0),
     geofences = settings.geofences
   )
 

@@ -265,7 +265,7 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
       column: String,
       vehicle: Int,
       since: Option[Span]
-  ): Either[Difference, Option[Move]] =
+  ): Either[Difference, Option[SentCommand]] =
     since match
       case None       => Right(None)
       case Some(span) =>
@@ -275,14 +275,14 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
           .toRight(Difference(where(of), column, span.toMillis.toString, "no command was sent then"))
 
   /** While the simulator stands still, moves are sent at the moment of their decision, on its clock. */
-  private def sentMoves: Vector[Move] =
+  private def sentMoves: Vector[SentCommand] =
     val decided = recording.decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
     for
       command  <- recording.commands
       sequence <- command.decision
       decision <- decided.get((command.vehicle, sequence))
       vehicle  <- indexOf.get(command.vehicle)
-    yield Move(
+    yield SentCommand(
       vehicle,
       sequence,
       decision.heading.value,

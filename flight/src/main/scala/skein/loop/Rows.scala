@@ -2,9 +2,9 @@ package skein.loop
 
 import skein.policy.{Action, Fleet, Role}
 import skein.record.{
-  Command,
+  CommandRow,
   DecisionRow,
-  Measurement,
+  MeasurementRow,
   Observations,
   Predicted,
   PredictedMotion,
@@ -22,9 +22,9 @@ private final class Rows(fleet: Fleet):
 
   def reading(read: Reading): ReadingRow = ReadingRow(read.sequence, name(read.vehicle), read.state)
 
-  def measurement(read: SensorReading): Measurement =
+  def measurement(read: SensorReading): MeasurementRow =
     import read.values.{receivedAt, sentAt, validAt, value}
-    Measurement(
+    MeasurementRow(
       read.sequence,
       name(read.vehicle),
       read.sensor,
@@ -107,10 +107,10 @@ private final class Rows(fleet: Fleet):
       Sensing(name(decision.vehicle), decision.sequence, sensor, reading.sequence)
 
   /** A decision as the command that it went on its way as. */
-  def command(decision: Decision, at: Instant): Command =
+  def command(decision: Decision, at: Instant): CommandRow =
     val agent    = fleet.agents(decision.vehicle)
     val velocity = agent.velocityNed(decision.heading.value, decision.speed)
-    Command(
+    CommandRow(
       decision.sequence,
       agent.name,
       Some(decision.sequence),

@@ -117,7 +117,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     rows.sensings(decision).foreach(recorder.offer)
 
   /** A command was sent, or has ended. */
-  def steered(steering: Steering): Unit = steering.event match
+  def steered(steering: SteeringEvent): Unit = steering.event match
     case Steered.Sent(decision, at)          => sent(decision, at)
     case Steered.Ended(decision, at, result) => ended(decision, at, result)
 

@@ -27,8 +27,8 @@ private final class TeamPlanning(
     speedChange = 0.1,
     cruiseSpeed = settings.speedMps(agent.speed.value),
     separation =
-      if minimumM > 0 then Separation(minimumM + PlanSettings.Doubt, margin = 0.8, growth = 0.5)
-      else Separation(0, 0, 0),
+      if minimumM > 0 then SeparationCost(minimumM + PlanSettings.Doubt, margin = 0.8, growth = 0.5)
+      else SeparationCost(0, 0, 0),
     geofences = settings.geofences,
     softness = 1
   )

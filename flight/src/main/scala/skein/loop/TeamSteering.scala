@@ -46,7 +46,7 @@ private final class TeamSteering(
     * upstream has completed, the vehicle was told to hover, and every command has ended. '''Cancels when''' downstream
     * cancels.
     */
-  def steer(vehicle: Int): Flow[Decision, Steering, NotUsed] =
+  def steer(vehicle: Int): Flow[Decision, SteeringEvent, NotUsed] =
     val meter = parts.meter("steer", vehicle)
     Flow
       .fromGraph(
@@ -71,7 +71,7 @@ private final class TeamSteering(
       )
       .map: event =>
         count(meter, event)
-        Steering(vehicle, event)
+        SteeringEvent(vehicle, event)
       .addAttributes(parts.named("steer", vehicle))
 
   private def count(steering: StageMeter, event: Steered[Decision, Either[VehicleError, Boolean]]): Unit =
@@ -84,30 +84,30 @@ private final class TeamSteering(
         steering.pass()
 
   /** Takes down every command and how it ended. Never backpressures. */
-  def record: Sink[Steering, ?] = Sink.foreach(log.steered).addAttributes(parts.named("record"))
+  def record: Sink[SteeringEvent, ?] = Sink.foreach(log.steered).addAttributes(parts.named("record"))
 
   /** The moves sent. */
-  def sent: Flow[Steering, Move, NotUsed] =
+  def sent: Flow[SteeringEvent, SentCommand, NotUsed] =
     val meter = parts.meter("sent")
-    Flow[Steering]
+    Flow[SteeringEvent]
       .collect:
-        case Steering(_, Steered.Sent(decision, at)) =>
+        case SteeringEvent(_, Steered.Sent(decision, at)) =>
           meter.pass()
           decision.move(at)
       .addAttributes(parts.named("sent"))
 
   /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
-  def told: Flow[Steering, LoopEvent, NotUsed] = Flow[Steering].collect(Function.unlift:
-    case Steering(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
-    case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
+  def told: Flow[SteeringEvent, LoopEvent, NotUsed] = Flow[SteeringEvent].collect(Function.unlift:
+    case SteeringEvent(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
+    case SteeringEvent(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
       Some(LoopEvent.Heard(ForecastEvent.Replaced(vehicle, decision.sequence, at)))
-    case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
-    case Steering(vehicle, Steered.Ended(decision, _, _))       =>
+    case SteeringEvent(_, Steered.Ended(_, _, Success(Right(true)))) => None
+    case SteeringEvent(vehicle, Steered.Ended(decision, _, _))       =>
       Some(LoopEvent.Heard(ForecastEvent.Failed(vehicle, decision.sequence))))
 
   /** Carries the newest move of each vehicle back into the view. */
-  def feedBack: Flow[Move, LoopEvent, NotUsed] =
-    Flow[Move]
+  def feedBack: Flow[SentCommand, LoopEvent, NotUsed] =
+    Flow[SentCommand]
       .map(move => (move.vehicle, move))
       .via(FeedBack.newest)
       .map((_, move) => LoopEvent.Moved(move))
@@ -154,12 +154,12 @@ private final class TeamSteering(
     Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
 
   /** What became of all vehicles' commands. */
-  def steered: Graph[UniformFanInShape[Steering, Steering], NotUsed] =
-    Merge[Steering](ports.size).addAttributes(parts.named("steered"))
+  def steered: Graph[UniformFanInShape[SteeringEvent, SteeringEvent], NotUsed] =
+    Merge[SteeringEvent](ports.size).addAttributes(parts.named("steered"))
 
   /** To the recording, back into the loop, and to its end. */
-  def fan: Graph[UniformFanOutShape[Steering, Steering], NotUsed] =
-    Broadcast[Steering](3).addAttributes(parts.named("fan"))
+  def fan: Graph[UniformFanOutShape[SteeringEvent, SteeringEvent], NotUsed] =
+    Broadcast[SteeringEvent](3).addAttributes(parts.named("fan"))
 
 private object TeamSteering:
 

@@ -12,7 +12,7 @@ import skein.units.*
   * @param action
   *   absent where it is told by heading and speed
   */
-final case class Move(
+final case class SentCommand(
     vehicle: Int,
     decision: Long,
     headingRad: Double,
@@ -33,7 +33,7 @@ final case class Move(
   */
 final case class TeamView(
     readings: Vector[Option[Reading]],
-    moves: Vector[Option[Move]],
+    moves: Vector[Option[SentCommand]],
     alignment: Option[ClockAlignment],
     sensed: Vector[Map[String, SensorReading]],
     forecast: Option[Forecast] = None,
@@ -52,7 +52,7 @@ final case class TeamView(
     if held.get(reading.sensor).exists(known => !clocks.isNewer(reading.values, known.values)) then this
     else copy(sensed = sensed.updated(reading.vehicle, held.updated(reading.sensor, reading)))
 
-  def withMove(move: Move): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
+  def withMove(move: SentCommand): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
 
   def withEvent(event: ForecastEvent): TeamView = copy(forecast = forecast.map(_.withEvent(event)))
 

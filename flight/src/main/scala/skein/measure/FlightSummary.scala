@@ -163,7 +163,8 @@ object FlightSummary:
         .find(_.kind == EventKind.Aborted)
         .map(_.detail)
         .orElse(Option.when(seen + Margin < recording.flight.duration)(
-          s"the recording breaks off after ${seen.toSeconds.fixed(1)} of ${recording.flight.duration.toSeconds.fixed(1)} s"
+          s"the recording breaks off after ${seen.toSeconds.fixed(1)} of " +
+            s"${recording.flight.duration.toSeconds.fixed(1)} s"
         ))
 
   private def paused(recording: Recording): Option[Span] =

@@ -42,8 +42,8 @@ object FlownVehicles:
   private def arrivalsOf(
       recording: Recording,
       vehicle: String,
-      commands: Vector[Command]
-  ): Vector[(Command, Instant)] =
+      commands: Vector[CommandRow]
+  ): Vector[(CommandRow, Instant)] =
     if recording.flight.isPaused then
       val decidedAt =
         recording.decisions.filter(_.vehicle == vehicle).map(decision =>

@@ -72,7 +72,8 @@ private[onnx] object DenseGraph:
       val widest     = hidden.maxOption.getOrElse(0)
       if hidden.sizeIs > NeuralShape.MostLayers || widest > NeuralShape.MostWidth then
         throw NotDense(
-          s"expected at most ${NeuralShape.MostLayers} hidden layers of at most ${NeuralShape.MostWidth} neurons, came ${hidden.mkString("x")}"
+          s"expected at most ${NeuralShape.MostLayers} hidden layers of at most " +
+            s"${NeuralShape.MostWidth} neurons, came ${hidden.mkString("x")}"
         )
       (NeuralShape(hidden, LearnedPolicy.Inputs, all.map(_._2)), all.flatMap(_._1.parameters))
 
@@ -153,7 +154,8 @@ private[onnx] object DenseGraph:
         val shape = fixed(1).values
         if shape.sizeIs > 2 || !(shape.lastOption.exists(last => last == rows || last == -1)) then
           not(
-            s"expected one that keeps $rows numbers in a row, came ${shape.map(_.toLong).mkString("(", ", ", ")")}"
+            s"expected one that keeps $rows numbers in a row, came " +
+              s"${shape.map(_.toLong).mkString("(", ", ", ")")}"
           )
         flow(0)
       case "Transpose" =>

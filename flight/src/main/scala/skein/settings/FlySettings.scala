@@ -5,7 +5,7 @@ import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
-import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
+import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
@@ -174,7 +174,7 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
     *   told of what is new, with the vehicle and the number of its next decision
     */
   def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long)(
-      note: (String, Long, News) => Unit
+      note: (String, Long, LearnerUpdate) => Unit
   ): Fleet =
     def version(parameters: Vector[Double]) = file.family.policy(parameters).asInstanceOf[LearnedPolicy]
     Fleet(fleet.agents.map: agent =>
@@ -254,15 +254,18 @@ object FlySettings:
         settings.period < Span.ofMillis(1)
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
       settings.multirotors.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
-        s"${settings.scenario.name}: expected starts above 0 and up to $MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
+        s"${settings.scenario.name}: expected starts above 0 and up to " +
+          s"$MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
-        "wire: mavlink flies no loop paused, since its vehicles' time does not pass in steps; name other loops"
+        "wire: mavlink flies no loop paused, since its vehicles' " +
+          "time does not pass in steps; name other loops"
       ),
       settings.cars
         .find(_.startPositionNed.z != 0)
         .map(car =>
-          s"${settings.scenario.name}: expected cars on the ground, at 0 m, came ${car.name} at ${-car.startPositionNed.z} m"
+          s"${settings.scenario.name}: expected cars on the ground, at 0 " +
+            s"m, came ${car.name} at ${-car.startPositionNed.z} m"
         ),
       settings.cars.find(_ => settings.wire == Wire.Mavlink).map(car =>
         s"wire: expected airsim, came mavlink, which cars do not speak: ${car.name}"
@@ -284,7 +287,8 @@ object FlySettings:
       ),
       lateMistake(settings),
       settings.policies.find(file => !isFlownIn(settings.fleet, file)).map(file =>
-        s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and vehicles of another role, came with '${settings.scenario.name}'"
+        s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and " +
+          s"vehicles of another role, came with '${settings.scenario.name}'"
       )
     ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
@@ -301,8 +305,8 @@ object FlySettings:
       settings.solver.isDefined && settings.loops.contains(LoopKind.Plan) && within <= searched
     ):
       val which = if settings.deadline.isDefined then "deadline" else "period"
-      s"$which: expected more than planning.deadline, for which a solver searches its plans, ${searched.toMillis} ms; " +
-        s"came ${within.toMillis} ms"
+      s"$which: expected more than planning.deadline, for which a solver searches " +
+        s"its plans, ${searched.toMillis} ms; came ${within.toMillis} ms"
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
@@ -322,7 +326,8 @@ object FlySettings:
       .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
       .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
       .map(lagS =>
-        s"planning.step: plans need vehicles with a lag of at least ${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
+        "planning.step: plans need vehicles with a lag of at least " +
+          s"${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
       )
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)

@@ -30,5 +30,6 @@ object ImageSource:
     case Form(camera, hz) if hz.toDouble > 0 && hz.toDouble <= MostHz => Right(Camera(camera, hz.toDouble))
     case other                                                        =>
       Left(
-        s"expected seen, or CAMERA@HZ with up to ${MostHz.toInt} images a second, for example front_center@10, came '$other'"
+        s"expected seen, or CAMERA@HZ with up to ${MostHz.toInt} images a " +
+          s"second, for example front_center@10, came '$other'"
       )

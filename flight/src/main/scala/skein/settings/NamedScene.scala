@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.record.Parameter
+import skein.record.ParameterRow
 import skein.scene.{Scene, SceneFile}
 
 /** What stands in the world, and what it is called.
@@ -27,9 +27,9 @@ object NamedScene:
   def shipped(name: String): Option[NamedScene] = SceneFile.named(name).map(NamedScene(name, None, _))
 
   /** As a recording keeps it: nothing of the empty one, and all of a file's. */
-  def recorded(flown: NamedScene): Seq[Parameter] =
+  def recorded(flown: NamedScene): Seq[ParameterRow] =
     if flown.name == Empty.name then Nil
-    else Parameter(Name, flown.name) +: flown.text.toSeq.map(Parameter(Text, _))
+    else ParameterRow(Name, flown.name) +: flown.text.toSeq.map(ParameterRow(Text, _))
 
   /** @param parameters
     *   of a recording, by name

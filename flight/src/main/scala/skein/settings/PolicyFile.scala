@@ -87,7 +87,8 @@ object PolicyFile:
         case Seq(one) => Right(one)
         case several  =>
           Left(
-            s"family ${family.name} is for ${several.map(name).mkString(" and ")}: expected one of them, came none"
+            s"family ${family.name} is for " +
+              s"${several.map(name).mkString(" and ")}: expected one of them, came none"
           )
 
   /** A policy for a role: of a file, or of a family with its defaults.
@@ -185,5 +186,7 @@ object PolicyFile:
           case Array(name, value) => value.toDoubleOption.filter(_.isFinite).map(name -> _)
           case _                  => None
       _ <- Expect.that(values.map(_._1) == family.space.axes.map(_.name)):
-        s"expected ${family.space.axes.map(axis => s"${axis.name}=NUMBER").mkString(" ")} after ${family.name}, came '$text'"
+        "expected " +
+          s"${family.space.axes.map(axis => s"${axis.name}=NUMBER").mkString(" ")} " +
+          s"after ${family.name}, came '$text'"
     yield PolicyFile(role, family, values.map(_._2))

@@ -46,7 +46,8 @@ object PredictionModel:
   )
 
   val forms: String =
-    s"${named.map(_._1).mkString(", ")}, a FILE of ./skein identify, or reduced:FILE for its model of three parameters"
+    s"${named.map(_._1).mkString(", ")}, a FILE of ./skein identify, " +
+      "or reduced:FILE for its model of three parameters"
 
   /** A name, or a model file of `skein identify`. */
   def parse(text: String): Either[String, PredictionModel] =

@@ -1,10 +1,10 @@
 package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
-import skein.loop.learning.{Learning, LessonsAgain, News}
+import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
-import skein.record.{Event, EventKind, Parameter, Record, Recording}
+import skein.record.{Event, EventKind, ParameterRow, Record, Recording}
 import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -46,37 +46,39 @@ object RecordedPlan:
     * @param decision
     *   the number of the next one
     */
-  def learned(at: Instant, vehicle: String, decision: Long, news: News): Seq[Record] =
-    news.parameters.map(parameters => Parameter(s"$Version.$decision", Numbers64.text(parameters))).toSeq :+
+  def learned(at: Instant, vehicle: String, decision: Long, news: LearnerUpdate): Seq[Record] =
+    news.parameters.map(parameters =>
+      ParameterRow(s"$Version.$decision", Numbers64.text(parameters))
+    ).toSeq :+
       Event(at, EventKind.Learned, Some(vehicle), news.text, Some(decision))
 
   /** What [[of]] needs besides the columns that every recording has. */
-  def parameters(settings: FlySettings, plan: FlightPlan): Seq[Parameter] =
+  def parameters(settings: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
     ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++ Seq(
-      Parameter(Planning, settings.planning.text),
-      Parameter(Predictor, PredictionModel.text(settings.predictor)),
-      Parameter(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ Option.when(!settings.plant.isAirSim)(Parameter(
+      ParameterRow(Planning, settings.planning.text),
+      ParameterRow(Predictor, PredictionModel.text(settings.predictor)),
+      ParameterRow(MovesInFlight, settings.movesInFlight.toString)
+    ) ++ Option.when(!settings.plant.isAirSim)(ParameterRow(
       Plant,
       settings.plant.text
-    )) ++ Option.when(settings.wire != Wire.AirSim)(Parameter(
+    )) ++ Option.when(settings.wire != Wire.AirSim)(ParameterRow(
       Spoken,
       settings.wire.label
-    )) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
+    )) ++ plan.solver.toSeq.map(choice => ParameterRow(SolverSummary.Parameter, choice.text)) ++
       Option.when(settings.images.nonEmpty)(
-        Parameter(Images, settings.images.map(_.text).mkString(" "))
+        ParameterRow(Images, settings.images.map(_.text).mkString(" "))
       ) ++
       settings.deadlineOf(plan).toSeq.flatMap(deadline =>
         Seq(
-          Parameter(DeadlineNs, deadline.toNanos.toString),
-          Parameter(Replay.Fallback, settings.fallback.label)
+          ParameterRow(DeadlineNs, deadline.toNanos.toString),
+          ParameterRow(Replay.Fallback, settings.fallback.label)
         )
       ) ++
       plan.policy.toSeq.flatMap: chosen =>
         Seq(
-          Parameter(PolicyName, chosen.name),
-          Parameter(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
-        ) ++ chosen.learning.map(learning => Parameter(Explore, learning.explore.toString))
+          ParameterRow(PolicyName, chosen.name),
+          ParameterRow(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
+        ) ++ chosen.learning.map(learning => ParameterRow(Explore, learning.explore.toString))
 
   /** Reads it back.
     *
@@ -144,13 +146,13 @@ object RecordedPlan:
     )
 
   /** Versions' parameters belong to the last that was new before a decision. */
-  private def newsOf(recording: Recording): Either[String, Map[Long, Vector[News]]] =
+  private def newsOf(recording: Recording): Either[String, Map[Long, Vector[LearnerUpdate]]] =
     val versions = recording.heading.parametersOf(Version)
     val said     = recording.events
       .filter(_.kind == EventKind.Learned)
-      .flatMap(event => event.decision.map(_ -> News(event.detail)))
+      .flatMap(event => event.decision.map(_ -> LearnerUpdate(event.detail)))
       .groupMap(_._1)(_._2)
-    versions.foldLeft[Either[String, Map[Long, Vector[News]]]](Right(said)):
+    versions.foldLeft[Either[String, Map[Long, Vector[LearnerUpdate]]]](Right(said)):
       case (before, (number, text)) =>
         for
           said     <- before

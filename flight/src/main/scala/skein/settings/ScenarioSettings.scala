@@ -2,7 +2,7 @@ package skein.settings
 
 import com.typesafe.config.{Config, ConfigObject, ConfigValue}
 import scala.jdk.CollectionConverters.*
-import skein.record.Parameter
+import skein.record.ParameterRow
 import skein.scenario.{Scenario, ScenarioKind, Scenarios}
 
 /** A scenario in configurations and recordings. `skein.fly.scenario` names it, and what is set of it stands under its
@@ -45,8 +45,8 @@ object ScenarioSettings:
     scenarios.kind(named).left.map(mistake => s"$Name: $mistake")
 
   /** As a recording keeps it. */
-  def recorded(scenario: Scenario): Seq[Parameter] =
-    scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
+  def recorded(scenario: Scenario): Seq[ParameterRow] =
+    scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value))
 
   private val Name = "skein.fly.scenario"
 

@@ -18,7 +18,8 @@ object SensorFile:
     import fit.model
     val fitted = fit.fitted.map: parameter =>
       val bound = if parameter.atBound then "  # at its bound" else ""
-      s"  ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
+      s"  ${parameter.name} { value = ${number(parameter.value)}, least = " +
+        s"${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
     s"""# What a pursuer that sees by a camera alone knows of its evader, fitted by `skein identify`.
        |# least and most: 95 % intervals, as if detections were independent.
        |skein.sensor {

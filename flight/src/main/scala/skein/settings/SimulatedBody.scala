@@ -24,11 +24,13 @@ final class SimulatedBody private (val text: String, read: => Either[String, Opt
       val steps = AutopilotInterface.Step.toSeconds / body.stepS
       if !body.hasRotors then
         Some(
-          s"$text: expected four actuators that each lift, one at each corner, for an autopilot's four controls"
+          s"$text: expected four actuators that each lift, one at " +
+            "each corner, for an autopilot's four controls"
         )
       else
         Option.when(steps < 1 || math.abs(steps - steps.round) > 1e-9):
-          s"$text: expected a timestep of 1 ms or a whole part of it, at which autopilots' sensors are read, came ${body.stepS} s"
+          s"$text: expected a timestep of 1 ms or a whole part of it, at " +
+            s"which autopilots' sensors are read, came ${body.stepS} s"
     case _ => None
 
 object SimulatedBody:

@@ -36,7 +36,8 @@ object SolverChoice:
     case s"link:$profile" => LatencyProfile.parse(profile, TextFile.read).map(Link(_)).left.map(_.message)
     case s"pekko://$_"    =>
       Left(
-        s"expected $Expected, came '$text': solvers speak a protocol of their own over TCP, not Pekko's remoting"
+        s"expected $Expected, came '$text': solvers speak a " +
+          "protocol of their own over TCP, not Pekko's remoting"
       )
     case _ => Left(s"expected $Expected, came '$text'")
 

@@ -31,8 +31,8 @@ object VehicleChoice:
 
   private val reduced = VehicleChoice(
     "reduced",
-    s"reduced model of AirSim's quadrotor at z = −20 m, gain ${Reduced.AirSim.gain}, lag ${Reduced.AirSim.lagS} s, " +
-      s"dead time ${Reduced.AirSim.deadTimeS} s",
+    s"reduced model of AirSim's quadrotor at z = −20 m, gain ${Reduced.AirSim.gain}, " +
+      s"lag ${Reduced.AirSim.lagS} s, dead time ${Reduced.AirSim.deadTimeS} s",
     Reduced.AirSim
   )
 
@@ -40,7 +40,8 @@ object VehicleChoice:
     val model = ReducedModel.airSimAt(altitudeM)
     VehicleChoice(
       "drag",
-      s"reduced model of AirSim's quadrotor at $altitudeM m altitude, lag ${model.lagS.fixed(2)} s, with quadratic drag ${model.dragPerM} /m",
+      s"reduced model of AirSim's quadrotor at $altitudeM m altitude, lag " +
+        s"${model.lagS.fixed(2)} s, with quadratic drag ${model.dragPerM} /m",
       ReducedResponse(model)
     )
 
@@ -69,7 +70,8 @@ object VehicleChoice:
   private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal, car)
 
   val forms: String =
-    s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, mujoco:FILE, a FILE of ./skein identify, or reduced:FILE"
+    s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, " +
+      "mujoco:FILE, a FILE of ./skein identify, or reduced:FILE"
 
   /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the file's model of
     * three parameters, which flies by lanes.
@@ -84,7 +86,8 @@ object VehicleChoice:
       Either.cond(
         known != reduced || altitudeM == ReducedModel.IdentifiedAtM,
         known,
-        s"expected drag, quadrotor or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
+        s"expected drag, quadrotor or a model file at $altitudeM m " +
+          s"altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
       )
     case None =>
       text match

@@ -29,7 +29,7 @@ final class SolverClient(
   import SolverClient.*
   import system.dispatcher
 
-  private val hello   = MessageCodec.bytes(Message.Hello(flight, build, briefing))
+  private val hello   = SolverMessageCodec.bytes(SolverMessage.Hello(flight, build, briefing))
   private val lock    = Object()
   private val started = Promise[Welcomed]()
 
@@ -82,7 +82,7 @@ final class SolverClient(
         val (next, number) = exchange.asked(vehicle, askedAt, until, searching)
         val used           = remembered.map(last => (solver = last.solver, question = last.question))
         val question       = Question(flight, deciders, number, askedAt, next.solverClock, used, view)
-        open.send(MessageCodec.bytes(Message.Ask(question))) match
+        open.send(SolverMessageCodec.bytes(SolverMessage.Ask(question))) match
           case Left(why) => Future.failed(NoSolver(why))
           case Right(()) =>
             val answer = Promise[Solved]()
@@ -94,17 +94,17 @@ final class SolverClient(
   /** Says goodbye. */
   def close(): Future[Done] =
     timer.cancel()
-    val _ = open.send(MessageCodec.bytes(Message.Goodbye(flight)))
+    val _ = open.send(SolverMessageCodec.bytes(SolverMessage.Goodbye(flight)))
     open.close()
 
-  private def received(bytes: Array[Byte]): Unit = MessageCodec.message(bytes) match
+  private def received(bytes: Array[Byte]): Unit = SolverMessageCodec.message(bytes) match
     case Left(mistake)  => note(EventKind.Refused, None, s"from the solver came no message: $mistake")
     case Right(message) =>
       message match
-        case Message.Welcome(`flight`, _, byVectors)         => welcomed(Welcomed(byVectors))
-        case Message.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
-        case Message.Unknown(`flight`)                       => again("it does not know this flight")
-        case Message.Tell(answer) if answer.flight == flight => heard(answer)
+        case SolverMessage.Welcome(`flight`, _, byVectors)         => welcomed(Welcomed(byVectors))
+        case SolverMessage.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
+        case SolverMessage.Unknown(`flight`)                       => again("it does not know this flight")
+        case SolverMessage.Tell(answer) if answer.flight == flight => heard(answer)
         // On a link that several flights share.
         case _ => ()
 
@@ -225,7 +225,8 @@ object SolverClient:
   final case class Welcomed(byVectors: Boolean):
     /** For a flight that plans. */
     def warning: Option[String] = Option.when(!byVectors)(
-      "the solver runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
+      "the solver runs without jdk.incubator.vector, so " +
+        "candidates are flown one by one, some fifty times fewer"
     )
 
   /** Nobody decides: why. */

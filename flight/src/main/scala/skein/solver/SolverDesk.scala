@@ -55,13 +55,13 @@ final class SolverDesk(
     *   or what was no message
     */
   def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Unit] =
-    val (mistakes, known) = messages.map(MessageCodec.message).partitionMap(identity)
+    val (mistakes, known) = messages.map(SolverMessageCodec.message).partitionMap(identity)
     val asked             = known.flatMap:
-      case Message.Hello(flight, theirs, briefing) =>
+      case SolverMessage.Hello(flight, theirs, briefing) =>
         greeted(flight, theirs, briefing, reply)
         None
-      case Message.Ask(question)   => offered(question, reply)
-      case Message.Goodbye(flight) =>
+      case SolverMessage.Ask(question)   => offered(question, reply)
+      case SolverMessage.Goodbye(flight) =>
         val ended = lock.synchronized:
           val ended = sessions.get(flight)
           sessions = sessions.removed(flight)
@@ -80,20 +80,21 @@ final class SolverDesk(
         Left(mistake)
 
   private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Unit =
-    val known                    = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
-    def answer(message: Message) = reply(MessageCodec.bytes(message))
-    def no(reason: String)       =
+    val known = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
+    def answer(message: SolverMessage) = reply(SolverMessageCodec.bytes(message))
+    def no(reason: String)             =
       lock.synchronized:
         refused += 1
       told(s"refused a flight: $reason")
-      answer(Message.Refused(flight, reason.take(MostReason)))
+      answer(SolverMessage.Refused(flight, reason.take(MostReason)))
     if known then
       lock.synchronized:
         sessions = sessions.updatedWith(flight)(_.map(_.copy(reply = reply)))
-      answer(Message.Welcome(flight, id, byVectors))
+      answer(SolverMessage.Welcome(flight, id, byVectors))
     else if theirs != build then
       no(
-        s"this solver is build $build, the flight's program is build $theirs; start both from the same program"
+        s"this solver is build $build, the flight's program is " +
+          s"build $theirs; start both from the same program"
       )
     else if begins(flight) then
       Future(decidersOf(briefing))(using workers).onComplete { result =>
@@ -111,7 +112,7 @@ final class SolverDesk(
                 told(
                   s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, $vehicles vehicles"
                 )
-                answer(Message.Welcome(flight, id, byVectors))
+                answer(SolverMessage.Welcome(flight, id, byVectors))
           case Success(Left(reason)) => no(reason)
           case Failure(error)        => no(s"it cannot be decided for: $error")
       }(using workers)
@@ -152,7 +153,7 @@ final class SolverDesk(
     lock.synchronized:
       sessions.get(question.flight) match
         case None =>
-          reply(MessageCodec.bytes(Message.Unknown(question.flight)))
+          reply(SolverMessageCodec.bytes(SolverMessage.Unknown(question.flight)))
           None
         case Some(session) if !isOf(session.deciders, question) =>
           garbled += 1
@@ -221,10 +222,10 @@ final class SolverDesk(
         (session.reply, told)
     for (reply, answer) <- answer do
       val told =
-        try MessageCodec.bytes(Message.Tell(answer))
+        try SolverMessageCodec.bytes(SolverMessage.Tell(answer))
         catch // The courses of very many vehicles.
           case tooLong: IllegalArgumentException =>
-            MessageCodec.bytes(Message.Tell(answer.copy(result = Left(tooLong.getMessage))))
+            SolverMessageCodec.bytes(SolverMessage.Tell(answer.copy(result = Left(tooLong.getMessage))))
       reply(told)
     next(question.flight, question.vehicle)
 

@@ -99,6 +99,6 @@ object TcpLink:
   /** A message behind its length. */
   private[solver] val framed: BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
     BidiFlow.fromFlows(
-      Flow[ByteString].via(Framing.simpleFramingProtocolEncoder(MessageCodec.MostBytes)),
-      Framing.simpleFramingProtocolDecoder(MessageCodec.MostBytes)
+      Flow[ByteString].via(Framing.simpleFramingProtocolEncoder(SolverMessageCodec.MostBytes)),
+      Framing.simpleFramingProtocolDecoder(SolverMessageCodec.MostBytes)
     )

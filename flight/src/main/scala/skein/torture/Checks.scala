@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.port.Moves
 import skein.record.{DecisionRow, Recording}
 import skein.units.*
@@ -55,7 +55,8 @@ object Checks:
       (vehicle, port) <- seen.vehicles.zip(seen.ports) if seen.faultPlan.loop != LoopKind.Paused
       (one, next)     <- port.sendings.zip(port.sendings.drop(1)).find: (one, next) =>
         next.at.since(one.at) < seen.minCommandInterval
-    yield s"$vehicle: two commands within ${next.at.since(one.at).toMillis.fixed(3)} ms, at ${ms(seen, one.at)}"
+    yield s"$vehicle: two commands within " +
+      s"${next.at.since(one.at).toMillis.fixed(3)} ms, at ${ms(seen, one.at)}"
 
   private def unended(seen: FlightTrace): Vector[String] =
     val calls =
@@ -85,7 +86,8 @@ object Checks:
       )(s"the client was to be called $called times, and was ${stats.called} times"),
       Option.when(written > stats.called)(s"$written calls were written of ${stats.called}"),
       Option.when(written < stats.answered + stats.refused + stats.lost)(
-        s"${stats.answered} answered, ${stats.refused} refused and ${stats.lost} lost of $written that were written"
+        s"${stats.answered} answered, ${stats.refused} refused and " +
+          s"${stats.lost} lost of $written that were written"
       ),
       Option.when(seen.arrivals.size > seen.ports.map(_.sendings.size).sum)(
         s"${seen.arrivals.size} moves arrived of ${seen.ports.map(_.sendings.size).sum}"
@@ -95,7 +97,8 @@ object Checks:
   /** Every image that was due is searched, or counted as what became of it. */
   private def unseen(seen: FlightTrace): Vector[String] =
     for counts <- seen.images if counts.due != counts.missed + counts.lost + counts.searched
-    yield s"of ${counts.due} images that were due ${counts.missed} were missed, ${counts.lost} lost, ${counts.searched} searched"
+    yield s"of ${counts.due} images that were due ${counts.missed} were " +
+      s"missed, ${counts.lost} lost, ${counts.searched} searched"
 
   private def unrecorded(seen: FlightTrace): Vector[String] =
     val recording = seen.recording
@@ -120,8 +123,8 @@ object Checks:
 
   /** A recording that failed has the beginning alone. */
   private def isRecorded(seen: FlightTrace): Boolean = seen.outcome match
-    case Outcome.Failed(_) => false
-    case _                 => true
+    case FlightOutcome.Failed(_) => false
+    case _                       => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
     // Each sensor that a policy reads is asked beside the vehicle.
@@ -150,7 +153,8 @@ object Checks:
     */
   private def outOfControl(seen: FlightTrace): Vector[String] =
     val due = seen.calmFrom + FaultPlan.ResumesWithin
-    if seen.outcome != Outcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused then
+    if seen.outcome != FlightOutcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused
+    then
       Vector.empty
     else
       seen.vehicles.flatMap: vehicle =>
@@ -165,7 +169,8 @@ object Checks:
         )
         Vector(
           Option.when(!decided)(
-            s"$vehicle: nothing was decided on a new reading within ${FaultPlan.ResumesWithin.toSeconds} s of calm"
+            s"$vehicle: nothing was decided on a new reading within " +
+              s"${FaultPlan.ResumesWithin.toSeconds} s of calm"
           ),
           Option.when(
             !moments.exists(_ < due)
@@ -180,7 +185,8 @@ object Checks:
 
   private def restless(seen: FlightTrace): Vector[String] =
     for (vehicle, drift) <- seen.vehicles.zip(seen.drifts) if drift.value > Hovering.value
-    yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in ${FlightTrace.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
+    yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in " +
+      s"${FlightTrace.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
 
   /** A flight that ended in trouble may have told the simulator in vain; it has tried for a while. */
   private def standingStill(seen: FlightTrace): Vector[String] =

@@ -64,7 +64,9 @@ final case class FaultPlan(
   override def toString: String =
     val what = Seq(
       Some(
-        s"seed $seed: ${loop.label}${if scenario.isAsPublished then " as published" else ""}, ${scenario.agents.size} vehicles, ${link.name}"
+        s"seed $seed: " +
+          s"${loop.label}${if scenario.isAsPublished then " as published" else ""}, " +
+          s"${scenario.agents.size} vehicles, ${link.name}"
       ),
       Option.when(faults.nonEmpty)(
         faults.map(f => s"${f.fault} at ${f.at.toMillis.round} ms").mkString(", ")

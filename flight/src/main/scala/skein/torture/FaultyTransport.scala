@@ -8,13 +8,13 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import scala.concurrent.Future
 import skein.link.*
-import skein.rpc.{Framed, Framer, Message}
+import skein.rpc.{Framed, Framer, RpcMessage}
 import skein.signal.SplitMix64
 import skein.units.*
 import upack.{Arr, Float64, Int32, Msg, Null, Str}
 
 /** A move as it came to the simulator: the velocity as it is on the wire. */
-final case class Arrival(at: Instant, vehicle: String, north: Float, east: Float)
+final case class ReceivedMove(at: Instant, vehicle: String, north: Float, east: Float)
 
 /** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of arrival, and
   * until `calm` does to messages what the [[MessageFaults]] says. Connections from `spared` are left alone.
@@ -32,12 +32,12 @@ final class FaultyTransport(
   import system.dispatcher
 
   private val random     = SplitMix64(seed)
-  private val arrived    = mutable.ArrayBuffer.empty[Arrival]
+  private val arrived    = mutable.ArrayBuffer.empty[ReceivedMove]
   private val hovers     = mutable.Map.empty[String, Instant]
   private val unanswered = mutable.Map.empty[String, Int].withDefaultValue(0)
   private var most       = 0
 
-  def arrivals: Vector[Arrival] = arrived.toVector
+  def arrivals: Vector[ReceivedMove] = arrived.toVector
 
   /** When each vehicle was last told to hover. */
   def lastHovers: Map[String, Instant] = hovers.toMap
@@ -62,20 +62,20 @@ final class FaultyTransport(
     Flow[ByteString].via(replies(moves)).via(client).via(frames).via(tap).via(ended)
 
   private def request(moves: mutable.LongMap[String], frame: Array[Byte]): ByteString =
-    Message.fromClient(frame) match
-      case Message.Request(id, method, params) if Moves(method) && params.nonEmpty =>
+    RpcMessage.fromClient(frame) match
+      case RpcMessage.Request(id, method, params) if Moves(method) && params.nonEmpty =>
         if meddles(messageFaults.refused) then renamed(method, frame)
         else
           val vehicle       = textOf(params.last)
           val (north, east) = params match
             case Float64(north) +: Float64(east) +: _ if ByVelocity(method) => (north, east)
             case _                                                          => (0.0, 0.0)
-          arrived += Arrival(clock.now(), vehicle, north.toFloat, east.toFloat)
+          arrived += ReceivedMove(clock.now(), vehicle, north.toFloat, east.toFloat)
           moves(id) = vehicle
           unanswered(vehicle) += 1
           most = most.max(unanswered(vehicle))
           ByteString.fromArrayUnsafe(frame)
-      case Message.Request(_, Hover, params) =>
+      case RpcMessage.Request(_, Hover, params) =>
         params.lastOption.foreach(vehicle => hovers(textOf(vehicle)) = clock.now())
         ByteString.fromArrayUnsafe(frame)
       case _ => ByteString.fromArrayUnsafe(frame)
@@ -84,8 +84,8 @@ final class FaultyTransport(
     Flow[ByteString]
       .via(frames)
       .mapConcat: frame =>
-        Message.fromServer(frame) match
-          case Message.Reply(id, _, _) =>
+        RpcMessage.fromServer(frame) match
+          case RpcMessage.Reply(id, _, _) =>
             moves.remove(id).foreach(unanswered(_) -= 1)
             mischief(id, ByteString.fromArrayUnsafe(frame))
           case _ => Vector(ByteString.fromArrayUnsafe(frame))

@@ -1,7 +1,7 @@
 package skein.torture
 
 import skein.flight.CameraSensor
-import skein.loop.Outcome
+import skein.loop.FlightOutcome
 import skein.record.{Record, RecordError, Recording}
 import skein.rpc.{RpcSettings, RpcStats}
 import skein.units.*
@@ -45,10 +45,10 @@ final case class FlightTrace(
     patience: Span,
     startedAt: Instant,
     endedAt: Instant,
-    outcome: Outcome,
+    outcome: FlightOutcome,
     vehicles: Vector[String],
     ports: Vector[WatchedVehicle],
-    arrivals: Vector[Arrival],
+    arrivals: Vector[ReceivedMove],
     lastHovers: Map[String, Instant],
     mostUnanswered: Int,
     mostPending: Long,

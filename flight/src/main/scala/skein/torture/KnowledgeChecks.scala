@@ -24,7 +24,7 @@ private[torture] object KnowledgeChecks:
     ).flatten
 
   /** What is on record of a vehicle is what it told, under the number of its question. */
-  private def misquoted(seen: FlightTrace, told: Map[String, Vector[Answer]]): Vector[String] =
+  private def misquoted(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val states = told.map((vehicle, answers) => vehicle -> answers.map(a => a.question -> a.state).toMap)
     seen.recording.readings
       .find(reading => !states(reading.vehicle).get(reading.sequence).contains(reading.state))
@@ -34,7 +34,7 @@ private[torture] object KnowledgeChecks:
   /** No answer that the controller had is newer than the one decided upon, but for those that came within the time that
     * a loop may take to join what belongs together.
     */
-  private def outdated(seen: FlightTrace, told: Map[String, Vector[Answer]]): Vector[String] =
+  private def outdated(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val joins = seen.faultPlan.loop match
       case LoopKind.Sequential => Span.Zero
       case LoopKind.Stream     => seen.patience
@@ -59,7 +59,7 @@ private[torture] object KnowledgeChecks:
         )
 
   /** What is read together is decided upon when the last of it comes. */
-  private def notAtOnce(seen: FlightTrace, told: Map[String, Vector[Answer]]): Vector[String] =
+  private def notAtOnce(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val moments = told(seen.vehicles.last).map(_.state.receivedAt).toSet
     seen.recording.decisions
       .find(decision => !moments(decision.decidedAt))
@@ -79,7 +79,8 @@ private[torture] object KnowledgeChecks:
         ("its opponent's data", observed.opponentAge, arrived(decision.opponent))
       ).collect:
         case (whose, told, since) if told != since =>
-          s"${where(decision)}: $whose had come ${since.toMillis.fixed(3)} ms before, told were ${told.toMillis.fixed(3)} ms"
+          s"${where(decision)}: $whose had come ${since.toMillis.fixed(3)} " +
+            s"ms before, told were ${told.toMillis.fixed(3)} ms"
       byArrival ++ trueAgesWrong(seen, decision)
     wrong.nextOption().toVector
 
@@ -108,8 +109,8 @@ private[torture] object KnowledgeChecks:
       old       = decision.decidedAt.since(sampledAt)
       off       = age - old
       if off > told.uncertainty || off < Span.Zero - told.uncertainty
-    yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were ${age.toMillis.fixed(3)} ms" +
-      s" to within ${told.uncertainty.toMillis.fixed(3)} ms"
+    yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were " +
+      s"${age.toMillis.fixed(3)} ms to within ${told.uncertainty.toMillis.fixed(3)} ms"
 
   /** By how much the controller's clock was truly ahead of the simulator's. None while it cannot be known yet: all that
     * a run before the simulator's present one has told must have gone by; and never, where the clock of a new run is so
@@ -162,7 +163,7 @@ private[torture] object KnowledgeChecks:
       at >= state.sentAt && at <= state.receivedAt
 
   /** What one vehicle told, in the order in which it came. */
-  private final class History(answers: Vector[Answer]):
+  private final class History(answers: Vector[ReportedState]):
     private val arrivals = answers.map(_.state.receivedAt)
 
     /** The first that came before `until`, and is newer than a reading. What is newer by much came lately: only the last
@@ -172,7 +173,7 @@ private[torture] object KnowledgeChecks:
         used: ReadingRow,
         until: Instant,
         isNewer: (Stamped[?], Stamped[?]) => Boolean
-    ): Option[Answer] =
+    ): Option[ReportedState] =
       val come = arrivals.search(until).insertionPoint
       answers.slice(come - Recent, come).find(answer =>
         answer.state.receivedAt < until && isNewer(answer.state, used.state)

@@ -6,7 +6,7 @@ import skein.settings.NamedScene
 import skein.units.*
 
 /** What one flight through faults did wrong; nothing where it is clean. */
-final case class Verdict(faultPlan: FaultPlan, violations: Vector[String]):
+final case class FaultVerdict(faultPlan: FaultPlan, violations: Vector[String]):
   def isClean: Boolean = violations.isEmpty
 
 /** Seeded flights through faults, each checked from outside. */
@@ -18,9 +18,9 @@ object Torture:
       duration: Span,
       scenario: Option[Scenario] = None,
       scene: Option[NamedScene] = None
-  ): Verdict =
+  ): FaultVerdict =
     val drawn = plan(seed, duration, scenario, scene)
-    Verdict(drawn, violations(Checks.violations(TortureFlight.fly(drawn))))
+    FaultVerdict(drawn, violations(Checks.violations(TortureFlight.fly(drawn))))
 
   /** What happens to the flight of a seed. */
   def plan(seed: Long, duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]): FaultPlan =
@@ -48,5 +48,5 @@ object Torture:
       threads: Int,
       scenario: Option[Scenario] = None,
       scene: Option[NamedScene] = None
-  )(onVerdict: Verdict => Unit): Unit =
+  )(onVerdict: FaultVerdict => Unit): Unit =
     InParallel.asTheyCome(seeds, threads)(of(_, duration, scenario, scene))(onVerdict)

@@ -20,7 +20,7 @@ final case class Sending(at: Instant, north: Float, east: Float)
   * @param question
   *   counts what the vehicle was asked
   */
-final case class Answer(question: Long, state: Stamped[Kinematics])
+final case class ReportedState(question: Long, state: Stamped[Kinematics])
 
 /** A port that keeps account of every call: how it began, that it ended, what it told, how many were outstanding.
   *
@@ -31,7 +31,7 @@ final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Se
     ExecutionContext
 ) extends VehiclePort:
   private val moves = mutable.ArrayBuffer.empty[Sending]
-  private val told  = mutable.ArrayBuffer.empty[Answer]
+  private val told  = mutable.ArrayBuffer.empty[ReportedState]
 
   val reads, commands, measurements = CallCount()
 
@@ -43,7 +43,7 @@ final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Se
   def sendings: Vector[Sending] = moves.toVector
 
   /** In the order in which they came. */
-  def answers: Vector[Answer] = told.toVector
+  def answers: Vector[ReportedState] = told.toVector
 
   /** Whether the last command was to hover. */
   def toldToHover: Boolean = lastIsHover
@@ -53,7 +53,7 @@ final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Se
     reads
       .count(port.read())
       .andThen:
-        case Success(Right(state)) => told += Answer(question, state)
+        case Success(Right(state)) => told += ReportedState(question, state)
 
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
     val (north, east) = action match

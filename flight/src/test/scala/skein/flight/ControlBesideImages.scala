@@ -121,8 +121,9 @@ private enum Beside(val name: String):
     val ages = decided.map((seen, at) => at.since(clocks.toController(seen.validAt)).toMillis)
     val here = decided.map((seen, at) => at.since(seen.receivedAt).toMillis)
     println(
-      f"$over%-22s ${beside.name}%-25s ${decided.size}%5d commands; ${told("age", ages)} (± ${clocks.uncertainty.toMillis}%.2f); " +
-        f"${told("reading to command", here)}; ${came.sum}%4d images of ${bytes.sum / came.sum.max(1)}%,d bytes, ${missed.sum} skipped"
+      f"$over%-22s ${beside.name}%-25s ${decided.size}%5d commands; ${told("age", ages)} (± " +
+        f"${clocks.uncertainty.toMillis}%.2f); ${told("reading to command", here)}; " +
+        f"${came.sum}%4d images of ${bytes.sum / came.sum.max(1)}%,d bytes, ${missed.sum} skipped"
     )
     wait(client.close()): Unit
     proxy.foreach(proxy => wait(proxy.close()))

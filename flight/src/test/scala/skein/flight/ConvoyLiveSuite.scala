@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.link.TcpTransport
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.measure.RecordedTracks
 import skein.record.{EventKind, MemoryRecorder}
 import skein.scenario.{Convoy, Result, Tracks}
@@ -34,7 +34,7 @@ class ConvoyLiveSuite extends munit.FunSuite, Lengthy, Waiting:
       val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator = None)
       val recorder  = MemoryRecorder(assembler.heading(plan, "real"))
       val assembly  = Await.result(assembler.start(plan, recorder), 1.minute).fold(fail(_), identity)
-      assertEquals(Await.result(assembly.landed, 1.minute).outcome, Outcome.Completed)
+      assertEquals(Await.result(assembly.landed, 1.minute).outcome, FlightOutcome.Completed)
       val recording = recorder.recording
       val result    = Result.of(Convoy(), Tracks.of(RecordedTracks.of(recording)).get)
       val told      = result.measured.map(one => s"${one.measure.name} ${one.value.getOrElse("none")}")

@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{EventKind, Recording}
 import skein.scenario.{Convoy, Result, Tracks}
 import skein.measure.RecordedTracks
@@ -19,7 +19,7 @@ class ConvoySimulation extends munit.FunSuite, Lengthy, Optimised:
     val duration = Span.ofSeconds(if overtaxed(loop) then 20 else 25)
     val settings = FlySettings(List(loop), List(link), duration, Span.ofMillis(100), 1, Convoy())
     val flight   = VirtualFlights.fly(settings, settings.plans.head).fold(fail(_), identity)
-    assertEquals(flight.landed.outcome, Outcome.Completed)
+    assertEquals(flight.landed.outcome, FlightOutcome.Completed)
     val recording = flight.recorder.recording
     (recording, Result.of(Convoy(), Tracks.of(RecordedTracks.of(recording)).get))
 

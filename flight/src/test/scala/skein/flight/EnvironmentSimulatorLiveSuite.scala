@@ -8,7 +8,7 @@ import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.Future
-import skein.loop.{LoopKind, LoopSettings, Outcome}
+import skein.loop.{LoopKind, LoopSettings, FlightOutcome}
 import skein.policy.Action
 import skein.port.VehicleError
 import skein.record.{ClockKind, MemoryRecorder, Recording}
@@ -131,7 +131,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
           if link == LatencyProfile.none then vehicle else LinkedVehicle(vehicle, link, 1, number, clock)
         )
         planned.start(vehicles, recorder, Some(simulator)).landed.map: landed =>
-          assertEquals(landed.outcome, Outcome.Completed)
+          assertEquals(landed.outcome, FlightOutcome.Completed)
           recorder.recording
       .value
 

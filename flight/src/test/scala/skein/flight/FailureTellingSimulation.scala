@@ -5,7 +5,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.*
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
@@ -114,12 +114,13 @@ class FailureTellingSimulation extends munit.FunSuite:
     loop <- LoopKind.values.toSeq
   do
     test(
-      s"${loop.label}: a simulator that dies in flight is told within a second, recorded, and has failed the flight"
+      s"${loop.label}: a simulator that dies in flight is told " +
+        "within a second, recorded, and has failed the flight"
     ):
       val flown = fly(loop, dies = true)
       val line  = flown.toldInTime("no answer from the simulator at simulator:41451")
       assert(line.startsWith(s"${flown.landed.plan.id}: "), line)
-      assert(flown.landed.outcome.isInstanceOf[Outcome.Failed], flown.landed.toString)
+      assert(flown.landed.outcome.isInstanceOf[FlightOutcome.Failed], flown.landed.toString)
       assertEquals(flown.recording.ending.map(_.how), Some(EndingKind.Failed))
       assert(flown.recording.ending.flatMap(_.reason).isDefined)
       val noted = flown.recording.events.filter(_.kind == EventKind.SimulatorSilent)
@@ -135,7 +136,7 @@ class FailureTellingSimulation extends munit.FunSuite:
     val flown = fly(stall = Some(Span.ofSeconds(3)))
     val _     = flown.toldInTime("no answer from the simulator")
     assert(flown.told.exists((_, line) => line.contains("answers again, after 3")), flown.told.toString)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     assertEquals(
       flown.recording.events.map(_.kind).filter(kind =>
         kind == EventKind.SimulatorSilent || kind == EventKind.SimulatorBack
@@ -149,13 +150,14 @@ class FailureTellingSimulation extends munit.FunSuite:
     pause <- Seq(Span.ofMillis(200), Span.ofSeconds(3))
   do
     test(
-      s"${loop.label}: a simulator started again after ${pause.toMillis} ms fails the flight, whose vehicles are lost to it"
+      s"${loop.label}: a simulator started again after " +
+        s"${pause.toMillis} ms fails the flight, whose vehicles are lost to it"
     ):
       val flown = fly(loop, dies = true, restarts = Some(pause))
       val why   = "the simulator at simulator:41451 no longer gives "
       flown.landed.outcome match
-        case Outcome.Failed(reason) => assert(reason.startsWith(why), reason)
-        case other                  => fail(s"it ended as $other")
+        case FlightOutcome.Failed(reason) => assert(reason.startsWith(why), reason)
+        case other                        => fail(s"it ended as $other")
       // It is asked once a client that waits up to 2 s between two attempts has found it.
       val latest = flown.wentWrong + pause + Span.ofSeconds(3)
       assert(flown.told.exists((at, line) => line.contains(why) && at < latest), flown.told.toString)
@@ -165,7 +167,7 @@ class FailureTellingSimulation extends munit.FunSuite:
     val flown  = fly(disk = true)
     val reason = "cannot write to recording flight.duckdb: the disk is full"
     val _      = flown.toldInTime(reason)
-    assertEquals(flown.landed.outcome, Outcome.Failed(reason))
+    assertEquals(flown.landed.outcome, FlightOutcome.Failed(reason))
     assertEquals(flown.recording.ending.flatMap(_.reason), Some(reason))
 
   test("the age in the progress line is that of the newest reading now"):

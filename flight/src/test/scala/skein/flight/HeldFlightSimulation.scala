@@ -5,7 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.link.{MemoryNetwork, NetworkPlan}
 import skein.loop.planning.CountedPlanWorkers
-import skein.loop.{LoopKind, Outcome, PlanSettings}
+import skein.loop.{LoopKind, FlightOutcome, PlanSettings}
 import skein.measure.FlightSummary
 import skein.record.*
 import skein.scenario.Scenarios
@@ -31,7 +31,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   /** @param stopping
     *   after so long, instead of letting it go on
     */
-  private def fly(loop: LoopKind, stopping: Boolean = false): (Outcome, MemoryRecorder) =
+  private def fly(loop: LoopKind, stopping: Boolean = false): (FlightOutcome, MemoryRecorder) =
     val plan = settings.plans.find(_.loop == loop).getOrElse(fail("there is no such flight"))
     VirtualTime
       .run(plan.seed): system =>
@@ -69,7 +69,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
     test(s"${loop.label}: while it is paused nobody decides and the vehicles stand still; then it goes on"):
       val (outcome, recorder) = fly(loop)
       val recording           = recorder.recording
-      assertEquals(outcome, Outcome.Completed)
+      assertEquals(outcome, FlightOutcome.Completed)
       val turns = recording.events.filter(event => Set(EventKind.Paused, EventKind.Continued)(event.kind))
       assertEquals(
         turns.map(event => (event.kind, event.detail)),
@@ -111,5 +111,5 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   for loop <- Seq(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive) do
     test(s"${loop.label}: a flight that is paused can be ended"):
       val (outcome, recorder) = fly(loop, stopping = true)
-      assertEquals(outcome, Outcome.Stopped)
+      assertEquals(outcome, FlightOutcome.Stopped)
       assertEquals(FlightSummary.of(recorder.recording).paused.map(_.toSeconds.round), Some(5L))

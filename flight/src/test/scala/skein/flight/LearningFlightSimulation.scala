@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.loop.learning.{FlownLearner, Learning, Transition}
 import skein.policy.*
 import skein.record.{EventKind, Recording}
@@ -49,7 +49,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     var seen      = Vector.empty[Transition]
     val landed    = flown(every10(seen :+= _))
     val recording = landed.recorder.recording
-    assertEquals(landed.landed.outcome, Outcome.Completed)
+    assertEquals(landed.landed.outcome, FlightOutcome.Completed)
     val versions = learned(recording)
     assert(versions.size >= 3, versions)
     assertEquals(
@@ -89,7 +89,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
   test("a version that is not finite is refused, and the last one decides on"):
     val learner: FlownLearner = _ => Some(first.parameters.updated(3, Double.NaN))
     val landed                = flown(learner)
-    assertEquals(landed.landed.outcome, Outcome.Completed)
+    assertEquals(landed.landed.outcome, FlightOutcome.Completed)
     val texts = learned(landed.recorder.recording).map(_.detail)
     assertEquals(texts.head, s"version 1 refused: 1 of its ${family.space.dimension} numbers are not finite")
     assert(landed.recorder.recording.decisions.forall(_.heading.value.isFinite))
@@ -103,7 +103,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     test(s"a learner that $what ends learning alone"):
       val learner: FlownLearner = _ => throw error
       val landed                = flown(learner)
-      assertEquals(landed.landed.outcome, Outcome.Completed)
+      assertEquals(landed.landed.outcome, FlightOutcome.Completed)
       val texts = learned(landed.recorder.recording).map(_.detail)
       assert(texts.head.contains("the policy stays as it is: "), texts)
       assert(texts.head.contains("no such luck"), texts)

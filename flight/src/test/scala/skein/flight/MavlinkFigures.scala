@@ -45,10 +45,13 @@ import skein.units.*
             def at(share: Double) = some((some.size * share).toInt.min(some.size - 1))
             f"${at(0.5)}%.2f, ${at(0.99)}%.2f, ${some.last}%.2f"
           println(
-            s"  age errors, ms, median, 99 %, most: ${told(0, seconds)}; in the first 10 s ${told(0, 10)}, afterwards ${told(10, seconds)}"
+            s"  age errors, ms, median, 99 %, most: ${told(0, seconds)}; in the " +
+              s"first 10 s ${told(0, 10)}, afterwards ${told(10, seconds)}"
           )
           println(
-            f"$wire $link $loop $seed: ${landed.landed.outcome} decisions ${decisions.size} distance ${distances.sum / distances.size}%.3f age ${age.sum / age.size}%.2f ms, ${(System.nanoTime() - started) / 1e9}%.1f s"
+            f"$wire $link $loop $seed: ${landed.landed.outcome} decisions " +
+              f"${decisions.size} distance ${distances.sum / distances.size}%.3f age " +
+              f"${age.sum / age.size}%.2f ms, ${(System.nanoTime() - started) / 1e9}%.1f s"
           )
           distances.sum / distances.size
     println(f"MEAN $wire $link $loop ${results.sum / results.size}%.3f")

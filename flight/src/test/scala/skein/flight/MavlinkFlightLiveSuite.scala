@@ -5,7 +5,7 @@ import scala.concurrent.{Await, Future}
 import scala.concurrent.duration.*
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.*
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, Wire}
 import skein.signal.LatencyProfile
@@ -70,7 +70,7 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
       val recorder = MemoryRecorder(flying.heading(plan, "real"))
       val assembly = Await.result(flying.start(plan, recorder), 3.minutes).fold(fail(_), identity)
       val landed   = Await.result(assembly.landed, 1.minute)
-      assertEquals(landed.outcome, Outcome.Completed)
+      assertEquals(landed.outcome, FlightOutcome.Completed)
       assert(recorder.recording.decisions.size > 60, s"${recorder.recording.decisions.size} decisions")
     finally
       val _ = Await.result(server.close(), 10.seconds)

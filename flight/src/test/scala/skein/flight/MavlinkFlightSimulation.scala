@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.loop.{LoopKind, Outcome, PlanSettings}
+import skein.loop.{LoopKind, FlightOutcome, PlanSettings}
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, Wire}
 import skein.signal.LatencyProfile
@@ -26,7 +26,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     val over = flown(Wire.Mavlink, link)
 
     test(s"over $link, it is flown to its end"):
-      assertEquals(over.landed.outcome, Outcome.Completed)
+      assertEquals(over.landed.outcome, FlightOutcome.Completed)
       assert(over.recorder.recording.decisions.size >= 320, s"${over.recorder.recording.decisions.size}")
 
     test(s"over $link, ages are true within 5 ms, from the first decision on"):
@@ -61,7 +61,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       val settings = brief(loop)
       val plan     = settings.plans.last
       val flown    = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
-      assertEquals(flown.landed.outcome, Outcome.Completed)
+      assertEquals(flown.landed.outcome, FlightOutcome.Completed)
       val recording = flown.recorder.recording
       for agent <- settings.fleet.agents do
         val commands = recording.commands.count(_.vehicle == agent.name)

@@ -2,7 +2,7 @@ package skein.flight
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.{Files, Path}
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.mujoco.MujocoHere
 import skein.record.Recording
 import skein.scenario.Scenarios
@@ -24,7 +24,7 @@ class MujocoFlightLiveSuite extends MujocoHere:
   private def flown(plant: String, loop: LoopKind): Recording =
     val read   = settings(plant, loop).fold(fail(_), identity)
     val flight = VirtualFlights.fly(read, read.plans.head).fold(fail(_), identity)
-    assertEquals(flight.landed.outcome, Outcome.Completed, s"$plant, ${loop.label}")
+    assertEquals(flight.landed.outcome, FlightOutcome.Completed, s"$plant, ${loop.label}")
     flight.recorder.recording
 
   private def tracks(recording: Recording): Map[String, Vector[Vector3]] =

@@ -1,7 +1,7 @@
 package skein.flight
 
 import scala.util.Using
-import skein.loop.{Fallback, LoopKind, Outcome}
+import skein.loop.{Fallback, LoopKind, FlightOutcome}
 import skein.policy.PolicyFamily
 import skein.record.{EventKind, Recording}
 import skein.settings.{FlySettings, OutsidePolicy, Peer}
@@ -24,13 +24,13 @@ class OutsidePolicySimulation extends munit.FunSuite:
   private def timely = settings.copy(deadline = Some(Span.ofMillis(20)))
 
   /** The last flight of the settings: by the policy behind the socket, if there is one. */
-  private def flown(settings: FlySettings): (Outcome, Recording) =
+  private def flown(settings: FlySettings): (FlightOutcome, Recording) =
     val landing = VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
     (landing.landed.outcome, landing.recorder.recording)
 
   private def flownBy(settings: FlySettings, within: Span = OutsidePolicy.AnswerWithin)(
       answer: (Int, Vector[Float]) => Option[Array[Byte]]
-  ): (Outcome, Recording) =
+  ): (FlightOutcome, Recording) =
     Using.resource(Peer(answer)): peer =>
       flown(settings.copy(policies = OutsidePolicy.reach(peer.option, within).toOption.toList))
 
@@ -42,18 +42,18 @@ class OutsidePolicySimulation extends munit.FunSuite:
 
   test("it flies as the same policy in this process, with a deadline and without"):
     val (outcome, own) = flown(settings)
-    assertEquals(outcome, Outcome.Completed)
+    assertEquals(outcome, FlightOutcome.Completed)
     assert(own.decisions.size > 60, own.decisions.size)
     for asked <- Seq(settings, timely) do
       val (outcome, outside) = flownBy(asked)((_, seen) => Some(Peer.pursuer(seen)))
-      assertEquals(outcome, Outcome.Completed)
+      assertEquals(outcome, FlightOutcome.Completed)
       assertEquals(missed(outside), Vector.empty)
       assertEquals(headings(outside), headings(own))
 
   test("where it fails, the fallback decides, and the recording says each time why"):
     val (outcome, recording) = flownBy(timely): (number, seen) =>
       Some(if number % 2 == 0 then Peer.refusal("no such luck") else Peer.pursuer(seen))
-    assertEquals(outcome, Outcome.Completed)
+    assertEquals(outcome, FlightOutcome.Completed)
     val decided = recording.decisions.filter(_.vehicle == Pursuer)
     assertEquals(missed(recording).flatMap(_.decision), decided.map(_.sequence).filter(_ % 2 == 0))
     assert(missed(
@@ -64,7 +64,7 @@ class OutsidePolicySimulation extends munit.FunSuite:
   test("where it hangs, the fallback decides from then on"):
     val (outcome, recording) = flownBy(timely, within = Span.ofMillis(200)): (number, seen) =>
       Some(if number < 10 then Peer.pursuer(seen) else Array.empty)
-    assertEquals(outcome, Outcome.Completed)
+    assertEquals(outcome, FlightOutcome.Completed)
     val decided = recording.decisions.filter(_.vehicle == Pursuer)
     assert(decided.size > 30, decided.size)
     assertEquals(missed(recording).size, decided.size - 10)
@@ -74,8 +74,8 @@ class OutsidePolicySimulation extends munit.FunSuite:
     flownBy(settings)((number, seen) =>
       Some(if number < 5 then Peer.pursuer(seen) else Peer.refusal("no such luck"))
     ) match
-      case (Outcome.Failed(reason), _) => assert(reason.contains("the policy: no such luck"), reason)
-      case (other, _)                  => fail(s"$other")
+      case (FlightOutcome.Failed(reason), _) => assert(reason.contains("the policy: no such luck"), reason)
+      case (other, _)                        => fail(s"$other")
 
   test("flights to warm up in virtual time do not ask it"):
     Using.resource(Peer((_, _) => None)): peer =>

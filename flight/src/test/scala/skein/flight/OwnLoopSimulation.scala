@@ -29,7 +29,10 @@ class OwnLoopSimulation extends munit.FunSuite:
       port.hover()
     override val sensors: Map[String, Sensor] = port.sensors
 
-  private def fly(loop: OwnLoop, seed: Long = 1): (outcome: Outcome, recorder: MemoryRecorder, hovers: Int) =
+  private def fly(
+      loop: OwnLoop,
+      seed: Long = 1
+  ): (outcome: FlightOutcome, recorder: MemoryRecorder, hovers: Int) =
     var hovers = 0
     val flown  = VirtualTime
       .run(seed): system =>
@@ -50,7 +53,7 @@ class OwnLoopSimulation extends munit.FunSuite:
 
   test("it flies in virtual time, equal seeds record the same, and what was decided is decided again"):
     val recording = flown.recorder.recording
-    assertEquals(flown.outcome, Outcome.Completed)
+    assertEquals(flown.outcome, FlightOutcome.Completed)
     assertEquals(recording.flight.loop, "eager")
     assert(recording.decisions.size > 300, s"${recording.decisions.size} decisions")
     assertEquals(flown.recorder.digest, fly(eager).recorder.digest)
@@ -69,7 +72,7 @@ class OwnLoopSimulation extends munit.FunSuite:
         team.ticks(team.now).via(stop.flow).toMat(Sink.ignore)(Keep.right)
     )
     val landed = fly(idle)
-    assertEquals((landed.outcome, landed.hovers), (Outcome.Completed, 2))
+    assertEquals((landed.outcome, landed.hovers), (FlightOutcome.Completed, 2))
 
   test("a graph that does not mind the switch is broken off, and the vehicles hover"):
     val deaf   = OwnLoop("deaf", (team, _) => team.ticks(team.now).toMat(Sink.ignore)(Keep.right))
@@ -92,7 +95,7 @@ class OwnLoopSimulation extends munit.FunSuite:
   test("a graph that cannot be built ends the flight as failed, and the vehicles hover"):
     val unbuilt = OwnLoop("unbuilt", (_, _) => throw IllegalArgumentException("an inlet is not connected"))
     val landed  = fly(unbuilt)
-    assertEquals((landed.outcome, landed.hovers), (Outcome.Failed("an inlet is not connected"), 2))
+    assertEquals((landed.outcome, landed.hovers), (FlightOutcome.Failed("an inlet is not connected"), 2))
 
   test("a graph that fails ends the flight as failed"):
     val broken = OwnLoop(
@@ -101,7 +104,7 @@ class OwnLoopSimulation extends munit.FunSuite:
         Source.failed[Int](IllegalStateException("no such instrument")).toMat(Sink.ignore)(Keep.right)
     )
     val landed = fly(broken)
-    assertEquals((landed.outcome, landed.hovers), (Outcome.Failed("no such instrument"), 2))
+    assertEquals((landed.outcome, landed.hovers), (FlightOutcome.Failed("no such instrument"), 2))
 
   test("its name is no loop of ours, and fits tables and files"):
     for name <- Seq("stream", "", "My loop", "a" * 41) do

@@ -155,7 +155,8 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       check(loop, link, 5, team, duration = Span.ofSeconds(8))
 
   test(
-    "futures over direct, twenty vehicles that cross: eighty tasks overlap, each with a reading of every vehicle"
+    "futures over direct, twenty vehicles that cross: eighty " +
+      "tasks overlap, each with a reading of every vehicle"
   ):
     check(
       LoopKind.Futures,
@@ -165,9 +166,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       Span.ofSeconds(3)
     )
 
-  // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
-  // futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams say who decides
-  // first, and sequential over 500 ms, where no answer comes in time.
+  // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left
+  // out are futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams
+  // say who decides first, and sequential over 500 ms, where no answer comes in time.
   private val ties = Seq(
     LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms"),
     LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),

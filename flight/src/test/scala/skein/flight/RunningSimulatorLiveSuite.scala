@@ -5,7 +5,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.*
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{MemoryRecorder, Recording}
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
@@ -50,7 +50,7 @@ class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting:
         for
           assembly <- assembler.start(plan, recorder).map(_.fold(fail(_), identity))
           landed   <- assembly.landed
-          _ = assertEquals(landed.outcome, Outcome.Completed)
+          _ = assertEquals(landed.outcome, FlightOutcome.Completed)
           all <- fly(assembler, before :+ recorder.recording)
         yield all
     val flown =

@@ -8,7 +8,7 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.{AirSimClient, Multirotor, VehicleSettings, WorldSettings}
 import skein.link.*
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{CameraImage, EventKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
 import skein.settings.{FlightPlan, FlySettings, ImageSource}
@@ -97,7 +97,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
             assembly.landed.map(landed =>
               images = recorder.records.collect { case image: CameraImage => image }.toVector
               Either.cond(
-                landed.outcome == Outcome.Completed,
+                landed.outcome == FlightOutcome.Completed,
                 recorder.recording,
                 s"${plan.id}: ${landed.outcome}"
               )
@@ -146,7 +146,8 @@ class RunningSimulatorSimulation extends munit.FunSuite:
   private def orFail[A](result: Either[String, A]): A = result.fold(fail(_), identity)
 
   test(
-    "flights of one command and of several begin at rest at the starts, and nothing that flies falls between them"
+    "flights of one command and of several begin at rest at the " +
+      "starts, and nothing that flies falls between them"
   ):
     val (recordings, seen, atFirst, inAll) = on(duel): bench =>
       import bench.system.dispatcher

@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.loop.{LoopKind, Outcome, Replay}
+import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.record.EventKind
 import skein.scenario.{Forest, PaperDuel, Scenarios}
 import skein.settings.{FlySettings, NamedScene, RecordedPlan}
@@ -25,7 +25,7 @@ class SceneFlightSimulation extends munit.FunSuite, Unhurried:
     val duel = settings(LoopKind.Stream, Span.ofSeconds(20))
       .copy(scenario = PaperDuel(altitudeM = 5), scene = NamedScene.shipped("forest"))
     val flown = fly(duel)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     assert(contacts(flown).nonEmpty, "nobody touched a tree")
     assert(contacts(flown).forall(_.detail.startsWith("Tree")), contacts(flown).map(_.detail).mkString("; "))
     val recording = flown.recorder.recording
@@ -41,7 +41,7 @@ class SceneFlightSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: scouts cross the forest by lidar alone, touch nothing, and decide the same again"):
       val crossing = settings(loop, Span.ofSeconds(45)).copy(scenario = Forest(vehicles = 2))
       val flown    = fly(crossing)
-      assertEquals(flown.landed.outcome, Outcome.Completed)
+      assertEquals(flown.landed.outcome, FlightOutcome.Completed)
       assertEquals(contacts(flown).map(_.detail).toVector, Vector.empty)
       val recording = flown.recorder.recording
       val last      = recording.readings.groupBy(_.vehicle).values.map(_.last.state.value.positionNed.x)

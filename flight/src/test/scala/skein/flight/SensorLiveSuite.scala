@@ -58,7 +58,7 @@ class SensorLiveSuite extends munit.FunSuite, Unhurried:
         Preparation(client, Clock.system).place(fleet).map(_.fold(fail(_), identity))
       ports = ready.map(Vehicles.port(_, _ => ()))
       landed <- flight.start(ports, recorder, Some(AirSimTime(client))).landed
-      _ = assertEquals(landed.outcome, Outcome.Completed)
+      _ = assertEquals(landed.outcome, FlightOutcome.Completed)
       _ <- client.close()
       _ <- server.close()
     yield recorder.recording

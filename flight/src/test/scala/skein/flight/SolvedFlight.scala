@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.TcpTransport
-import skein.loop.{Fallback, LoopKind, Outcome}
+import skein.loop.{Fallback, LoopKind, FlightOutcome}
 import skein.record.MemoryRecorder
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, SolverChoice}
@@ -48,7 +48,7 @@ final class SolvedFlight(
   /** @return or why it is not flown */
   def start(): Future[Either[String, FlightAssembly]] = assembler.start(plan, recorder)
 
-  def flown(): Future[Outcome] =
+  def flown(): Future[FlightOutcome] =
     given ExecutionContext = system.dispatcher
     start().flatMap(_.fold(why => throw AssertionError(why), _.landed)).map(_.outcome)
 

@@ -5,7 +5,7 @@ import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
-import skein.loop.{Fallback, LoopKind, Outcome, PlanSettings, Replay}
+import skein.loop.{Fallback, LoopKind, FlightOutcome, PlanSettings, Replay}
 import skein.policy.{PolicyFamily, Role}
 import skein.record.EventKind
 import skein.scenario.{Crossing, PaperDuel, Scenarios}
@@ -43,7 +43,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     for plan <- settings.plans.filter(_.solver.isDefined) do
       val flown     = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
       val recording = flown.recorder.recording
-      assertEquals(flown.landed.outcome, Outcome.Completed)
+      assertEquals(flown.landed.outcome, FlightOutcome.Completed)
       assert(recording.solved.size > 50, recording.solved.size)
       assertEquals(recording.solved.size, recording.decisions.size)
       assert(flown.landed.solverTrips.nonEmpty)
@@ -128,7 +128,8 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assertEquals(
       welcomed(briefing, build = "theirs"),
       Left(
-        "the solver refuses: this solver is build ours, the flight's program is build theirs; start both from the same program"
+        "the solver refuses: this solver is build ours, the flight's " +
+          "program is build theirs; start both from the same program"
       )
     )
     val unknown = welcomed(briefing.copy(scenario = "moon landing"))

@@ -5,7 +5,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
 import skein.link.{Address, TcpTransport}
-import skein.loop.{LoopKind, Outcome, PlanSettings, Replay}
+import skein.loop.{LoopKind, FlightOutcome, PlanSettings, Replay}
 import skein.policy.Action
 import skein.record.EventKind
 import skein.scenario.Scenarios
@@ -40,7 +40,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
       )
     )
     val flown = flight.flown().flatMap(outcome => server.close().map(_ => outcome))
-    assertEquals(Await.result(flown, 60.seconds), Outcome.Completed)
+    assertEquals(Await.result(flown, 60.seconds), FlightOutcome.Completed)
     val recording = flight.recorder.recording
     assert(recording.planned.sizeIs > 5, recording.planned.size)
     assert(recording.planned.exists(_.candidates > 0))
@@ -66,7 +66,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
         landed  <- started.fold(fail(_), _.landed)
         _       <- second.close()
       yield landed.outcome
-    assertEquals(Await.result(flown, 60.seconds), Outcome.Completed)
+    assertEquals(Await.result(flown, 60.seconds), FlightOutcome.Completed)
     val recording              = flight.recorder.recording
     def times(kind: EventKind) = recording.events.filter(_.kind == kind).map(_.at)
     val (lost, back)           = (times(EventKind.Disconnected).head, times(EventKind.Reconnected).head)

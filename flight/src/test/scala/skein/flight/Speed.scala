@@ -27,12 +27,14 @@ import skein.units.*
     val wall  = 60 / ((System.nanoTime() - began) * 1e-9)
     val cpu   = 60 / ((processorNanos - cpuAt) * 1e-9)
     println(
-      f"flight $flight%3d: $wall%.0f times real time, $cpu%.0f times by processor time; ${flown.recorder.digest}"
+      f"flight $flight%3d: $wall%.0f times real time, $cpu%.0f " +
+        f"times by processor time; ${flown.recorder.digest}"
     )
     (wall, cpu)
   val warm = times.drop(flights / 2)
   println(
-    f"warm, median: ${median(warm.map(_._1))}%.0f times real time, ${median(warm.map(_._2))}%.0f times by processor time"
+    f"warm, median: ${median(warm.map(_._1))}%.0f times real time, " +
+      f"${median(warm.map(_._2))}%.0f times by processor time"
   )
 
 private def median(values: Seq[Double]): Double = values.sorted.apply(values.size / 2)

@@ -9,7 +9,7 @@ import scala.concurrent.Future
 import skein.forward.RecordedDelays
 import skein.link.*
 import skein.record.{MemoryRecorder, Recording}
-import skein.rpc.{Framed, Framer, Message}
+import skein.rpc.{Framed, Framer, RpcMessage}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -98,8 +98,8 @@ private final class MoveTap(transport: Transport, clock: Clock) extends Transpor
     while framed != Framed.NeedsMore do
       framed match
         case Framed.Complete(frame) =>
-          Message.fromClient(frame) match
-            case Message.Request(_, "moveByVelocityZ", params) =>
+          RpcMessage.fromClient(frame) match
+            case RpcMessage.Request(_, "moveByVelocityZ", params) =>
               params.last match
                 case Str(vehicle) => arrived(vehicle) = arrived(vehicle) :+ clock.now()
                 case other        => throw IllegalStateException(s"no vehicle's name: $other")

@@ -1,7 +1,7 @@
 package skein.flight
 
 import java.util.concurrent.Executors
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.Digest
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
@@ -20,7 +20,7 @@ class VirtualFlightSimulation extends munit.FunSuite:
 
   private def digest(plan: FlightPlan): Digest =
     val flown = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     assert(flown.recorder.records.size > 50)
     flown.recorder.digest
 

@@ -19,7 +19,8 @@ class ActingSuite extends munit.FunSuite:
   )
 
   test(
-    "its heading is where it flies, however slowly, or else where it looks; what says neither keeps the one before"
+    "its heading is where it flies, however slowly, or else where " +
+      "it looks; what says neither keeps the one before"
   ):
     assertEquals(Acting.headingRad(Action.Velocity(Vector3(0, 0.5, -3)), 0.7), math.Pi / 2)
     assertEquals(Acting.headingRad(Action.VelocityAt(-0.01, 0, down), 0.7), math.Pi)
@@ -41,7 +42,8 @@ class ActingSuite extends munit.FunSuite:
     assertEquals(Acting.guidance(Action.Land), Setpoint.velocity(0, 0, 0.2))
 
   test(
-    "it looks where it flies only above half a metre a second, the vertical not counted where an altitude is held"
+    "it looks where it flies only above half a metre a second, " +
+      "the vertical not counted where an altitude is held"
   ):
     def yaw(north: Double, east: Double) =
       (

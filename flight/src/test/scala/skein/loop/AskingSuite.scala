@@ -45,12 +45,14 @@ class AskingSuite extends munit.FunSuite:
 
   test("futures note the steps that they miss while as many run as may, and none where all end in time"):
     assertEquals(missedSteps(flown(LoopKind.Futures, LatencyProfile.direct)), Vector.empty)
-    // Four steps begin before the first has ended, after 4 × 137 ms; of the two that are due by then one is missed.
+    // Four steps begin before the first has ended, after 4 × 137 ms; of the two that are due by then one is
+    // missed.
     assertEquals(
       missedSteps(flown(LoopKind.Futures, VirtualDuel.constant(137))).head,
       (Span.ofMillis(548), "1 steps missed: too many futures run")
     )
-    // Four vehicles are read one after the other, 2 s each; four steps run at a time, one future for each vehicle.
+    // Four vehicles are read one after the other, 2 s each; four steps run at a time, one future for each
+    // vehicle.
     val slow        = flown(LoopKind.Futures, VirtualDuel.constant(2000), duration = Span.ofSeconds(9))
     val (at, noted) = missedSteps(slow).head
     assertEquals(at, Span.ofSeconds(8))

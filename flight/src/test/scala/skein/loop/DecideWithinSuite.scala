@@ -53,7 +53,8 @@ class DecideWithinSuite extends munit.FunSuite:
     .value
 
   test(
-    "a deadline missed is recorded, and the policy goes on from the decision before, over the time that has passed"
+    "a deadline missed is recorded, and the policy goes on from " +
+      "the decision before, over the time that has passed"
   ):
     val (decisions, events) = flown(instead = None)
     assertEquals(
@@ -84,7 +85,7 @@ class DecideWithinSuite extends munit.FunSuite:
         .outcome
         .map(outcome => (outcome, recorder.recording))
     val (outcome, recording) = run.value
-    assertEquals(outcome, Outcome.Completed)
+    assertEquals(outcome, FlightOutcome.Completed)
     assert(recording.decisions.size > 30, recording.decisions.size.toString)
     // In virtual time a pure policy takes no time.
     assertEquals(recording.events.filter(_.kind == EventKind.DeadlineMissed), Vector.empty)
@@ -106,7 +107,7 @@ class DecideWithinSuite extends munit.FunSuite:
     val pursuit             = Fallback.parse("pure-pursuit").fold(fail(_), identity)
     val (decisions, events) = flown(pursuit.policy(scenario.agents(pursuer)))
     val readings            = decisions.flatMap(decision => Seq(decision.own, decision.opponent)).distinct
-    def column(parameters: Parameter*) =
+    def column(parameters: ParameterRow*) =
       val recording = Recording(
         Samples.heading.copy(parameters = parameters),
         readings = readings,
@@ -115,7 +116,7 @@ class DecideWithinSuite extends munit.FunSuite:
       )
       Replay(scenario, recording).firstDifference.map(_.column)
     val others = Samples.heading.parameters
-    assertEquals(column(others :+ Parameter(Replay.Fallback, pursuit.label)*), None)
+    assertEquals(column(others :+ ParameterRow(Replay.Fallback, pursuit.label)*), None)
     assertEquals(column(others*), Some("headingRad"))
 
   test("a fallback is hold, repeat or a policy for the roles that it is meant for"):

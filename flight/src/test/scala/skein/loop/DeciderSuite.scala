@@ -53,7 +53,7 @@ class DeciderSuite extends munit.FunSuite:
   test("both deciders see the evader in the pursuer's frame"):
     val heading  = math.Pi / 2
     val ofEvader =
-      row(evader.decide(evader.start, view.withMove(Move(1, 0, heading, millis(150))), millis(200)))
+      row(evader.decide(evader.start, view.withMove(SentCommand(1, 0, heading, millis(150))), millis(200)))
     assertEqualsDouble(ofEvader.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofEvader.relativeY.value, -20, 1e-12)
     val ofPursuer = row(pursuer.decide(pursuer.start.copy(headingRad = heading), view, millis(200)))
@@ -61,7 +61,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
 
   test("the four observations count from arrival and from the moves sent"):
-    val moved    = view.withMove(Move(0, 0, 1, millis(150))).withMove(Move(1, 0, 1, millis(170)))
+    val moved = view.withMove(SentCommand(0, 0, 1, millis(150))).withMove(SentCommand(1, 0, 1, millis(170)))
     val decision = row(evader.decide(evader.start, moved, millis(200)))
     assertEquals(decision.observations.ownAge, Span.ofMillis(80))
     assertEquals(decision.observations.opponentAge, Span.ofMillis(40))
@@ -79,9 +79,11 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
 
   test(
-    "it sees itself heading where it was last told, the others where they were sent, and all as they are foreseen"
+    "it sees itself heading where it was last told, the others " +
+      "where they were sent, and all as they are foreseen"
   ):
-    val sent   = view.withMove(Move(0, 0, 0.4, millis(150))).withMove(Move(1, 0, 0.6, millis(150)))
+    val sent =
+      view.withMove(SentCommand(0, 0, 0.4, millis(150))).withMove(SentCommand(1, 0, 0.6, millis(150)))
     val memory = pursuer.start.copy(headingRad = 0.9, decidedAt = Some(millis(170)), decisions = 3)
     val heard  = pursuer.observation(memory, sent, millis(200))
     assertEquals(heard.headings.map(_.value), Vector(0.4, 0.9))

@@ -46,7 +46,7 @@ class FailedFlightSuite extends munit.FunSuite:
         outstandingAtHover = outstanding
         counted(port.hover())
 
-  private final case class FlightResult(outcome: Outcome, ports: Vector[Counted], recording: Recording)
+  private final case class FlightResult(outcome: FlightOutcome, ports: Vector[Counted], recording: Recording)
 
   /** Both vehicles decide some 20 times, then the pursuer's policy throws. */
   private def fly(
@@ -79,10 +79,11 @@ class FailedFlightSuite extends munit.FunSuite:
 
   for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do
     test(
-      s"${kind.label}: when a policy throws, vehicles are told to hover until they say so, and every call ends"
+      s"${kind.label}: when a policy throws, vehicles are told to " +
+        "hover until they say so, and every call ends"
     ):
       val landed = fly(kind, IllegalStateException("no idea"), lostHovers = 3)
-      assertEquals(landed.outcome, Outcome.Failed("no idea"))
+      assertEquals(landed.outcome, FlightOutcome.Failed("no idea"))
       for port <- landed.ports do
         assert(port.hovering, "a vehicle flies on")
         assert(port.isAnswered, "a call was outstanding at the end")
@@ -91,7 +92,7 @@ class FailedFlightSuite extends munit.FunSuite:
   test("an exception without a message is named by its class"):
     assertEquals(
       fly(LoopKind.Stream, ArithmeticException()).outcome,
-      Outcome.Failed("java.lang.ArithmeticException")
+      FlightOutcome.Failed("java.lang.ArithmeticException")
     )
 
   test("vehicles that never say that they hover are given up and noted"):
@@ -118,7 +119,7 @@ class FailedFlightSuite extends munit.FunSuite:
       assertEquals((port.hovering, port.outstandingAtHover), (true, 1))
 
   test("what lets the simulator's time pass in steps is needed by paused, and by no other"):
-    def flown(kind: LoopKind): Outcome = VirtualTime
+    def flown(kind: LoopKind): FlightOutcome = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
         given ExecutionContext = system.dispatcher
@@ -129,5 +130,5 @@ class FailedFlightSuite extends munit.FunSuite:
         val team               = Team(duel, world.ports, clock, recorder, LoopSettings())
         Flight.start(kind, team, None, Span.ofSeconds(1), clock, recorder).outcome
       .value
-    assertEquals(flown(LoopKind.Stream), Outcome.Completed)
+    assertEquals(flown(LoopKind.Stream), FlightOutcome.Completed)
     assert(intercept[IllegalArgumentException](flown(LoopKind.Paused)).getMessage.contains("paused needs"))

@@ -18,7 +18,8 @@ class GraphLayoutSuite extends munit.FunSuite:
     assertEquals(places()(), Map.empty)
 
   test(
-    "what branches stands in one column, each behind the one that leads to it, and narrower columns in the middle"
+    "what branches stands in one column, each behind the one that " +
+      "leads to it, and narrower columns in the middle"
   ):
     assertEquals(
       places("cast", "x1", "x2", "y1", "y2", "z")(

@@ -13,7 +13,11 @@ import skein.vtime.VirtualTime
 class LateFailureSimulation extends munit.FunSuite:
 
   /** Of a flight of 2 s over 200 ms each way, whose recorder fails at a moment, if ever. */
-  private def outcome(kind: LoopKind, failsAt: Option[Span], ends: () => Outcome = () => Outcome.Completed) =
+  private def outcome(
+      kind: LoopKind,
+      failsAt: Option[Span],
+      ends: () => FlightOutcome = () => FlightOutcome.Completed
+  ) =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
@@ -34,14 +38,14 @@ class LateFailureSimulation extends munit.FunSuite:
 
   for kind <- Seq(LoopKind.Stream, LoopKind.Futures, LoopKind.Predictive) do
     test(s"${kind.label}: a recorder that fails while vehicles are told to hover fails the flight"):
-      assertEquals(outcome(kind, None), Outcome.Completed)
+      assertEquals(outcome(kind, None), FlightOutcome.Completed)
       assertEquals(
         outcome(kind, Some(Span.ofMillis(2100))),
-        Outcome.Failed(LateFailureSimulation.Full.message)
+        FlightOutcome.Failed(LateFailureSimulation.Full.message)
       )
 
   test("a flight that has failed already keeps its first reason"):
-    val first = Outcome.Failed("nobody answers")
+    val first = FlightOutcome.Failed("nobody answers")
     assertEquals(outcome(LoopKind.Stream, Some(Span.ofMillis(2100)), () => first), first)
 
 object LateFailureSimulation:

@@ -66,7 +66,7 @@ class PausedLoopSuite extends munit.FunSuite:
       if steps == failing then Future.successful(lost) else stepper.continueFor(stepsBy.getOrElse(span))
 
   private final case class FlightResult(
-      outcome: Outcome,
+      outcome: FlightOutcome,
       paused: Boolean,
       hovering: Vector[Boolean],
       toldWhilePaused: Boolean,
@@ -118,7 +118,7 @@ class PausedLoopSuite extends munit.FunSuite:
 
   test("after its last step the vehicles hover and the simulator runs"):
     val landed = fly()
-    assertEquals((landed.outcome, landed.commands), (Outcome.Completed, 20))
+    assertEquals((landed.outcome, landed.commands), (FlightOutcome.Completed, 20))
     assert(landed.stoodStill, "it was to be paused once, before anything was read")
     isReleased(landed)
 
@@ -148,8 +148,8 @@ class PausedLoopSuite extends munit.FunSuite:
   test("a flight that fails midway, in a reading or in a step, lets the simulator run, too"):
     for landed <- Seq(fly(failingRead = 5), fly(failingStep = 5), fly(failingStep = 1)) do
       landed.outcome match
-        case Outcome.Failed(reason) => assert(reason.contains("no answer"), reason)
-        case other                  => fail(s"expected a failure, came $other")
+        case FlightOutcome.Failed(reason) => assert(reason.contains("no answer"), reason)
+        case other                        => fail(s"expected a failure, came $other")
       isReleased(landed)
 
   test("vehicles and simulator are told again until they answer"):
@@ -158,5 +158,5 @@ class PausedLoopSuite extends munit.FunSuite:
 
   test("a simulator that never answers again is given up, and the outcome says so"):
     fly(failedResumes = 999).outcome match
-      case Outcome.Failed(reason) => assert(reason.contains("stands still"), reason)
-      case other                  => fail(s"expected a failure, came $other")
+      case FlightOutcome.Failed(reason) => assert(reason.contains("stands still"), reason)
+      case other                        => fail(s"expected a failure, came $other")

@@ -22,7 +22,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
       .map(decision => math.hypot(decision.relativeX.value, decision.relativeY.value))
 
   test("over vpn the planning pursuer captures the paper's evader and flies at half the paper's distance"):
-    assertEquals(duel.outcome, Outcome.Completed)
+    assertEquals(duel.outcome, FlightOutcome.Completed)
     val closest = distances(duel).min
     assert(closest < 1.5, s"seed 4: closest $closest m")
     // Under `stream`, the paper's pursuer orbits at 10.8 m.

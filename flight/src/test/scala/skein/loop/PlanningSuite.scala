@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, Separation, Target}
+import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, SeparationCost, Target}
 import skein.policy.{
   AgentPolicy,
   Course,
@@ -31,29 +31,31 @@ class PlanningSuite extends munit.FunSuite:
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
   test(
-    "vehicles that are neither planned nor the opponent are kept from where a separation is set, with a metre more"
+    "vehicles that are neither planned nor the opponent are kept " +
+      "from where a separation is set, with a metre more"
   ):
     val apart = part(PlanSettings(separationM = 5))
-    assertEquals(apart.objective.separation, Separation(5, margin = 1))
+    assertEquals(apart.objective.separation, SeparationCost(5, margin = 1))
     assertEquals(apart.situation.others.size, 1) // the other pair's evader
     assert(PursuitPlanning(fleet, pursuer, PlanSettings(separationM = 5), 3).regardsTeam)
     val alone = part(PlanSettings())
-    assertEquals(alone.objective.separation, Separation(0, margin = 0))
+    assertEquals(alone.objective.separation, SeparationCost(0, margin = 0))
     assertEquals(alone.situation.others.size, 0)
     assert(!PursuitPlanning(fleet, pursuer, PlanSettings(), 3).regardsTeam)
 
   test(
-    "what the scenario keeps between any two is kept from opponents, too, with a metre more, however little it is"
+    "what the scenario keeps between any two is kept from " +
+      "opponents, too, with a metre more, however little it is"
   ):
     val settings = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
     val kept     = part(settings)
-    assertEquals(kept.objective.separation, Separation(8, margin = 1))
+    assertEquals(kept.objective.separation, SeparationCost(8, margin = 1))
     assertEquals(kept.situation.others.size, 2) // both evaders
     val least = PlanSettings(kept = Vector(skein.scenario.Kept.Apart(0.5)))
-    assertEquals(part(least).objective.separation, Separation(1.5, margin = 1))
+    assertEquals(part(least).objective.separation, SeparationCost(1.5, margin = 1))
     assertEquals(part(least).situation.others.size, 2)
     val little = PlanSettings(separationM = 0.5)
-    assertEquals(part(little).objective.separation, Separation(0.5, margin = 1))
+    assertEquals(part(little).objective.separation, SeparationCost(0.5, margin = 1))
     assert(PursuitPlanning(fleet, pursuer, little, 3).regardsTeam)
 
   /** What is decided in the place of a plan by a policy that turns so far from where it was told to head, 0.25 rad. */
@@ -105,7 +107,7 @@ class PlanningSuite extends munit.FunSuite:
       Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
     def target(policy: AgentPolicy) =
       val posed = PursuitPlanning(flownBy(policy), pursuer, PlanSettings(behaviours = 1), 3)
-        .pose(Memory(0.25, None, 7), view.withMove(Move(evader, 1, 0.7, now)), now)
+        .pose(Memory(0.25, None, 7), view.withMove(SentCommand(evader, 1, 0.7, now)), now)
       posed.situation.behaviours.head.target
     target(KeepHeading) match
       case opponent: Target.Opponent =>
@@ -165,7 +167,8 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(teamPart(Moving(), PlanSettings(horizonSteps = 1)).objective.cruiseSpeed, 0.0)
 
   test(
-    "it keeps the widest separation that anybody set, and a metre more, and is suggested no policy that avoids"
+    "it keeps the widest separation that anybody set, and a " +
+      "metre more, and is suggested no policy that avoids"
   ):
     def separation(policy: Moving, settings: PlanSettings) =
       val posed = teamPart(policy, settings)
@@ -204,7 +207,8 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(mostAtOnce(0.4), 1 / 0.4)
 
   test(
-    "vehicles of a team that do not plan are kept from where a separation is set, and else are in nobody's way"
+    "vehicles of a team that do not plan are kept from where a " +
+      "separation is set, and else are in nobody's way"
   ):
     val mixed = Fleet(fleet.agents.zipWithIndex.map((agent, place) =>
       if place == pursuer then agent.copy(policy = Moving()) else agent.copy(policy = Together)
@@ -228,7 +232,8 @@ class PlanningSuite extends munit.FunSuite:
     assert(decidedBy(planning, isOld = false)._1.speed.isDefined)
 
   test(
-    "a plan is begun with where it saves a tenth of a metre against what the policy would do, else the policy's way"
+    "a plan is begun with where it saves a tenth of a metre " +
+      "against what the policy would do, else the policy's way"
   ):
     val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
     val planning             = TeamPlanning(team, pursuer, Moving(), PlanSettings(), seed = 3)

@@ -87,7 +87,8 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
     )
 
   test(
-    "as published it is decided at every view and paced then; else paced first, and all that is decided is sent"
+    "as published it is decided at every view and paced then; " +
+      "else paced first, and all that is decided is sent"
   ):
     val published                    = LoopSettings().asPublished
     def flown(is: Boolean)           = fly(LoopKind.Stream, settings = published.copy(decideThenPace = is))

@@ -54,7 +54,9 @@ import skein.vehicle.*
     val predicted =
       if errors.isEmpty then ""
       else
-        f"; prediction age ${ages.sum / ages.size}%.0f ms, own error p50 ${errors(errors.size / 2)}%.4f p95 ${errors(errors.size * 95 / 100)}%.4f m"
+        f"; prediction age ${ages.sum / ages.size}%.0f ms, own error p50 " +
+          f"${errors(errors.size / 2)}%.4f p95 ${errors(errors.size * 95 / 100)}%.4f m"
     println(
-      f"  $name%-30s $mean%.3f ± $spread%.3f m (${(mean / truth - 1) * 100}%+.2f %%, ${distances.min}%.2f to ${distances.max}%.2f)$predicted"
+      f"  $name%-30s $mean%.3f ± $spread%.3f m (${(mean / truth - 1) * 100}%+.2f " +
+        f"%%, ${distances.min}%.2f to ${distances.max}%.2f)$predicted"
     )

@@ -11,7 +11,7 @@ class PredictiveLoopSimulation extends munit.FunSuite:
       settings: LoopSettings = LoopSettings()
   ): Double =
     val duels = seeds.map(VirtualDuel.fly(kind, link, _, settings))
-    duels.foreach(duel => assertEquals(duel.outcome, Outcome.Completed))
+    duels.foreach(duel => assertEquals(duel.outcome, FlightOutcome.Completed))
     duels.map(_.distanceM).sum / duels.size / VirtualDuel.truth.distanceM - 1
 
   test("the paused truth is the reference's 8.31 m"):
@@ -25,7 +25,8 @@ class PredictiveLoopSimulation extends munit.FunSuite:
       assert(math.abs(off) < bound, s"seeds $seeds: ${off * 100} %")
 
   test(
-    "at a constant 200 ms each way predictive flies within 2 % where as many moves may be in flight as the link holds"
+    "at a constant 200 ms each way predictive flies within 2 % " +
+      "where as many moves may be in flight as the link holds"
   ):
     val (link, settings) = (VirtualDuel.constant(400), LoopSettings(movesInFlight = 6))
     val off              = deviation(LoopKind.Predictive, link, settings)

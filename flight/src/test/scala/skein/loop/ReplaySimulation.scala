@@ -92,7 +92,8 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     assert(found(team(Slot), lacking).exists(_.column == "vehicle"), found(team(Slot), lacking).toString)
 
   test(
-    "plans of a team are on record with whom they regarded, their speeds, and how their predictions turned out"
+    "plans of a team are on record with whom they regarded, " +
+      "their speeds, and how their predictions turned out"
   ):
     val recording = flown(LoopKind.Plan, team(Slot))
     val names     = team(Slot).agents.map(_.name)
@@ -122,7 +123,8 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     )
 
   test(
-    "a decision upon a reading or a command that is not on record is found, and so is one that is on record otherwise"
+    "a decision upon a reading or a command that is not on record " +
+      "is found, and so is one that is on record otherwise"
   ):
     val recording = flown(LoopKind.Stream, duels)
     val decision  = recording.decisions(20)

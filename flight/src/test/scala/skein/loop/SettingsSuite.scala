@@ -35,7 +35,8 @@ class SettingsSuite extends munit.FunSuite:
     assertEquals((slow.period, slow.paceInterval, slow.patience), (ms(300), ms(150), ms(300)))
 
   test(
-    "as published: asked in turn over the period, answers waited for in order, decided at each, paced by the period"
+    "as published: asked in turn over the period, answers waited " +
+      "for in order, decided at each, paced by the period"
   ):
     val published = LoopSettings(period = ms(80)).asPublished
     assertEquals((published.paceInterval, published.spread, published.patience), (ms(80), ms(80), Span.Zero))

@@ -160,13 +160,13 @@ class TeamViewSuite extends munit.FunSuite:
     val view     = TeamView.empty(2).withReading(first).withReading(other)
     val decision = pursuer.decide(pursuer.start, view, millis(200))._2
     def ended(result: scala.util.Try[Either[VehicleError, Boolean]]) =
-      Steering(1, skein.flow.Steered.Ended(decision, millis(400), result))
+      SteeringEvent(1, skein.flow.Steered.Ended(decision, millis(400), result))
     val told = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem = system
         Source(
           Vector(
-            Steering(1, skein.flow.Steered.Sent(decision, millis(210))),
+            SteeringEvent(1, skein.flow.Steered.Sent(decision, millis(210))),
             ended(Success(Right(true))),
             ended(Success(Right(false))),
             ended(Success(Left(VehicleError.TimedOut("lost")))),

@@ -14,7 +14,7 @@ import skein.vtime.VirtualTime
   * @param distanceM
   *   between the vehicles where they truly are, horizontally: mean over the last 10 s of physics
   */
-final case class VirtualDuel(distanceM: Double, outcome: Outcome, recording: Recording):
+final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recording: Recording):
 
   /** Ascending, m.
     *

@@ -15,8 +15,8 @@ class FlownVehiclesSuite extends munit.FunSuite:
   private def heading(loop: String) = RecordingHeader(
     FlightRow("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
     Seq(
-      Vehicle("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
-      Vehicle("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
+      VehicleRow("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
+      VehicleRow("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
     )
   )
 
@@ -32,7 +32,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
       atMs: Double,
       vehicle: String = "Red",
       decision: Option[Long] = None
-  ) = Command(
+  ) = CommandRow(
     number,
     vehicle,
     decision,
@@ -66,7 +66,8 @@ class FlownVehiclesSuite extends munit.FunSuite:
     assertEquals((sample.x, sample.y, sample.vx, sample.vy), (3.0, -3.0, 10.0, -10.0))
 
   test(
-    "a command whose predecessor was answered as superseded arrived in the middle of what is over in its round trip"
+    "a command whose predecessor was answered as superseded " +
+      "arrived in the middle of what is over in its round trip"
   ):
     // 60 ms instead of 40: half of it on either way.
     assertEquals(

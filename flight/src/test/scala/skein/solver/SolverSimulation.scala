@@ -2,7 +2,7 @@ package skein.solver
 
 import skein.loop.*
 import skein.policy.*
-import skein.record.{EventKind, Parameter, Recording}
+import skein.record.{EventKind, ParameterRow, Recording}
 import skein.scenario.{Crossing, PaperDuel}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.SolverTrial.To
@@ -17,7 +17,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
 
   /** As a flight records it whose fallback that is. */
   private def hovering(recording: Recording): Recording =
-    val fallback = Parameter(Replay.Fallback, Fallback.Hover.label)
+    val fallback = ParameterRow(Replay.Fallback, Fallback.Hover.label)
     recording.copy(heading = recording.heading.copy(parameters = recording.heading.parameters :+ fallback))
 
   /** What must hold of every such flight. */
@@ -27,7 +27,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       answers: Recording => Int = _.solved.size
   ): SolverTrial =
     val recording = trial.recording
-    assertEquals(trial.outcome, Outcome.Completed)
+    assertEquals(trial.outcome, FlightOutcome.Completed)
     assertEquals(Replay(fleet, hovering(recording), SolverTrial.planning).firstDifference, None)
     for (vehicle, solved) <- recording.solved.groupBy(_.vehicle) do
       val numbers = solved.map(_.question)
@@ -61,12 +61,13 @@ class SolverSimulation extends munit.FunSuite, Optimised:
         hand.at(4.5)(hand.mendLink())
         hand.at(5.3) { sent = hand.greetings.result() }
       )
-      assertEquals(trial.outcome, Outcome.Completed)
+      assertEquals(trial.outcome, FlightOutcome.Completed)
       assert(clue(expected).contains(clue(sent.takeWhile(identity).size)))
       assert(clue(sent.dropWhile(identity).count(identity)) <= 3)
 
   test(
-    "decisions are made elsewhere, at the solver's time on the controller's clock, and replay from the recording"
+    "decisions are made elsewhere, at the solver's time on the " +
+      "controller's clock, and replay from the recording"
   ):
     val trial = checked(SolverTrial.fly()())
     assert(trial.recording.decisions.size > 100)
@@ -153,7 +154,8 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(trial.recording.solved.size > 30, s"seed $seed: ${trial.counts}")
 
   test(
-    "a policy with a memory goes on from the answer that was used, and begins anew with a new start of its solver"
+    "a policy with a memory goes on from the answer that was " +
+      "used, and begins anew with a new start of its solver"
   ):
     val counting = SolverSimulation.Counting
     val team     =

@@ -19,7 +19,7 @@ import skein.vtime.VirtualTime
   *   as they came to a solver, by its start, vehicle and number
   */
 final case class SolverTrial(
-    outcome: Outcome,
+    outcome: FlightOutcome,
     recording: Recording,
     counts: Exchange.Counts,
     questions: Vector[(solver: Long, vehicle: Int, number: Long)],
@@ -77,7 +77,7 @@ object SolverTrial:
       after(Span.ofMillis(1).toDuration, system.scheduler)(Future.unit).foreach(_ => news(LinkNews.Up))
       new OpenLink:
         def send(message: Array[Byte]): Either[String, Unit] = down.toLeft:
-          greetings += MessageCodec.message(message).exists(_.isInstanceOf[Message.Hello])
+          greetings += SolverMessageCodec.message(message).exists(_.isInstanceOf[SolverMessage.Hello])
           crossing(To.Solver)(desk.foreach(_.received(Seq(message), reply).fold(sys.error(_), identity)))
         def close(): Future[Done] = Future.successful(Done)
 

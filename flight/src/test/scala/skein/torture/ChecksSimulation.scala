@@ -2,7 +2,7 @@ package skein.torture
 
 import scala.concurrent.ExecutionContext
 import skein.flight.CameraSensor
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{DecisionRow, Event, EventKind, RecordError, TrueAge}
 import skein.policy.*
 import skein.scenario.{PaperDuel, Scenario}
@@ -219,7 +219,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       clean.arrivals.filter(arrival => arrival.at < clean.calmFrom || arrival.at >= due)
     )
     assert(found(silent).contains("Evader: no command came within 3"))
-    assert(!found(silent.copy(outcome = Outcome.Stopped)).contains("no command came within"))
+    assert(!found(silent.copy(outcome = FlightOutcome.Stopped)).contains("no command came within"))
     assert(!found(silent.copy(endedAt = due - Span.ofMillis(1))).contains("no command came within"))
     val paused = silent.copy(faultPlan = clean.faultPlan.copy(loop = LoopKind.Paused))
     assert(!found(paused).contains("no command came within"))
@@ -263,9 +263,9 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
 
   test("a flight that failed has the beginning on record alone"):
     val begun = clean.recording.copy(readings = clean.recording.readings.take(10))
-    val cut   = clean.copy(recording = begun, outcome = Outcome.Failed("the disk is full"))
+    val cut   = clean.copy(recording = begun, outcome = FlightOutcome.Failed("the disk is full"))
     assert(!found(cut).contains("readings were asked for"))
-    assert(found(cut.copy(outcome = Outcome.Completed)).contains("readings were asked for"))
+    assert(found(cut.copy(outcome = FlightOutcome.Completed)).contains("readings were asked for"))
 
   test(
     "what a simulator told before it was started again with another clock is not held against its new one"
@@ -276,12 +276,14 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val wrong = "ms old, told were"
     for seconds <- Seq(100.0, -100.0, 1.0, -1.0) do
       assert(found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
-    // A jump that no answer shows is not judged, and neither is what was read while the old answers may still come.
+    // A jump that no answer shows is not judged, and neither is what was read while the old answers may still
+    // come.
     for seconds <- Seq(0.5, -0.5) do
       assert(!found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
     assert(!found(restarted(7.3, Span.ofSeconds(100))).contains(wrong))
     assertEquals(found(restarted(4, Span.Zero)), "")
-    // 0.7 s until questions of the old run are over, and 0.7 s more for the first answer of the new one to be known.
+    // 0.7 s until questions of the old run are over, and 0.7 s more for the first answer of the new one to be
+    // known.
     val first = found(restarted(4, Span.ofSeconds(100))) match
       case s"${_}decision $number of $vehicle: ${_}" =>
         clean.recording.decisions.find(one => one.vehicle == vehicle && one.sequence == number.toLong).get
@@ -317,7 +319,8 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(forged).contains("after the newer"))
 
   test(
-    "an answer of a run before, with a later clock, is not newer than one of the run that followed (seed 1851)"
+    "an answer of a run before, with a later clock, is not " +
+      "newer than one of the run that followed (seed 1851)"
   ):
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       Stamped((), at(validMs), at(sentMs), at(receivedMs))

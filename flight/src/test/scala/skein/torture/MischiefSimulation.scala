@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.EventKind
 import skein.scenario.PaperDuel
 import skein.testing.Unhurried
@@ -22,7 +22,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
       )
     val seen = TortureFlight.fly(faultPlan)
     assertEquals(Checks.violations(seen), Vector.empty, messageFaults.toString)
-    assertEquals(seen.outcome, Outcome.Completed)
+    assertEquals(seen.outcome, FlightOutcome.Completed)
     seen
 
   private def troubles(seen: FlightTrace) =
@@ -92,7 +92,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
       told :+= verdict.faultPlan.seed
     )
     assertEquals(told.sorted, Vector(1L, 2L, 3L, 4L))
-    var few = Vector.empty[Verdict]
+    var few = Vector.empty[FaultVerdict]
     Torture.all(Iterator(5L), FaultPlan.Shortest, threads = 3)(few :+= _)
     assertEquals(few.map(verdict => (verdict.faultPlan.seed, verdict.isClean)), Vector((5L, true)))
     assert(!few.head.copy(violations = Vector("a command overtook a newer one")).isClean)

@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.EventKind
 import skein.scenario.Forest
 import skein.signal.LatencyProfile
@@ -44,7 +44,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
     val seen = TortureFlight.fly(faultPlan)
     assertEquals(
       seen.outcome,
-      Outcome.Failed("cannot write to recording flight.duckdb: the disk is full"),
+      FlightOutcome.Failed("cannot write to recording flight.duckdb: the disk is full"),
       faultPlan.toString
     )
     assertEquals(Checks.violations(seen), Vector.empty, faultPlan.toString)

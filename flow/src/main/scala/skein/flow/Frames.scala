@@ -28,10 +28,10 @@ object Frames:
     * A frame's `validAt` is its exposure; every emitted frame is newer than the one before. One that fails never stops the
     * source.
     *
-    * '''Emits when''' a frame has come that is newer than all before and downstream demands.
-    * '''Backpressures when''' never: while downstream is slow, the newest frame replaces the one that waits.
-    * '''Completes when''' `ticks` has completed and all that was asked for has come.
-    * '''Cancels when''' downstream cancels.
+    *   - '''Emits when''' a frame has come that is newer than all before and downstream demands.
+    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the one that waits.
+    *   - '''Completes when''' `ticks` has completed and all that was asked for has come.
+    *   - '''Cancels when''' downstream cancels.
     *
     * @param inFlight
     *   frames asked for that have not come, at most

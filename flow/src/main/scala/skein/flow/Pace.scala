@@ -10,10 +10,10 @@ import skein.units.*
   * Where something else keeps the period, such as the ticks of [[Sense]], half of the period is a good interval: jitter
   * of the arrivals then costs neither a turn nor freshness, and no delay of one turn is handed on to the next.
   *
-  * '''Emits when''' an element is held, downstream demands, and the interval since the last emission is over.
-  * '''Backpressures when''' never; a newer element replaces the held one, which is reported.
-  * '''Completes when''' upstream completes; an element still held is reported as replaced.
-  * '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission is over.
+  *   - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
+  *   - '''Completes when''' upstream completes; an element still held is reported as replaced.
+  *   - '''Cancels when''' downstream cancels.
   *
   * @param onReplaced
   *   told of every element that was never emitted

@@ -36,11 +36,11 @@ enum Unrecognised[+A]:
   * A late worker goes on and gets no new frame until it has ended, so at most `workers` frames are worked on. A worker that
   * never ends is lost.
   *
-  * '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of exposure, once all
-  * frames before it have ended or are late; or, with `newestFirst`, at once, and frames exposed before it are not emitted.
-  * '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
-  * '''Completes when''' upstream has completed and every frame has been emitted or skipped.
-  * '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of exposure, once all
+  *     frames before it have ended or are late; or, with `newestFirst`, at once, and frames exposed before it are not emitted.
+  *   - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
+  *   - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
+  *   - '''Cancels when''' downstream cancels.
   *
   * @param workers
   *   most frames worked on at the same time

@@ -19,11 +19,11 @@ object Sense:
   /** One question per `period`, the first after `offset`; up to `window` may be unanswered at once. An answer that is
     * an error (a timeout, most often) is skipped, so that one lost answer never stops the stream.
     *
-    * '''Emits when''' a question is answered with a value, in order (see [[Early]]), and downstream demands.
-    * '''Backpressures when''' never towards the clock: a tick that finds the window full, or downstream slow, is missed
-    * and counted.
-    * '''Completes when''' the materialised `Cancellable` is cancelled and what was asked is answered.
-    * '''Cancels when''' downstream cancels.
+    *   - '''Emits when''' a question is answered with a value, in order (see [[Early]]), and downstream demands.
+    *   - '''Backpressures when''' never towards the clock: a tick that finds the window full, or downstream slow, is missed
+    *     and counted.
+    *   - '''Completes when''' the materialised `Cancellable` is cancelled and what was asked is answered.
+    *   - '''Cancels when''' downstream cancels.
     *
     * @param ask
     *   must end by itself, within its own timeout

@@ -31,12 +31,12 @@ enum Steered[+C, +R]:
   *
   * While it is held, the vehicle is parked and what comes from upstream is not sent.
   *
-  * '''Emits when''' a command is sent or has ended, and downstream demands.
-  * '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while an answer is
-  * lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for downstream.
-  * '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it failed, and every
-  * call has ended.
-  * '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' a command is sent or has ended, and downstream demands.
+  *   - '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while an answer is
+  *     lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for downstream.
+  *   - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it failed, and every
+  *     call has ended.
+  *   - '''Cancels when''' downstream cancels.
   *
   * @param minInterval
   *   between two commands sent: the rate cap

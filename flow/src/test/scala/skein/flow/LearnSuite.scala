@@ -10,7 +10,8 @@ import skein.vtime.VirtualTime
 class LearnSuite extends munit.FunSuite:
 
   test(
-    "lessons follow one another, each with what came meanwhile; beyond the bound the oldest are dropped and told"
+    "lessons follow one another, each with what came meanwhile; " +
+      "beyond the bound the oldest are dropped and told"
   ):
     var dropped = Vector.empty[Int]
     val lessons = VirtualTime.run(seed = 1): system =>

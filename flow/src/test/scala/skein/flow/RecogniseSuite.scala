@@ -110,7 +110,8 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(faulty.mostAtOnce, 2)
 
   test(
-    "while nobody takes results, no more than twice as many frames as workers wait; each one taken lets one in"
+    "while nobody takes results, no more than twice as many " +
+      "frames as workers wait; each one taken lets one in"
   ):
     val begun = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system

@@ -209,7 +209,9 @@ final class FuturesOffers extends LaneOffers {
     return taken.count > 0;
   }
 
-  /** Which offers an agent has next, in vectors in which it took some, or may have more; what it took is over. */
+  /**
+   * Which offers an agent has next, in vectors in which it took some, or may have more; what it took is over.
+   */
   private void look(int agent) {
     int[][] ends = end[agent], evaders = readEvader[agent], pursuers = readPursuer[agent];
     IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);

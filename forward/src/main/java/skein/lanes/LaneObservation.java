@@ -15,7 +15,10 @@ final class LaneObservation {
   /** Worlds that decide together: few enough for the first-level cache. A multiple of every lane count. */
   static final int WORLDS = LaneFunction.COUNT;
 
-  /** Of a reading: position, m, and velocity, m/s, north and east; velocities are told only to policies that use them. */
+  /**
+   * Of a reading: position, m, and velocity, m/s, north and east; velocities are told only to policies that
+   * use them.
+   */
   static final int X = 0, Y = 1, VX = 2, VY = 3;
 
   static final int READ = 4;

@@ -29,7 +29,9 @@ class LanePolicy {
   /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
   private final float[] initial, memory, newMemory;
 
-  /** How far each world's decided heading is from the one before, by the shorter way, rad; 0 without efforts. */
+  /**
+   * How far each world's decided heading is from the one before, by the shorter way, rad; 0 without efforts.
+   */
   final float[] turned = new float[WORLDS];
 
   /** The heading commanded last, rad, for policies that turn from it, and the one decided. */
@@ -46,12 +48,13 @@ class LanePolicy {
   LanePolicy(PolicyLanes form, boolean withEffort) {
     this.form = form;
     this.withEffort = withEffort;
-    decided = withEffort ? 3 : 2;
+    int unasked = withEffort ? 0 : 1;
+    decided = form.decided() - unasked;
     function = withEffort ? form.function() : form.functionWithoutEffort();
     parameters = new float[form.parameters() * WORLDS];
     scratch = new float[function.scratch()];
     // What the own readings tell comes last.
-    arrays = new float[form.inputs() + decided + form.outputs().size() - 3 + LaneObservation.READ][];
+    arrays = new float[form.inputs() + form.outputs().size() - unasked + LaneObservation.READ][];
     offsets = new int[arrays.length];
     initial = new float[form.memories() * WORLDS];
     memory = new float[initial.length];

@@ -23,14 +23,14 @@ final class PredictedDragVehicles extends PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Course course,
+      Propagation propagation,
       boolean withVelocity) {
     System.arraycopy(seenX, reading, flight.x, 0, WORLDS);
     System.arraycopy(seenY, reading, flight.y, 0, WORLDS);
     System.arraycopy(seenVx, reading, flight.vx, 0, WORLDS);
     System.arraycopy(seenVy, reading, flight.vy, 0, WORLDS);
-    for (Course.Part part : course.parts()) {
-      if (part.command() == Course.Rest()) flight.rest();
+    for (Propagation.Part part : propagation.parts()) {
+      if (part.command() == Propagation.Rest()) flight.rest();
       else flight.act(sent, part.command() * WORLDS);
       flight.fly((int) part.span(), (float) part.rest());
     }

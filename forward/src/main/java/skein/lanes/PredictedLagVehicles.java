@@ -31,18 +31,18 @@ final class PredictedLagVehicles extends PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Course course,
+      Propagation propagation,
       boolean withVelocity) {
-    float carried = (float) course.first(), kept = (float) course.second();
+    float carried = (float) propagation.first(), kept = (float) propagation.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
     carry(seenY, seenVy, carried, seenY, reading, into);
     if (withVelocity) {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    for (Course.Part part : course.parts()) {
+    for (Propagation.Part part : propagation.parts()) {
       int place = part.command();
-      if (place != Course.Rest()) {
+      if (place != Propagation.Rest()) {
         float moved = (float) part.span() * speed, faster = (float) part.rest() * speed;
         add(sent.cos, place * WORLDS, moved, seenX, into);
         add(sent.sin, place * WORLDS, moved, seenY, into);

@@ -19,7 +19,7 @@ abstract class PredictedVehicles {
    * @param sent the commands, by place
    * @param reading the index of the reading's first world
    * @param into the same of what is predicted
-   * @param course the way there
+   * @param propagation the way there
    * @param withVelocity whether velocities are predicted too
    */
   abstract void predict(
@@ -30,6 +30,6 @@ abstract class PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Course course,
+      Propagation propagation,
       boolean withVelocity);
 }

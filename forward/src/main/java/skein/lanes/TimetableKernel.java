@@ -23,7 +23,7 @@ final class TimetableKernel {
   // Of the episode's timetable.
   private int[] operations, views;
   private float[] times;
-  private Course[] courses;
+  private Propagation[] propagations;
   private boolean readsVelocity;
 
   /**
@@ -59,9 +59,9 @@ final class TimetableKernel {
     operations = timetable.operations();
     views = timetable.views();
     times = timetable.times();
-    courses = timetable.courses();
+    propagations = timetable.propagations();
     // Predictions start from velocities, whoever looks at them.
-    readsVelocity = withVelocity || courses.length > 0;
+    readsVelocity = withVelocity || propagations.length > 0;
   }
 
   /** Does the timetable's next operation. */
@@ -89,7 +89,7 @@ final class TimetableKernel {
               agent.headings,
               first * WORLDS,
               operations[field + 3] * WORLDS,
-              courses[operations[field + 4]],
+              propagations[operations[field + 4]],
               withVelocity);
       default ->
           agent.decide(

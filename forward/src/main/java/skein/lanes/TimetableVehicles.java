@@ -5,7 +5,7 @@ import skein.forward.Duelist;
 /**
  * The vehicles of one role in many worlds, flown by a {@link Timetable}: what happens to them
  * happens in all worlds at once, so that all that depends on time alone is a number of the
- * timetable, told by a {@link VehicleClock} of the same kind.
+ * timetable, told by a {@link EventClock} of the same kind.
  */
 abstract class TimetableVehicles {
   static final int WORLDS = LanePolicy.WORLDS;

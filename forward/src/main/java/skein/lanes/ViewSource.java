@@ -175,7 +175,9 @@ final class ViewSource {
     }
   }
 
-  /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other. */
+  /**
+   * Whether an answer tells of a later moment than the one told last: questions, too, overtake each other.
+   */
   private boolean isLater(int vehicle, int number) {
     return isNewer(vehicle, number, reachesAt[vehicle][told[vehicle] % RING], toldAt[vehicle]);
   }

@@ -111,7 +111,7 @@ final class PlanKernel extends CandidateBlock {
   }
 
   @Override
-  public void draw(int[] keys, Search search, int stepsPerKnot) {
+  public void draw(int[] keys, SamplingDistribution search, int stepsPerKnot) {
     for (int step = 0, knot = 0; step < steps; step += stepsPerKnot, knot++) {
       noise(keys, 2 * knot, turnNoise);
       noise(keys, 2 * knot + 1, speedNoise);
@@ -139,7 +139,7 @@ final class PlanKernel extends CandidateBlock {
     }
   }
 
-  private void perturb(int step, Search search) {
+  private void perturb(int step, SamplingDistribution search) {
     float[] turnRates = turnRates(), speeds = speeds();
     Limits limits = objective.limits();
     FloatVector slowest = FloatVector.broadcast(SPECIES, (float) limits.minSpeed());
@@ -344,7 +344,7 @@ final class PlanKernel extends CandidateBlock {
   /** What it costs to come near the other vehicles. */
   private void keepApart() {
     float[] costs = costs();
-    Separation separation = objective.separation();
+    SeparationCost separation = objective.separation();
     FloatVector least =
         FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
     FloatVector price = FloatVector.broadcast(SPECIES, (float) separation.price() * dtS);

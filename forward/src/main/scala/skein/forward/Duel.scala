@@ -72,7 +72,7 @@ object Duel:
   * @param skipped
   *   views on which an agent did not decide because a newer one came first
   */
-final case class Outcome(
+final case class DuelOutcome(
     minDistanceM: Double,
     minDistanceAtS: Double,
     meanDistanceM: Double,

@@ -19,7 +19,8 @@ object LinkDelays:
     case alternating: LatencyProfile.Alternating => bounded(alternating, alternating.busy, alternating.quiet)
     case other                                   =>
       Left(
-        s"expected a link without rate and correlation, which forward simulation does not have, came ${other.name}"
+        "expected a link without rate and correlation, which " +
+          s"forward simulation does not have, came ${other.name}"
       )
 
   private def bounded(

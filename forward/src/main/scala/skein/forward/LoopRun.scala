@@ -83,7 +83,8 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, world: DuelWor
   /** The same task's question to the vehicle before, by its question to a vehicle. */
   private val before = Array.ofDim[Int](world.count * world.ring)
 
-  // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits behind it.
+  // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits
+  // behind it.
   private var next, current = 0
   private var waiting       = FuturesRun.Nothing
   private var underWay      = 0

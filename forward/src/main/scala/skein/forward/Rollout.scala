@@ -48,7 +48,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       worldKey: Int,
       captureRadiusM: Double = 0.0,
       observer: LoopObserver = LoopObserver.Nobody
-  ): Outcome =
+  ): DuelOutcome =
     start(worldKey, captureRadiusM, observer)
     while !isOver do handle(world.next())
     outcome
@@ -81,10 +81,10 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     * distances are to the nearest pursuer, efforts summed over a side. In a team without sides all are judged, by the
     * distance to the nearest other, and the effort is that of the evaders.
     */
-  private[skein] def outcome: Outcome =
+  private[skein] def outcome: DuelOutcome =
     val each    = evaderOutcomes
     val nearest = each.minBy(_.minDistanceM)
-    Outcome(
+    DuelOutcome(
       nearest.minDistanceM,
       nearest.minDistanceAtS,
       each.map(_.meanDistanceM).sum / each.size,

@@ -87,7 +87,8 @@ final class DuelBatch(
         if refused.isEmpty then s"SIMD, $lanes"
         else if refused.size == links.size then s"scalar: ${refused.head}"
         else
-          s"SIMD, $lanes, over ${links.size - refused.size} of ${links.size} links; scalar over the others: ${refused.head}"
+          s"SIMD, $lanes, over ${links.size - refused.size} of " +
+            s"${links.size} links; scalar over the others: ${refused.head}"
 
   /** Whether all worlds of these policies fly by lanes, over any of the links. */
   def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =

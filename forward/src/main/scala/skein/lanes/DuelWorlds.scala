@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Delays, Outcome}
+import skein.forward.{Delays, DuelOutcome}
 import skein.policy.Policy
 
 /** The worlds of one call of [[DuelBatch]], by number from 0. Pure functions of the number, called from any thread.
@@ -27,7 +27,7 @@ trait DuelWorlds:
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 
-/** What each world came to; see [[Outcome]] for the meanings. One number per world, in metres, seconds and radians.
+/** What each world came to; see [[DuelOutcome]] for the meanings. One number per world, in metres, seconds and radians.
   * Efforts are NaN where they were not [[DuelWorlds.withEfforts asked for]].
   *
   * @param flown
@@ -43,7 +43,7 @@ final class DuelOutcomes private[skein] (size: Int):
 
   private[skein] def flown_=(worlds: Int): Unit = done = worlds
 
-  private[skein] def set(world: Int, outcome: Outcome, withEfforts: Boolean = true): Unit =
+  private[skein] def set(world: Int, outcome: DuelOutcome, withEfforts: Boolean = true): Unit =
     minDistanceM(world) = outcome.minDistanceM.toFloat
     meanDistanceM(world) = outcome.meanDistanceM.toFloat
     meanLast10sM(world) = outcome.meanLast10sM.toFloat

@@ -25,7 +25,7 @@ private[skein] trait LaneDynamics:
   def handoverS: Double
 
   /** Of one vehicle in one episode. */
-  def clock(): VehicleClock
+  def clock(): EventClock
 
   /** All worlds' vehicles of one number; what differs between worlds is told to them.
     *
@@ -47,7 +47,7 @@ private[skein] trait LaneDynamics:
   def predictor: Option[TimetablePredictor] = None
 
 /** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
-private[skein] trait VehicleClock:
+private[skein] trait EventClock:
   /** At most [[Timetable.Numbers]] numbers that tell this time, s; never earlier than the time before.
     *
     * @param acts
@@ -142,7 +142,7 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
         LagVehicles(duelist, model, stream.periodS, timing.longestS, earliestS)
       case _ => LagFlights(duelist, model, timing)
 
-  def clock(): VehicleClock = new VehicleClock:
+  def clock(): EventClock = new EventClock:
     private var actedS                                                      = 0.0
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val dt      = atS - actedS
@@ -166,13 +166,13 @@ private sealed class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
-  def clock(): VehicleClock                         = PieceClock(lanes.plant.stepS)
+  def clock(): EventClock                           = PieceClock(lanes.plant.stepS)
 
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     PlantFlights(duelist, lanes, timing)
 
 /** How many pieces end until then, and the time since the last. A piece begins with a command, or with the end of another. */
-private final class PieceClock(lengthS: Double) extends VehicleClock:
+private final class PieceClock(lengthS: Double) extends EventClock:
   private var pieceS                                                      = 0.0
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
     var pieces = 0
@@ -196,7 +196,7 @@ private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDyna
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
 
-  def clock(): VehicleClock = new VehicleClock:
+  def clock(): EventClock = new EventClock:
     private var steps                                                       = hoveredNs / stepNs
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val now   = hoveredNs + Nanos.of(atS)

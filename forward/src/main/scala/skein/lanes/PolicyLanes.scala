@@ -62,6 +62,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
   /** Whether it turns from the heading commanded last, and so decides a heading besides its direction. */
   val keepsHeading: Boolean = turn.isDefined
 
+  /** How many of [[outputs]] come before what is remembered. */
+  val decided: Int = outputs.size - memories - (if keepsHeading then 1 else 0)
+
   private val needed = Trace.needed(outputs)
 
   /** Whether it looks at velocities. */

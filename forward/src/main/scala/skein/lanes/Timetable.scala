@@ -27,13 +27,13 @@ import skein.vehicle.ConstantVelocity
   * @param operations
   *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then places
   * @param times
-  *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
+  *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[EventClock]] tells; of a decision, the
   *   time since the one before, and in a duel the ages of the own and of the opponent's reading; by who sees, the age of
   *   the own reading, the time, and until when a belief is carried ([[CameraTrackerLanes.look]]); of an image what
   *   [[CameraTrackerLanes.expose]] takes; of a score, the time; s
   * @param views
   *   what is decided and scored upon: the places of all vehicles' readings, one view after the other
-  * @param courses
+  * @param propagations
   *   by which readings are carried forward, in loops that predict
   * @param readings
   *   places that the readings of one vehicle need at a time
@@ -45,14 +45,15 @@ private[skein] final class Timetable private[lanes] (
     val operations: Array[Int],
     val times: Array[Float],
     val views: Array[Int],
-    val courses: Array[Course],
+    val propagations: Array[Propagation],
     val readings: Int,
     val headings: Int
 ):
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
-  def bytes: Long = 4L * (operations.length + times.length + views.length) + courses.iterator.map(_.bytes).sum
+  def bytes: Long =
+    4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
 
 private[skein] object Timetable:
   val Fields: Int  = 6
@@ -131,11 +132,11 @@ private final class TimetableCompiler(
     Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 
   /** The number of each view among those that are told, or −1. */
-  private val told    = Array.fill(notes.views.size)(-1)
-  private val courses = Array.newBuilder[Course]
-  private var placed  = 0
-  private val views   = Array.newBuilder[Int]
-  private var count   = 0
+  private val told         = Array.fill(notes.views.size)(-1)
+  private val propagations = Array.newBuilder[Propagation]
+  private var placed       = 0
+  private val views        = Array.newBuilder[Int]
+  private var count        = 0
 
   private val operations = Array.ofDim[Int](end * Fields)
   private val times      = Array.ofDim[Float](end * Numbers)
@@ -159,7 +160,7 @@ private final class TimetableCompiler(
       java.util.Arrays.copyOf(operations, size * Fields),
       java.util.Arrays.copyOf(times, size * Numbers),
       views.result(),
-      courses.result(),
+      propagations.result(),
       readings.map(_.size).max,
       headings.map(_.size).max
     )
@@ -180,7 +181,7 @@ private final class TimetableCompiler(
       case PREDICT        =>
         readings(agent).usedAt(event.from, at)
         decidedUpon(agent)(event.from) = true
-        for part <- event.course.parts if part.command > 0 do
+        for part <- event.propagation.parts if part.command > 0 do
           headings(agent).usedAt(part.command, at)
       case LOOK | JOIN => ()
 
@@ -245,11 +246,11 @@ private final class TimetableCompiler(
       readings(vehicle).take(event.number),
       placed
     )
-    courses += event.course.placed(headings(vehicle).place)
+    propagations += event.propagation.placed(headings(vehicle).place)
     placed += 1
     size += 1
     readings(vehicle).release(event.from, at)
-    for part <- event.course.parts if part.command > 0 do
+    for part <- event.propagation.parts if part.command > 0 do
       headings(vehicle).release(part.command, at)
 
   private def act(event: Note, at: Int): Unit =

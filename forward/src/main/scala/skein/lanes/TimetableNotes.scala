@@ -51,17 +51,17 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
 
   override def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit =
     for predictor <- model.predictor do
-      val plotter = entered(vehicle).lastOption
-        .fold(predictor.plotter)(_.plotter.next(legs.map(plotted(vehicle, _))))
-      entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, plotter)
+      val propagator = entered(vehicle).lastOption
+        .fold(predictor.propagator)(_.propagator.next(legs.map(plotted(vehicle, _))))
+      entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, propagator)
 
   /** The reading that a forecast starts from. */
   private def newest(vehicle: Int, forecast: Forecast): Entered =
     val validAt = forecast.tracks(vehicle).get.newest.validAt.toNanos
     entered(vehicle).findLast(_.validAtNs == validAt).get
 
-  private def plotted(vehicle: Int, leg: Leg): CoursePlotter.Leg =
-    CoursePlotter.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
+  private def plotted(vehicle: Int, leg: Leg): Propagator.Leg =
+    Propagator.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
 
   /** The view of where all vehicles will be when a command acts that is sent now. */
   private def predict(forecast: Forecast, atNs: Long): Int =
@@ -74,7 +74,7 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
         looks(vehicle) += 1
         val noted = note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
         noted.from = start.reading
-        noted.course = start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
+        noted.propagation = start.propagator.predicted(legs(vehicle).map(plotted(vehicle, _)))
         looks(vehicle))
     predicted
 
@@ -170,11 +170,11 @@ private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, 
   var from = 0
 
   /** `PREDICT`: the way to the moment predicted. */
-  var course: Course = Course.Nowhere
+  var propagation: Propagation = Propagation.Nowhere
 
 /** A reading in the forecast.
   *
-  * @param plotter
+  * @param propagator
   *   for what is predicted from it
   */
-private final case class Entered(reading: Int, validAtNs: Long, plotter: CoursePlotter)
+private final case class Entered(reading: Int, validAtNs: Long, propagator: Propagator)

@@ -7,22 +7,22 @@ import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, ReducedVehi
 /** A kind of model that carries readings forward by [[Timetable]]s. */
 private[skein] trait TimetablePredictor:
   /** Of one vehicle at its first reading. */
-  def plotter: CoursePlotter
+  def propagator: Propagator
 
   /** All worlds' predictions of one vehicle. */
   def vehicles(duelist: Duelist): PredictedVehicles
 
-/** Tells by which courses a reading of one vehicle is carried forward. Immutable: it knows what the model remembers at
+/** Tells by which propagations a reading of one vehicle is carried forward. Immutable: it knows what the model remembers at
   * that reading.
   */
-private[lanes] trait CoursePlotter:
+private[lanes] trait Propagator:
   /** That of the next reading, after these legs. */
-  def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter
+  def next(legs: Vector[Propagator.Leg]): Propagator
 
   /** From the reading on through these legs. */
-  def predicted(legs: Vector[CoursePlotter.Leg]): Course
+  def predicted(legs: Vector[Propagator.Leg]): Propagation
 
-private[lanes] object CoursePlotter:
+private[lanes] object Propagator:
   /** A [[skein.forecast.Leg]].
     *
     * @param decision
@@ -49,12 +49,12 @@ private[skein] object TimetablePredictor:
     case _                => Left("the lanes predict by reduced models and constant velocity")
 
 /** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
-private object CoastPredictor extends TimetablePredictor, CoursePlotter:
+private object CoastPredictor extends TimetablePredictor, Propagator:
   def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
-  def plotter: CoursePlotter                               = this
-  def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter = this
-  def predicted(legs: Vector[CoursePlotter.Leg]): Course   =
-    Course(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
+  def propagator: Propagator                               = this
+  def next(legs: Vector[Propagator.Leg]): Propagator       = this
+  def predicted(legs: Vector[Propagator.Leg]): Propagation =
+    Propagation(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
   * command, how long it carries the vehicle, and how much of its velocity is reached.
@@ -62,49 +62,49 @@ private object CoastPredictor extends TimetablePredictor, CoursePlotter:
 private final class LagPredictor(model: ReducedModel) extends TimetablePredictor:
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
 
-  def plotter: CoursePlotter = ReducedPlotter(model.deadTimeS, course)
+  def propagator: Propagator = ReducedPropagator(model.deadTimeS, propagation)
 
-  private def course(flown: Vector[ReducedPlotter.Flown], totalS: Double): Course =
+  private def propagation(flown: Vector[ReducedPropagator.Flown], totalS: Double): Propagation =
     val lag                = FirstOrderLag(model.lagS)
     def reached(t: Double) = lag.carriesS(t) / model.lagS
     def moved(t: Double)   = t - lag.carriesS(t)
     val parts              = flown.map: part =>
       val (left, after) = (totalS - part.fromS, totalS - part.untilS)
-      Course.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
-    Course(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
+      Propagation.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
+    Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
 /** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last. */
 private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedDragVehicles(model, duelist.speed)
 
-  def plotter: CoursePlotter =
-    ReducedPlotter(model.deadTimeS, (flown, _) => Course(flown.map(pieces).toArray))
+  def propagator: Propagator =
+    ReducedPropagator(model.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))
 
-  private def pieces(part: ReducedPlotter.Flown): Course.Part =
+  private def pieces(part: ReducedPropagator.Flown): Propagation.Part =
     var pieceS = part.fromS
     var pieces = 0
     while part.untilS > pieceS + ReducedModel.PieceS do
       pieceS += ReducedModel.PieceS
       pieces += 1
-    Course.Part(part.decision, pieces, part.untilS - pieceS)
+    Propagation.Part(part.decision, pieces, part.untilS - pieceS)
 
 /** Which command acts when, as [[ReducedVehicleModel]] takes it: each a dead time after it has come. A command that
   * repeats the one before is a new one here, and nothing there: with drag a piece more begins.
   *
-  * @param course
+  * @param propagation
   *   of what is flown, and until when, s from the reading
   */
-private final class ReducedPlotter private (
+private final class ReducedPropagator private (
     deadTime: Span,
-    course: (Vector[ReducedPlotter.Flown], Double) => Course,
-    held: ReducedPlotter.Known
-) extends CoursePlotter:
-  import ReducedPlotter.*
+    propagation: (Vector[ReducedPropagator.Flown], Double) => Propagation,
+    held: ReducedPropagator.Known
+) extends Propagator:
+  import ReducedPropagator.*
 
-  def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter =
-    new ReducedPlotter(deadTime, course, legs.foldLeft(held)(_.after(_, deadTime)))
+  def next(legs: Vector[Propagator.Leg]): Propagator =
+    new ReducedPropagator(deadTime, propagation, legs.foldLeft(held)(_.after(_, deadTime)))
 
-  def predicted(legs: Vector[CoursePlotter.Leg]): Course =
+  def predicted(legs: Vector[Propagator.Leg]): Propagation =
     val flown  = Vector.newBuilder[Flown]
     var known  = held
     var startS = 0.0
@@ -117,11 +117,11 @@ private final class ReducedPlotter private (
         flown += Flown(decision, fromS, untilS)
       known = known.after(leg, deadTime)
       startS = endS
-    course(flown.result(), startS)
+    propagation(flown.result(), startS)
 
-private object ReducedPlotter:
-  def apply(deadTimeS: Double, course: (Vector[Flown], Double) => Course): CoursePlotter =
-    new ReducedPlotter(Span.ofSeconds(deadTimeS), course, Known(0, 0, Vector.empty))
+private object ReducedPropagator:
+  def apply(deadTimeS: Double, propagation: (Vector[Flown], Double) => Propagation): Propagator =
+    new ReducedPropagator(Span.ofSeconds(deadTimeS), propagation, Known(0, 0, Vector.empty))
 
   /** Under which decision's command the model flies from when until when, s from the reading. */
   final case class Flown(decision: Int, fromS: Double, untilS: Double)
@@ -132,14 +132,14 @@ private object ReducedPlotter:
     *   and in how long each acts
     */
   final case class Known(acting: Int, last: Int, coming: Vector[(Int, Span)]):
-    def told(leg: CoursePlotter.Leg, deadTime: Span): Known =
+    def told(leg: Propagator.Leg, deadTime: Span): Known =
       if leg.decision == last then this
       else Known(acting, leg.decision, coming :+ (leg.decision, deadTime))
 
     /** Of what comes, what acts within a leg. */
-    def due(leg: CoursePlotter.Leg): Vector[(Int, Span)] = coming.filter(_._2 <= leg.span)
+    def due(leg: Propagator.Leg): Vector[(Int, Span)] = coming.filter(_._2 <= leg.span)
 
-    def after(leg: CoursePlotter.Leg, deadTime: Span): Known =
+    def after(leg: Propagator.Leg, deadTime: Span): Known =
       val now = told(leg, deadTime)
       val due = now.due(leg)
       Known(

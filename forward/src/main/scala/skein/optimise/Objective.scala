@@ -108,7 +108,8 @@ object Objective:
       sum <- WeightedSum.parse(text, Forms)(measureOf)
       read = sum.terms
       _ <- Expect.that(read.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1):
-        s"objective '$text': expected one capture radius, came ${read.flatMap((_, m) => m.captureRadiusM).distinct.mkString(" and ")} m"
+        s"objective '$text': expected one capture radius, came " +
+          s"${read.flatMap((_, m) => m.captureRadiusM).distinct.mkString(" and ")} m"
     yield Objective(read, sum.stated.getOrElse(naturally(read, role)))
 
   private def naturally(terms: Vector[(Double, DuelMeasure)], role: Role): Direction = terms match

@@ -16,16 +16,16 @@ final case class Scored(candidate: Vector[Double], tally: RunningStats)
   *   episodes
   */
 final case class SearchState(
-    course: Course,
+    course: MethodState,
     results: Vector[RunningStats],
     leaders: Vector[Scored],
     flown: Long
 ):
-  def isDone: Boolean      = course == Course.Ended
+  def isDone: Boolean      = course == MethodState.Ended
   def best: Option[Scored] = leaders.headOption
 
 /** What a method has to remember between rounds. */
-enum Course:
+enum MethodState:
   /** Grid and random: the number of the round's first candidate. */
   case Listed(next: Long)
 
@@ -82,12 +82,16 @@ final class Search(
 
   def start: SearchState =
     val course = method match
-      case _: (SearchMethod.Grid | SearchMethod.Random) => Course.Listed(0)
+      case _: (SearchMethod.Grid | SearchMethod.Random) => MethodState.Listed(0)
       case _: SearchMethod.CrossEntropy                 =>
-        Course.Drawn(0, space.axes.map(axis => (axis.least + axis.most) / 2), space.axes.map(_.width / 2))
+        MethodState.Drawn(
+          0,
+          space.axes.map(axis => (axis.least + axis.most) / 2),
+          space.axes.map(_.width / 2)
+        )
       case cma: SearchMethod.CmaEs =>
-        Course.Adapted(evolution.get.start(space.shares(space.defaults), cma.startSize))
-      case _: SearchMethod.Racing => Course.Raced(0, Vector.empty)
+        MethodState.Adapted(evolution.get.start(space.shares(space.defaults), cma.startSize))
+      case _: SearchMethod.Racing => MethodState.Raced(0, Vector.empty)
     SearchState(course, Vector.empty, Vector.empty, 0)
 
   /** One step on.
@@ -121,26 +125,26 @@ final class Search(
         SearchState(course, Vector.empty, leaders, flown)
 
   /** The round's candidates, and the episodes that each flies. */
-  private def round(course: Course): (Vector[Vector[Double]], Range) = course match
-    case Course.Listed(next) =>
+  private def round(course: MethodState): (Vector[Vector[Double]], Range) = course match
+    case MethodState.Listed(next) =>
       val numbers = Vector.range(next, (next + MostListed).min(listed))
       val fields  = method match
         case SearchMethod.Grid(perAxis, _) => numbers.map(space.gridAt(perAxis, _))
         case _                             => numbers.map(space.randomAt(seed, _))
       (fields, 0 until method.episodes)
-    case Course.Drawn(generation, means, deviations) =>
+    case MethodState.Drawn(generation, means, deviations) =>
       (drawn(generation, means, deviations), 0 until method.episodes)
-    case Course.Adapted(state)      => (evolution.get.sample(state).map(space.at), 0 until method.episodes)
-    case Course.Raced(0, _)         => (randomField, 0 until method.episodes)
-    case Course.Raced(round, field) =>
+    case MethodState.Adapted(state) => (evolution.get.sample(state).map(space.at), 0 until method.episodes)
+    case MethodState.Raced(0, _)    => (randomField, 0 until method.episodes)
+    case MethodState.Raced(round, field) =>
       val flown = field.head.tally.count
       (field.map(_.candidate), flown until 2 * flown)
-    case Course.PlayOff(episodes, field) =>
+    case MethodState.PlayOff(episodes, field) =>
       (
         field.map(_.candidate),
         PlayOffFrom + episodes until PlayOffFrom + (episodes + PlayOffRound).min(playOffEpisodes)
       )
-    case Course.Ended => throw IllegalStateException("no round after the end")
+    case MethodState.Ended => throw IllegalStateException("no round after the end")
 
   private def listed: Long = method match
     case SearchMethod.Grid(perAxis, _)      => space.gridSize(perAxis)
@@ -151,13 +155,17 @@ final class Search(
     case SearchMethod.Racing(candidates, _) => space.random(candidates, seed)
     case _                                  => Vector.empty
 
-  private def after(course: Course, before: Vector[Scored], seen: Vector[Scored]): (Course, Vector[Scored]) =
+  private def after(
+      course: MethodState,
+      before: Vector[Scored],
+      seen: Vector[Scored]
+  ): (MethodState, Vector[Scored]) =
     lazy val leaders = ranked(before ++ seen).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
     (course, method) match
-      case (Course.Listed(next), _) =>
+      case (MethodState.Listed(next), _) =>
         val behind = next + seen.size
-        (if behind < listed then Course.Listed(behind) else playOff(leaders, None), leaders)
-      case (Course.Drawn(generation, means, deviations), entropy: SearchMethod.CrossEntropy) =>
+        (if behind < listed then MethodState.Listed(behind) else playOff(leaders, None), leaders)
+      case (MethodState.Drawn(generation, means, deviations), entropy: SearchMethod.CrossEntropy) =>
         val elites        = eliteOf(entropy)
         val chosen        = ranked(seen).take(elites).map(_.candidate)
         val newMeans      = means.indices.toVector.map(axis => chosen.map(_(axis)).sum / elites)
@@ -166,27 +174,31 @@ final class Search(
         val (nextMeans, nextDeviations) =
           (blend(means, newMeans, entropy.smoothing), blend(deviations, newDeviations, entropy.smoothing))
         val next =
-          if generation + 1 < entropy.generations then Course.Drawn(generation + 1, nextMeans, nextDeviations)
+          if generation + 1 < entropy.generations then
+            MethodState.Drawn(generation + 1, nextMeans, nextDeviations)
           else playOff(leaders, Some(space.clamp(nextMeans)))
         (next, leaders)
-      case (Course.Adapted(state), cma: SearchMethod.CmaEs) =>
+      case (MethodState.Adapted(state), cma: SearchMethod.CmaEs) =>
         val next = evolution.get.next(state, evolution.get.sample(state), seen.map(cost))
         val goOn = next.generation < cma.generations && next.spread > LeastSpread
-        (if goOn then Course.Adapted(next) else playOff(leaders, Some(space.at(next.mean))), leaders)
-      case (Course.Raced(round, field), _) =>
+        (if goOn then MethodState.Adapted(next) else playOff(leaders, Some(space.at(next.mean))), leaders)
+      case (MethodState.Raced(round, field), _) =>
         val standing =
           ranked(if round == 0 then seen
           else field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally)))
         val ahead = (standing ++ before).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
         val next  =
           if standing.size == 1 then playOff(ahead, None)
-          else Course.Raced(round + 1, standing.take((standing.size + 1) / 2))
+          else MethodState.Raced(round + 1, standing.take((standing.size + 1) / 2))
         (next, ahead)
-      case (Course.PlayOff(episodes, field), _) =>
+      case (MethodState.PlayOff(episodes, field), _) =>
         val standing = field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally))
         val flown    = episodes + seen.head.tally.count
-        (if flown < playOffEpisodes then Course.PlayOff(flown, standing) else Course.Ended, ranked(standing))
-      case _ => (Course.Ended, before)
+        (
+          if flown < playOffEpisodes then MethodState.PlayOff(flown, standing) else MethodState.Ended,
+          ranked(standing)
+        )
+      case _ => (MethodState.Ended, before)
 
   /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the same
     * episodes, and would leave no room for others.
@@ -194,9 +206,9 @@ final class Search(
   private def place(candidate: Vector[Double]): Vector[Long] =
     space.shares(candidate).map(share => (share * 100).round)
 
-  private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): Course =
+  private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): MethodState =
     val candidates = (leaders.map(_.candidate) ++ centre :+ space.defaults).distinct
-    Course.PlayOff(0, candidates.map(Scored(_, RunningStats.empty)))
+    MethodState.PlayOff(0, candidates.map(Scored(_, RunningStats.empty)))
 
   /** Small is good; what is no number is worst. */
   private def cost(scored: Scored): Double =

@@ -58,7 +58,8 @@ object WeightedSum:
             val expected =
               if read.isEmpty then s"[WEIGHT*]MEASURE, where MEASURE is one of $forms" else "+ or -"
             Left(
-              s"objective '$text', at character ${offset + from + 1}: expected $expected, came '${formula.substring(from)}'"
+              s"objective '$text', at character ${offset + from + 1}: " +
+                s"expected $expected, came '${formula.substring(from)}'"
             )
 
     terms(0, Vector.empty).map(WeightedSum(_, stated))

@@ -13,7 +13,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
   import ManoeuvreRollout.*
 
   /** What a manoeuvre comes to. */
-  def fly(manoeuvre: Manoeuvre): Flown =
+  def fly(manoeuvre: Manoeuvre): ManoeuvreOutcome =
     val own      = Flyer(situation.own, situation.response, dtS)
     val steps    = manoeuvre.steps
     val way      = Array.ofDim[Motion](steps)
@@ -45,7 +45,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
         if short > 0 then cost += Breach * (1 + short)
     for behaviour <- situation.behaviours do
       cost += behaviour.weight * distanceCost(behaviour.target, way, before)
-    Flown(PredictedTrack(IArray.from(way.map(_.x)), IArray.from(way.map(_.y))), cost, breaches)
+    ManoeuvreOutcome(PredictedTrack(IArray.from(way.map(_.x)), IArray.from(way.map(_.y))), cost, breaches)
 
   private def distanceCost(
       target: Target,
@@ -128,7 +128,7 @@ object ManoeuvreRollout:
   * @param breaches
   *   of hard limits
   */
-final case class Flown(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
+final case class ManoeuvreOutcome(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
 
 /** A hard limit broken at the end of a step. */
 enum Breached:

@@ -48,7 +48,12 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
   * @param price
   *   per second and per square metre missing
   */
-final case class Separation(minimum: Double, margin: Double = 1, growth: Double = 0.5, price: Double = 20):
+final case class SeparationCost(
+    minimum: Double,
+    margin: Double = 1,
+    growth: Double = 0.5,
+    price: Double = 20
+):
   require(minimum >= 0 && margin >= 0 && growth >= 0 && price >= 0, s"must not be negative: $this")
 
   /** Whether there is anything to be kept. */
@@ -94,7 +99,7 @@ final case class PlanCost(
     turning: Double = 0.0001,
     speedChange: Double = 0,
     cruiseSpeed: Double = 0,
-    separation: Separation = Separation(0),
+    separation: SeparationCost = SeparationCost(0),
     geofences: Vector[Geofence] = Vector.empty,
     softness: Double = 0
 ):

@@ -92,7 +92,7 @@ final class Planner private[planning] (
     Plan(
       manoeuvre,
       Float.PositiveInfinity,
-      Search(
+      SamplingDistribution(
         manoeuvre.turnRates,
         IArray.fill(steps)(turnSd.toFloat),
         manoeuvre.speeds,
@@ -191,7 +191,7 @@ final class Planner private[planning] (
       i += 1
     worst
 
-  private def eliteSearch(before: Search, kept: Float): Search =
+  private def eliteSearch(before: SamplingDistribution, kept: Float): SamplingDistribution =
     def moments(values: Array[Float], means: IArray[Float], sds: IArray[Float]) =
       val (newMeans, newSds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
       for step <- 0 until steps do
@@ -204,7 +204,7 @@ final class Planner private[planning] (
       (IArray.unsafeFromArray(newMeans), IArray.unsafeFromArray(newSds))
     val (turnMeans, turnSds)   = moments(eliteTurns, before.turnMeans, before.turnSds)
     val (speedMeans, speedSds) = moments(eliteSpeeds, before.speedMeans, before.speedSds)
-    Search(turnMeans, turnSds, speedMeans, speedSds)
+    SamplingDistribution(turnMeans, turnSds, speedMeans, speedSds)
 
   private inline def meanOverElites(inline value: Int => Double): Double =
     var total = 0.0
@@ -214,7 +214,7 @@ final class Planner private[planning] (
       elite += 1
     total / eliteCosts.length
 
-  private def weightedSearch(before: Search): Search =
+  private def weightedSearch(before: SamplingDistribution): SamplingDistribution =
     val total                     = sum(block.weightSums, 0)
     def means(sums: Array[Float]) = IArray.tabulate(steps)(step => (sum(sums, step) / total).toFloat)
     if total > 0 then before.copy(turnMeans = means(block.turnSums), speedMeans = means(block.speedSums))

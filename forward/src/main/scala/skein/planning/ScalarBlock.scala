@@ -13,7 +13,7 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(ste
     rollout = Some(ManoeuvreRollout(situation, objective, dtS))
     limits = Some(objective.limits)
 
-  def draw(keys: Array[Int], search: Search, stepsPerKnot: Int): Unit =
+  def draw(keys: Array[Int], search: SamplingDistribution, stepsPerKnot: Int): Unit =
     for
       bounds <- limits
       i      <- 0 until size

@@ -248,7 +248,8 @@ private final class PassCompiler(
         else fma(unary("neg", times), of(y), x)
       case Op.Always => throw Untraceable("a condition that always holds")
 
-  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has those of the last two for passes written by hand.
+  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has those of the last two for passes written
+  // by hand.
 
   private def sinCos(of: Node): (Int, Int) = pairs.getOrElseUpdate(
     of, {

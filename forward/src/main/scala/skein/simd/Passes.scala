@@ -23,7 +23,8 @@ private final case class Pass(
 
 /** Cuts a long expression into passes. */
 private object Passes:
-  // Chosen by measuring (`PolicyBenchmark`): with more of either, constants are fetched from memory in every round.
+  // Chosen by measuring (`PolicyBenchmark`): with more of either, constants are fetched from memory in every
+  // round.
 
   /** Vector operations that one pass takes at most. */
   private val Most = 50

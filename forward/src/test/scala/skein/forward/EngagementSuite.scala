@@ -135,7 +135,8 @@ class EngagementSuite extends munit.FunSuite:
     )
 
   test(
-    "in a team without sides each is judged by the distance to the nearest other, and policies choose the speed"
+    "in a team without sides each is judged by the distance to " +
+      "the nearest other, and policies choose the speed"
   ):
     // From north to south, towards the middle one, at 1, 2 and 3 m/s.
     val speeds = Seq(1.0, 2.0, 3.0)

@@ -194,7 +194,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
         assert(atS.isInfinite, s"seed 2, number $number, $start: captured after $atS s")
 
   test(
-    "5 % below the threshold the evader is lost nearer straight ahead than where the barriers meet, and no farther"
+    "5 % below the threshold the evader is lost nearer straight " +
+      "ahead than where the barriers meet, and no farther"
   ):
     val captureM                                      = 0.95 * threshold
     def meet(within: Double, without: Double): Double =
@@ -209,7 +210,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     for share <- Seq(1.02, 1.05, 1.1) do assert(capture(share).isInfinite, s"$share of $metres m")
 
   test(
-    "pure pursuit never captures an evader that waits inside its turning circle; the chauffeur flies off and does"
+    "pure pursuit never captures an evader that waits inside its " +
+      "turning circle; the chauffeur flies off and does"
   ):
     val waits    = ChauffeurEvader(game.turningRadiusM, game.speedRatio, dodgeM)
     val beside   = Start(0, game.turningRadiusM, 0)

@@ -97,7 +97,8 @@ class RolloutSuite extends munit.FunSuite:
         assert(settled > least && settled < most, s"episode $episode: $settled m")
 
   test(
-    "sequential reads both vehicles one after the other, then waits: its step lasts two round trips and a period"
+    "sequential reads both vehicles one after the other, then " +
+      "waits: its step lasts two round trips and a period"
   ):
     val link    = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(50)))
     val rollout = Rollout(Duel.paper, LoopTiming.Sequential(0.1), link, lag)

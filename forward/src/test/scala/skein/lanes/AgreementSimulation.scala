@@ -88,7 +88,8 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
     timing          <- Seq(LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
   do
     test(
-      s"with $name, ${timing.productPrefix}, delays of its own in each world: the same decisions in each compared"
+      s"with $name, ${timing.productPrefix}, delays of its own in " +
+        "each world: the same decisions in each compared"
     ):
       for draw <- Seq(drawn(PolicyFamily.paperPursuer), trend) do
         DuelAgreement

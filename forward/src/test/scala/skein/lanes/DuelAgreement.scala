@@ -108,7 +108,7 @@ private[skein] class DuelAgreement(
   /** Where decisions are the same, so are the flights. */
   private def outcomes(
       world: Int,
-      came: Outcome,
+      came: DuelOutcome,
       distances: Vector[(Double, Double)],
       placesOff: Double => Double
   ): Unit =
@@ -119,7 +119,8 @@ private[skein] class DuelAgreement(
     same("mean of the last 10 s", flown.meanLast10s(world), came.meanLast10sM)
     same("pursuer's effort", flown.pursuerEffortRad(world), came.pursuerEffortRad)
     same("evader's effort", flown.evaderEffortRad(world), came.evaderEffortRad)
-    // One captures a period before the other where that period's distance is within what distances may be off.
+    // One captures a period before the other where that period's distance is within what distances may be
+    // off.
     val sooner = math.min(flown.captureS(world), came.captureS)
     must(
       flown.captureS(world) == came.captureS.toFloat ||

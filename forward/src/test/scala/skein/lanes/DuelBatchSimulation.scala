@@ -54,7 +54,8 @@ class DuelBatchSimulation extends munit.FunSuite:
         assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
 
   test(
-    "where delays come in stretches, and where a loop is asked as published, the engine says scalar and why; long delays fly"
+    "where delays come in stretches, and where a loop is asked as " +
+      "published, the engine says scalar and why; long delays fly"
   ):
     val near                      = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(2)))
     val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, Duel, LoopTiming, Outcome, Reduced, Rollout, VelocityResponse}
+import skein.forward.{DelayTable, Duel, LoopTiming, DuelOutcome, Reduced, Rollout, VelocityResponse}
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
@@ -81,7 +81,7 @@ class LagDuelsSuite extends munit.FunSuite:
 
     test(s"over $name kernel and scalar reference agree on the mean of 60 s to 1 cm"):
       val kernel  = fly(link, 60)
-      val scalars = ArrayBuffer.empty[Outcome]
+      val scalars = ArrayBuffer.empty[DuelOutcome]
       for world <- 0 until worlds do
         scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
       assertEqualsDouble(kernel.meanLast10s.sum / worlds, scalars.map(_.meanLast10sM).sum / worlds, 0.01)

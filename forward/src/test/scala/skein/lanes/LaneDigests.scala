@@ -105,7 +105,7 @@ object LaneDigests:
       capture = 3,
       captureRadius = 4,
       cruiseSpeed = 8,
-      separation = Separation(2, margin = 0.8)
+      separation = SeparationCost(2, margin = 0.8)
     )
     val problem = PlanProblem(
       settings,

@@ -84,7 +84,8 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     if vehicles == "lag" || name == "vpn" || name.startsWith("110")
   do
     test(
-      s"$vehicles, $timing over $name: the scalar reference's decisions and flight for 5 s, in each world compared"
+      s"$vehicles, $timing over $name: the scalar reference's " +
+        "decisions and flight for 5 s, in each world compared"
     ):
       agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
 

@@ -94,7 +94,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
   do
     // None of these worlds meets a threshold within 5 s: DuelAgreement would name it.
     test(
-      s"$vehicles, $timing over $name: candidates fly by the timetable as by the scalar reference, 5 s to 2 mm"
+      s"$vehicles, $timing over $name: candidates fly by the " +
+        "timetable as by the scalar reference, 5 s to 2 mm"
     ):
       var close, all, captures = 0
       for episode <- 0 until 2 do

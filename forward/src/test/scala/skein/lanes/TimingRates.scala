@@ -65,5 +65,6 @@ import skein.vehicle.ReducedModel
     scalar(60): Unit
     val reference = Vector.fill(3)(scalar(30)).max
     println(
-      f"$row%-28s ${if isFast then "SIMD  " else "scalar"} $lanes%7.2f M/s  scalar $reference%.3f M/s  ${lanes / reference}%6.1f times"
+      f"$row%-28s ${if isFast then "SIMD  " else "scalar"} $lanes%7.2f M/s  " +
+        f"scalar $reference%.3f M/s  ${lanes / reference}%6.1f times"
     )

@@ -49,5 +49,6 @@ import skein.signal.SplitMix64
     val size    = PolicyLanes.get(candidates(0)).operations
     val witness = kernel.meanLast10s.map(_.toDouble).sum / DuelKernel.WORLDS
     println(
-      f"$name%-8s $rate%6.1f M/s  scalar $slow%.3f M/s  ${rate / slow}%5.0f times  $size%4d operations  ${rate * size}%7.0f M operations/s  made in $compiledMs ms  witness $witness%.5f"
+      f"$name%-8s $rate%6.1f M/s  scalar $slow%.3f M/s  ${rate / slow}%5.0f times  $size%4d operations " +
+        f" ${rate * size}%7.0f M operations/s  made in $compiledMs ms  witness $witness%.5f"
     )

@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.forward.{DelayTable, Duel, LoopTiming, Outcome, Reduced, Rollout}
+import skein.forward.{DelayTable, Duel, LoopTiming, DuelOutcome, Reduced, Rollout}
 import skein.lanes.{DuelBatch, DuelOutcomes, DuelWorlds}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
 import skein.simd.WorldRandom
@@ -81,5 +81,5 @@ class ObjectiveSuite extends munit.FunSuite:
   test("a capture at the last moment that counts is one, and one a score later is none"):
     val outcomes = DuelOutcomes(1)
     for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do
-      outcomes.set(0, Outcome(1, captureS, 1, 1, captureS, 0, 0, 0, 0))
+      outcomes.set(0, DuelOutcome(1, captureS, 1, 1, captureS, 0, 0, 0, 0))
       assertEquals(read("capture(4, 7.3)").value(outcomes, 0, Role.Pursuer, 20), expected, s"$captureS s")

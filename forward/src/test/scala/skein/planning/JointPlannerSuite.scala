@@ -12,7 +12,7 @@ class JointPlannerSuite extends munit.FunSuite:
     turning = 0.005,
     speedChange = 0.1,
     cruiseSpeed = 8,
-    separation = Separation(minimumM, margin = 0.8)
+    separation = SeparationCost(minimumM, margin = 0.8)
   )
 
   /** @param stepsFlown
@@ -92,7 +92,7 @@ class JointPlannerSuite extends munit.FunSuite:
   test("each keeps apart from where the others plan to be; who keeps none regards nobody"):
     val planner = JointPlanner()
     val careful = part(start(0), bearing(0), 25, 0, stepsFlown = 0, self = 0)
-    val blind   = careful.copy(objective = objective.copy(separation = Separation(0)))
+    val blind   = careful.copy(objective = objective.copy(separation = SeparationCost(0)))
     val problem = PlanProblem(settings, Vector(careful, blind))
     val plan    = planner.resumed(problem, None)
     assertEquals(plan.situation(0, careful).others, Vector(plan.tracks(1)))

@@ -25,7 +25,7 @@ class PlanKernelSuite extends munit.FunSuite:
     speedChange = 0.05,
     cruiseSpeed = 8
   )
-  private val search = Search(
+  private val search = SamplingDistribution(
     IArray.tabulate(steps)(0.02f * _),
     IArray.tabulate(steps)(step => 0.5f + 0.01f * step),
     IArray.fill(steps)(8f),
@@ -141,7 +141,7 @@ class PlanKernelSuite extends munit.FunSuite:
   test("kernel and scalar reference agree on what it costs to come near others and to leave the geofence"):
     val narrow =
       objective.copy(
-        separation = Separation(minimum = 1.5, margin = 2),
+        separation = SeparationCost(minimum = 1.5, margin = 2),
         geofences = Vector(Geofence(Fence.rectangle(-20, 16, -6, 12)))
       )
     val busy   = situation(Behaviour(track)).copy(others = others)
@@ -162,7 +162,7 @@ class PlanKernelSuite extends munit.FunSuite:
   test("a candidate that the kernel finds within the hard limits is so in doubles"):
     val narrow =
       objective.copy(
-        separation = Separation(minimum = 1.5, margin = 0),
+        separation = SeparationCost(minimum = 1.5, margin = 0),
         geofences = Vector(Geofence(Fence.rectangle(-20, 16, -6, 12)))
       )
     val busy   = situation(Behaviour(track)).copy(others = others)

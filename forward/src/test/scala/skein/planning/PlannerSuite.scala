@@ -63,7 +63,7 @@ class PlannerSuite extends munit.FunSuite:
       assert(warm < costs(planner.start.manoeuvre, flown, planner))
 
   test("a plan keeps the turning circle and flies round what it must keep apart from"):
-    val separation = Separation(minimum = 2, margin = 1)
+    val separation = SeparationCost(minimum = 2, margin = 1)
     val settings   = PlannerSettings(steps = 40)
     val objective  = PlanCost(Limits(3, 6, 1, 4), cruiseSpeed = 6, separation = separation)
     val planner    = Planner(settings, objective)

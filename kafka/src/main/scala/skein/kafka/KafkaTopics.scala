@@ -59,8 +59,8 @@ object KafkaTopics:
       val at = topics.broker
       causes(error).collectFirst {
         case _: SslAuthenticationException =>
-          s"no trusted connection to the Kafka broker at $at: ${rootOf(error)}; expected certificates of one set at both " +
-            "sides, which name the host"
+          s"no trusted connection to the Kafka broker at $at: ${rootOf(error)}; " +
+            "expected certificates of one set at both sides, which name the host"
         case _: AuthenticationException | _: AuthorizationException =>
           s"the Kafka broker at $at refuses: ${rootOf(error)}"
       } match

@@ -6,7 +6,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import skein.flight.SolvedFlight
 import skein.link.Address
-import skein.loop.{LoopKind, Outcome, Replay}
+import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.measure.SolverSummary
 import skein.policy.Action
 import skein.record.{EventKind, MemoryRecorder, Recording}
@@ -58,7 +58,7 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
         landed <- flying.landed
         _      <- Future.traverse(solvers)(_.close())
       yield landed.outcome
-    assertEquals(Await.result(outcome, 3.minutes), Outcome.Stopped)
+    assertEquals(Await.result(outcome, 3.minutes), FlightOutcome.Stopped)
     val again = RecordedPlan.of(recorder.recording).fold(fail(_), identity)
     assertEquals(Replay(again.fleet, recorder.recording).firstDifference, None)
     recorder.recording
@@ -73,7 +73,8 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
     assert(isSo(recorder.recording))
 
   test(
-    "a broker that is killed and started again in a flight: until it is back the deadline's fallback decides for all, who hover; then they fly on, and all is recorded"
+    "a broker that is killed and started again in a flight: until it is back the deadline's " +
+      "fallback decides for all, who hover; then they fly on, and all is recorded"
   ):
     val own                                      = Files.createTempDirectory("kafka-killed")
     val log                                      = Files.createTempFile("kafka-killed", ".log")

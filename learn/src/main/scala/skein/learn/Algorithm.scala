@@ -12,7 +12,7 @@ enum Algorithm:
       environments: Int,
       settings: LearnerSettings,
       seed: Long,
-      workers: Workers
+      workers: BatchThreads
   ): Learner = this match
     case Sac  => skein.learn.Sac(observations, actions, settings, seed, workers)
     case Ddpg => skein.learn.Ddpg(observations, actions, settings, seed, workers)

@@ -5,8 +5,13 @@ package skein.learn
   * reinforcement learning", arXiv:1509.02971; the noise has no memory, as in Fujimoto, van Hoof, Meger,
   * arXiv:1802.09477.
   */
-final class Ddpg(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: Workers)
-    extends OffPolicy(observations, actions, settings, seed):
+final class Ddpg(
+    observations: Int,
+    actions: Int,
+    settings: LearnerSettings,
+    seed: Long,
+    workers: BatchThreads
+) extends OffPolicy(observations, actions, settings, seed):
   import Ddpg.*
 
   private val widths        = observations +: settings.hidden :+ actions

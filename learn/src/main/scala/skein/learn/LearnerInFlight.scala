@@ -81,7 +81,7 @@ object LearnerInFlight:
       transitionsPerVersion: Int,
       seed: Long
   )(load: Learner => Either[String, Unit]): Either[String, (Vector[Double], LearnerInFlight)] =
-    algorithm.learner(LearnedPolicy.Inputs, 1, 1, settings, seed, Workers(1)) match
+    algorithm.learner(LearnedPolicy.Inputs, 1, 1, settings, seed, BatchThreads(1)) match
       case learner: OffPolicy =>
         load(learner).map: _ =>
           (

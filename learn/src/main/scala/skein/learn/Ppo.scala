@@ -14,7 +14,7 @@ final class Ppo(
     environments: Int,
     settings: LearnerSettings,
     seed: Long,
-    workers: Workers
+    workers: BatchThreads
 ) extends Learner:
   import Ppo.*
 

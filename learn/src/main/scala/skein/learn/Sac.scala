@@ -6,7 +6,7 @@ import java.io.{DataInput, DataOutput}
   * adapts. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel, Levine, "Soft actor-critic
   * algorithms and applications", arXiv:1812.05905, with its wanted entropy of minus one a number of an action.
   */
-final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: Workers)
+final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: BatchThreads)
     extends OffPolicy(observations, actions, settings, seed):
   import Sac.*
 

@@ -24,7 +24,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       threads: Int = 1,
       settings: LearnerSettings = small
   ): Learner =
-    val workers = Workers(threads)
+    val workers = BatchThreads(threads)
     try
       val learner  = algorithm.learner(task.observations, task.actions, task.count, settings, seed, workers)
       val training = Training(task, learner, stepsPerRound = 20)
@@ -65,7 +65,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       assertNotEquals(weights(threads = 1, seed = 9), one)
 
     test(s"${algorithm.label}: saved between rounds it goes on as if nothing had been"):
-      val workers       = Workers(1)
+      val workers       = BatchThreads(1)
       def fresh()       = algorithm.learner(1, 1, 16, small, 4, workers)
       val (task, whole) = (Integrator(16, 4), fresh())
       val first         = Training(task, whole, 20)
@@ -80,7 +80,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       assertEquals(second.actor.parameters.toVector, whole.actor.parameters.toVector)
 
     test(s"${algorithm.label}: a checkpoint of another shape is refused"):
-      val workers = Workers(1)
+      val workers = BatchThreads(1)
       val bytes   = ByteArrayOutputStream()
       algorithm.learner(1, 1, 16, small, 4, workers).save(DataOutputStream(bytes))
       val other = algorithm.learner(1, 1, 16, small.copy(hidden = Vector(8)), 4, workers)
@@ -91,7 +91,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       protected def start(row: Int): Unit  = seen(row) = drawn()
       def step(chosen: Array[Float]): Unit =
         java.util.Arrays.fill(rewards, Float.NaN)
-    val workers  = Workers(1)
+    val workers  = BatchThreads(1)
     val training = Training(Endless(), Algorithm.Ddpg.learner(1, 1, 16, small, 4, workers), 40)
     assert(clue(training.round(0)).left.exists(_.contains("not finite")))
 

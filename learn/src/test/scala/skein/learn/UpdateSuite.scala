@@ -41,7 +41,7 @@ class UpdateSuite extends munit.FunSuite:
       assertEqualsDouble(gradient(at).toDouble, (above - below) / (2 * step), 4e-3, s"parameter $at")
 
   test("SAC: critics are held to reward and discounted soft value of what was reached"):
-    val sac = Sac(2, 1, settings, 3, Workers(1))
+    val sac = Sac(2, 1, settings, 3, BatchThreads(1))
     drawn(sac.batch)
     Noise.fill(sac.noise, SplitMix64(5))
     sac.want(0, 4)
@@ -64,7 +64,7 @@ class UpdateSuite extends munit.FunSuite:
       )
 
   test("SAC: the actor's gradient is that of temperature times log-likelihood minus the lesser value"):
-    val sac = Sac(2, 1, settings, 6, Workers(1))
+    val sac = Sac(2, 1, settings, 6, BatchThreads(1))
     drawn(sac.batch)
     Noise.fill(sac.noise, SplitMix64(8))
     sac.gradient.clear()
@@ -125,7 +125,7 @@ class UpdateSuite extends munit.FunSuite:
       )
 
   test("DDPG: an update moves the actor towards higher values"):
-    val ddpg = Ddpg(2, 1, settings, 6, Workers(1))
+    val ddpg = Ddpg(2, 1, settings, 6, BatchThreads(1))
     drawn(ddpg.batch)
     def worth() = (0 until 4).map: at =>
       val seen = row(ddpg.batch.seen, at, 2)
@@ -147,7 +147,8 @@ class UpdateSuite extends munit.FunSuite:
       protected def start(row: Int): Unit  = ()
       def step(chosen: Array[Float]): Unit = ()
     val (task, buffer) = (Three(), RolloutBuffer(1, 1, 1, 4))
-    // Rewards 1 to 4; values 0.5; what is reached is worth 2. The second step terminates, the third is cut off.
+    // Rewards 1 to 4; values 0.5; what is reached is worth 2. The second step terminates, the third is cut
+    // off.
     for step <- 0 until 4 do
       task.rewards(0) = (step + 1).toFloat
       task.terminated(0) = step == 1
@@ -163,7 +164,7 @@ class UpdateSuite extends munit.FunSuite:
       assertEqualsDouble(buffer.returns(at).toDouble, expected + 0.5, 1e-6)
 
   test("PPO: the actor's gradient is that of the clipped objective"):
-    val ppo    = Ppo(2, 1, 4, settings.copy(horizon = 1, rate = 1e-12), 9, Workers(1))
+    val ppo    = Ppo(2, 1, 4, settings.copy(horizon = 1, rate = 1e-12), 9, BatchThreads(1))
     val random = SplitMix64(3)
     fill(ppo.rollout.seen, random)
     fill(ppo.rollout.actions, random)

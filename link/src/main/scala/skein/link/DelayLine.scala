@@ -11,12 +11,12 @@ import skein.units.*
   * a [[Delivery]] decides, in order. What is due at once comes out as one segment, as from a socket. Datagrams stay as they
   * are, and come out when each is due, whichever entered first.
   *
-  * '''Emits when''' downstream pulls and the oldest bytes are due.
-  * '''Backpressures when''' `maxBytes` or more are under way.
-  * '''Completes when''' upstream has completed, everything has come out and the end of sending is due too.
-  * '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
-  * '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely takes no more
-  * is not told to the sender, as with a socket: what still comes is discarded until upstream ends.
+  *   - '''Emits when''' downstream pulls and the oldest bytes are due.
+  *   - '''Backpressures when''' `maxBytes` or more are under way.
+  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due too.
+  *   - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
+  *   - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely takes no more
+  *     is not told to the sender, as with a socket: what still comes is discarded until upstream ends.
   *
   * Where a bottleneck lies before it, bytes enter it piece by piece, as the bottleneck has room, and are as late as it
   * makes them besides.

@@ -36,7 +36,8 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
   /** One side does not trust the other, or shows nothing to be trusted by. */
   case NotTrusted(at: Address, reason: Throwable)
       extends TransportError(
-        s"no trusted connection to $at, ${TransportError.whoRefuses(reason)}: ${reason.getMessage}; expected certificates of one set at both sides, which name the host",
+        s"no trusted connection to $at, ${TransportError.whoRefuses(reason)}: " +
+          s"${reason.getMessage}; expected certificates of one set at both sides, which name the host",
         reason
       )
 

@@ -21,7 +21,8 @@ class BottleneckSuite extends munit.FunSuite:
     assertEquals(rooms, List.fill(8)(ms(0)) ++ List(ms(5), ms(10)))
 
   test(
-    "a connection with little to send waits for a full queue and a piece of each that waits, not for all they have"
+    "a connection with little to send waits for a full queue and " +
+      "a piece of each that waits, not for all they have"
   ):
     val shared = line()
     var greedy = List.fill(3)(ms(0))

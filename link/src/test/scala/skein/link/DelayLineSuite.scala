@@ -216,7 +216,8 @@ class DelayLineSuite extends munit.FunSuite:
     .value
 
   test(
-    "over a line with a rate, a command waits for an image on its own connection, and hardly for one on another"
+    "over a line with a rate, a command waits for an image on " +
+      "its own connection, and hardly for one on another"
   ):
     val image = 1280 * 720 * 3 // 442 ms at 50 Mbit/s
     assertEqualsDouble(longestDelayMs(0, apart = false), 10, 0.01)

@@ -88,7 +88,8 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
     override def toString: String =
       val shown =
         differencesMs.map(d => List(10, 25, 50, 75, 90, 95, 99).map(p => f"$p %% ${d(p - 10)}%+.2f"))
-      f"measured minus profile, ms: ${shown.map(_.mkString(", ")).mkString("; back: ")}; machine $latenessMs%.2f ms late"
+      "measured minus profile, ms: " +
+        f"${shown.map(_.mkString(", ")).mkString("; back: ")}; machine $latenessMs%.2f ms late"
 
   private def run(profile: LatencyProfile, distribution: LatencyDistribution): Future[Run] =
     delaysMs(profile)

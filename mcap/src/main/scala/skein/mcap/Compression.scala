@@ -34,7 +34,12 @@ object Compression:
   private val ZstdRatio = 32768L
 
   /** The records of a chunk, which claims their size; or, of a chunk that is cut off, as many as there are of them. */
-  private[mcap] def decompress(chunk: Record.Chunk, limits: Limits, at: Place, cut: Boolean = false): Bytes =
+  private[mcap] def decompress(
+      chunk: Record.Chunk,
+      limits: McapLimits,
+      at: Place,
+      cut: Boolean = false
+  ): Bytes =
     limits.hold(chunk.uncompressedSize, limits.chunkBytes, "a chunk, uncompressed,", at)
     val size = chunk.uncompressedSize.toInt
     val out  =

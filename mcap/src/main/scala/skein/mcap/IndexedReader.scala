@@ -9,7 +9,7 @@ import scala.collection.mutable
   * Every chunk that is opened is held to its CRC and to what the index says of it. Memory: the summary, and the chunks
   * whose times overlap, uncompressed, within the limits.
   */
-final class IndexedReader private (source: ByteSource, limits: Limits, val summary: Summary):
+final class IndexedReader private (source: ByteSource, limits: McapLimits, val summary: Summary):
 
   /** The messages asked for. After an error it ends. */
   def messages(query: Query = Query()): Iterator[Either[McapError, TopicMessage]] =
@@ -197,7 +197,7 @@ final class IndexedReader private (source: ByteSource, limits: Limits, val summa
 
 object IndexedReader:
   /** Finds out what the source holds. */
-  def open(source: ByteSource, limits: Limits = Limits()): Either[McapError, IndexedReader] =
+  def open(source: ByteSource, limits: McapLimits = McapLimits()): Either[McapError, IndexedReader] =
     Refused.either(IndexedReader(source, limits, SummaryReader.read(source, limits)))
 
 /** What `take` gives until it gives null or refuses. */

@@ -13,13 +13,11 @@ private[mcap] object Lz4Block:
   private val MaxDistance  = 65535
   private val HashBits     = 14
 
-  def maxCompressed(length: Int): Int = Math.toIntExact(length.toLong + length / 255 + 16)
-
   /** Positions at which four bytes of a hash were last seen; each compressor has its own. */
   final class Memory:
     private[Lz4Block] val seen = new Array[Int](1 << HashBits)
 
-  /** Gives where the block ends in `target`, which must have room for `maxCompressed` behind `to`. */
+  /** Gives where the block ends in `target`, which must have room for length + length / 255 + 16 bytes behind `to`. */
   def compress(
       source: Array[Byte],
       from: Int,

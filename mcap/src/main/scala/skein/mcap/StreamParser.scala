@@ -30,7 +30,7 @@ enum Parsed:
   *
   * Whoever uses it from several threads takes care that they take turns.
   */
-final class StreamParser(limits: Limits = Limits()):
+final class StreamParser(limits: McapLimits = McapLimits()):
   import StreamParser.*
 
   private val known     = Catalogue()

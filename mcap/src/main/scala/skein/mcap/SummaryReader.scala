@@ -7,7 +7,7 @@ private[mcap] object SummaryReader:
   private val FooterLength = 9 + 20
 
   /** The summary; by reading through the file where it is cut off, or where its summary does not lead to all messages. */
-  def read(source: ByteSource, limits: Limits): Summary =
+  def read(source: ByteSource, limits: McapLimits): Summary =
     val header = this.header(source, limits)
     val tail   = FooterLength + Magic.bytes.size
     val whole  = source.size >= Magic.bytes.size + tail &&
@@ -25,7 +25,7 @@ private[mcap] object SummaryReader:
             fromSection(header, ends, at, source, limits).getOrElse(SummaryScan.read(source, limits))
           case other => Refused.malformed(Place(at), "the Footer record", s"$other")
 
-  private def header(source: ByteSource, limits: Limits): Record.Header =
+  private def header(source: ByteSource, limits: McapLimits): Record.Header =
     val begins = source.read(0, source.size.min(Magic.bytes.size).toInt)
     if begins.size == 0 || begins != Magic.bytes.slice(0, begins.size) then
       throw Refused(McapError.NotMcap(begins))
@@ -49,7 +49,7 @@ private[mcap] object SummaryReader:
       footer: Record.Footer,
       footerAt: Long,
       source: ByteSource,
-      limits: Limits
+      limits: McapLimits
   ): Option[Summary] =
     val start = footer.summaryStart
     if java.lang.Long.compareUnsigned(start, footerAt) > 0 then
@@ -136,7 +136,7 @@ private object SummaryScan:
   /** Messages outside of chunks are gathered in stretches of about so many bytes. */
   private val LooseBytes = 1 << 20
 
-  def read(source: ByteSource, limits: Limits): Summary =
+  def read(source: ByteSource, limits: McapLimits): Summary =
     val parser = StreamParser(limits)
     val scan   = Scan()
     var at     = 0L

@@ -96,7 +96,7 @@ class DamageLaws extends munit.FunSuite:
         // Lengths are what hurts: bytes of all ones are frequent.
         changed(at) = (if random.nextInt(3) == 0 then 0xff else random.nextInt(256)).toByte
       val bytes  = Bytes.of(changed)
-      val limits = Limits(recordBytes = 1 << 16, chunkBytes = 1 << 16, summaryBytes = 1 << 16)
+      val limits = McapLimits(recordBytes = 1 << 16, chunkBytes = 1 << 16, summaryBytes = 1 << 16)
       try
         Parsing.all(bytes, limits = limits).end: Unit
         IndexedReader.open(ByteSource.of(bytes), limits).foreach: reader =>
@@ -106,7 +106,8 @@ class DamageLaws extends munit.FunSuite:
       catch case error: Throwable => throw AssertionError(s"seed $seed: $error", error)
 
   test(
-    "what lz4 or zstd is damaged to is refused, never more than it claims, and never an error of the machine's"
+    "what lz4 or zstd is damaged to is refused, never more than " +
+      "it claims, and never an error of the machine's"
   ):
     for seed <- 1L to 1000 do
       val random = SplittableRandom(seed)
@@ -120,7 +121,7 @@ class DamageLaws extends munit.FunSuite:
       for cut <- Vector(false, true) do
         try
           Refused
-            .either(Compression.decompress(chunk, Limits(), Place(0), cut))
+            .either(Compression.decompress(chunk, McapLimits(), Place(0), cut))
             .foreach(held => assert(held.size <= claimed, s"seed $seed"))
         catch case error: Throwable => throw AssertionError(s"seed $seed, cut $cut: $error", error)
 

@@ -56,7 +56,8 @@ class Lz4Suite extends munit.FunSuite:
     assertEquals(Lz4Frame.decompress(frame, source.length - half, cut = false), Bytes.of(source.drop(half)))
 
   test("blocks that look back into the one before are read, with checksums of blocks and content"):
-    // Python's lz4.frame.compress(…, block_size=64 kB, block_linked=True, block_checksum=True, content_checksum=True).
+    // Python's lz4.frame.compress(…, block_size=64 kB, block_linked=True, block_checksum=True,
+    // content_checksum=True).
     val frame = HexFormat.of.parseHex(
       "04224d185c40880d0100000000004622010000ff086162636465666768696a6b6c6d6e6f70717273747576771700" + "f" * 512 +
         "d15065666768694598558f170000000ff7ffffffffffffffffffffffffffff7d50737475767707ec691f00000000b3086cb0"

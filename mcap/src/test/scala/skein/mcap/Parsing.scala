@@ -11,7 +11,7 @@ object Parsing:
   /** @param piece
     *   so many bytes are offered at a time
     */
-  def all(file: Bytes, piece: Int = 1 << 20, limits: Limits = Limits()): Parsing =
+  def all(file: Bytes, piece: Int = 1 << 20, limits: McapLimits = McapLimits()): Parsing =
     val parser = StreamParser(limits)
     val array  = file.toArray
     val found  = Vector.newBuilder[Parsed.Found]

@@ -18,6 +18,7 @@ object Told:
       s"${one.sequence} ${time(one.logTime)} ${time(one.publishTime)} ${hex(one.data)}"
 
   def attachment(one: Record.Attachment): String =
-    s"attachment ${time(one.logTime)} ${time(one.createTime)} ${text(one.name)} ${text(one.mediaType)} ${hex(one.data)}"
+    s"attachment ${time(one.logTime)} ${time(one.createTime)} " +
+      s"${text(one.name)} ${text(one.mediaType)} ${hex(one.data)}"
 
   def metadata(one: Record.Metadata): String = s"metadata ${text(one.name)} ${map(one.metadata)}"

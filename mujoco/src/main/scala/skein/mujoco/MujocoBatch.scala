@@ -98,11 +98,10 @@ private[mujoco] object MujocoBatch:
     )
 
   /** Parts of the state (`mjtState`). */
-  val Time        = 1 << 0
-  val Positions   = 1 << 1
-  val Velocities  = 1 << 2
-  val Activations = 1 << 3
-  val Controls    = 1 << 6
+  val Time       = 1 << 0
+  val Positions  = 1 << 1
+  val Velocities = 1 << 2
+  val Controls   = 1 << 6
 
   final case class Part(at: Int, size: Int)
 

@@ -25,7 +25,8 @@ object MujocoLibrary:
       )
     case None =>
       fromPython.flatMap(inside).toRight(
-        s"MuJoCo's library was not found: expected python3 to know the package mujoco (pip install mujoco), or the library's path in $Named"
+        "MuJoCo's library was not found: expected python3 to know the package " +
+          s"mujoco (pip install mujoco), or the library's path in $Named"
       )
 
   /** The library, or why there is none of the version that is needed. Looked for once. */
@@ -35,7 +36,8 @@ object MujocoLibrary:
       Either.cond(
         version >= LeastVersion,
         path,
-        s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, came ${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
+        s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, came " +
+          s"${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
       )
 
   private def loadable(path: Path) =

@@ -48,7 +48,7 @@ import skein.units.Decimals.fixed
   val rates = Vector.fill(rounds)((rate(flown()), rate(rolledOut())))
   val best  = (rates.map(_._1).max, rates.map(_._2).max)
   println(
-    s"$file, $vehicles vehicles, $steps steps, best of $rounds: bodies with controllers ${best._1.round} /s, " +
-      s"mjb_rollout ${best._2.round} /s, ${(100 * best._1 / best._2).fixed(1)} %; " +
-      s"witness ${ours.x(0)}, ${batch(0, model.body.place.at + 2)}"
+    s"$file, $vehicles vehicles, $steps steps, best of $rounds: bodies with controllers " +
+      s"${best._1.round} /s, mjb_rollout ${best._2.round} /s, " +
+      s"${(100 * best._1 / best._2).fixed(1)} %; witness ${ours.x(0)}, ${batch(0, model.body.place.at + 2)}"
   )

@@ -55,7 +55,7 @@ final case class Control(
     settings: OffboardSettings = OffboardSettings(),
     originNed: Vector3 = Vector3.Zero,
     origin: Option[GeoLocation] = None,
-    estimate: Estimate = Estimate(),
+    estimate: ReportedMotion = ReportedMotion(),
     clock: Option[VehicleClock] = None,
     shift: (shift: Span, doubt: Span) = (shift = Span.Zero, doubt = Span.Zero),
     asked: Vector[Control.Asked] = Vector.empty,

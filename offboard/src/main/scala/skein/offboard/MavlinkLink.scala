@@ -185,6 +185,7 @@ object MavlinkLink:
           val silent = systems.filterNot(number => link.control(number).isReady)
           link.close().map(_ =>
             Left(VehicleError.Unreachable(
-              s"expected MAVLink systems ${systems.mkString(", ")} within ${within.toSeconds.round} s, but nothing usable came of ${silent.mkString(", ")}"
+              s"expected MAVLink systems ${systems.mkString(", ")} within " +
+                s"${within.toSeconds.round} s, but nothing usable came of ${silent.mkString(", ")}"
             ))
           )

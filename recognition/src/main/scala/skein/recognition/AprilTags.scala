@@ -98,7 +98,8 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
       Right(Vector.tabulate(detector.totalFound)(tag))
     else
       Left(
-        s"expected ${camera.width} × ${camera.height} pixels of three bytes, came $width × $height in ${bgr.remaining} bytes"
+        s"expected ${camera.width} × ${camera.height} pixels of three " +
+          s"bytes, came $width × $height in ${bgr.remaining} bytes"
       )
 
   private def tag(index: Int): Tag =

@@ -81,7 +81,8 @@ object OnnxModel:
         case other =>
           session.close()
           Left(
-            s"expected a model with one input of floats, came ${other.map((name, info) => s"$name: $info").mkString("; ")}"
+            "expected a model with one input of floats, came " +
+              s"${other.map((name, info) => s"$name: $info").mkString("; ")}"
           )
 
   private def outputOf(tensor: OnnxTensor): Output =

@@ -8,5 +8,6 @@ private[recognition] object OnnxRuntime:
     catch
       case missing: LinkageError =>
         Left(
-          s"onnxruntime, which runs models, is not on the class path (docs/guides/onnx.md says how to add it): $missing"
+          "onnxruntime, which runs models, is not on the class path " +
+            s"(docs/guides/onnx.md says how to add it): $missing"
         )

@@ -28,7 +28,8 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
       (place, seen.head)
     val errors = runs.map((place, tag) => (tag.positionFrd - place).norm / place.norm).sorted
     println(
-      f"position error of ${errors.size} tags at 2 to 8 m: median ${errors(errors.size / 2) * 100}%.2f %%, largest ${errors.last * 100}%.2f %%"
+      f"position error of ${errors.size} tags at 2 to 8 m: median " +
+        f"${errors(errors.size / 2) * 100}%.2f %%, largest ${errors.last * 100}%.2f %%"
     )
     assert(errors(errors.size / 2) < 0.02, errors)
     val inDeviations = runs.map: (place, tag) =>

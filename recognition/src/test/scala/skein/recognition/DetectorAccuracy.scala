@@ -94,14 +94,18 @@ object DetectorAccuracy:
   def at(sorted: Vector[Double], q: Double) =
     if sorted.isEmpty then Double.NaN else sorted((q * (sorted.size - 1)).round.toInt)
   println(
-    "range, m     plain  recall  bearing, °: median  95 %   measured / true range: 16 %  median  84 %   deviations: 16 %  84 %"
+    "range, m     plain  recall  bearing, °: median  95 %   measured / " +
+      "true range: 16 %  median  84 %   deviations: 16 %  84 %"
   )
   for ((from, to), row) <- result.byRange do
     println(
-      f"$from%4.1f to $to%4.1f ${row.plain}%6d ${row.recall}%7.3f ${at(row.bearingsDeg, 0.5)}%19.2f ${at(row.bearingsDeg, 0.95)}%5.2f ${at(row.ranges, 0.16)}%28.3f ${at(row.ranges, 0.5)}%7.3f ${at(row.ranges, 0.84)}%5.3f ${at(row.inDeviations, 0.16)}%18.2f ${at(row.inDeviations, 0.84)}%5.2f"
+      f"$from%4.1f to $to%4.1f ${row.plain}%6d ${row.recall}%7.3f ${at(row.bearingsDeg, 0.5)}%19.2f " +
+        f"${at(row.bearingsDeg, 0.95)}%5.2f ${at(row.ranges, 0.16)}%28.3f ${at(row.ranges, 0.5)}%7.3f " +
+        f"${at(row.ranges, 0.84)}%5.3f ${at(row.inDeviations, 0.16)}%18.2f ${at(row.inDeviations, 0.84)}%5.2f"
     )
   println(
-    f"of ${result.images} images: recall ${result.recall}%.3f, precision ${result.precision}%.3f, ${result.falselyFound} boxes where nothing is"
+    f"of ${result.images} images: recall ${result.recall}%.3f, precision " +
+      f"${result.precision}%.3f, ${result.falselyFound} boxes where nothing is"
   )
   val camera   = DetectorAccuracy.Camera
   val detector = VehicleDetector.shipped(camera).fold(sys.error, identity)
@@ -114,5 +118,6 @@ object DetectorAccuracy:
       (System.nanoTime() - began) * 1e-6
   val warm = times.drop(64).toVector.sorted
   println(
-    f"time of one ${camera.width} × ${camera.height} image, one thread: median ${at(warm, 0.5)}%.1f ms, 99 %% ${at(warm, 0.99)}%.1f ms"
+    f"time of one ${camera.width} × ${camera.height} image, one thread: " +
+      f"median ${at(warm, 0.5)}%.1f ms, 99 %% ${at(warm, 0.99)}%.1f ms"
   )

@@ -1,7 +1,7 @@
 package skein.recognition
 
 import skein.flight.VirtualFlights
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.measure.FlightSummary
 import skein.scenario.{ScenarioKind, Scenarios}
 import skein.settings.FlySettings
@@ -23,7 +23,7 @@ class DetectorPursuitSimulation extends munit.FunSuite, Unhurried:
       BlindPursuit(recogniser = "detector")
     )
     val flown = VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
-    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     val summary = FlightSummary.of(flown.recorder.recording)
     val seen    = summary.seeing.headOption.getOrElse(fail("nothing was seen"))
     assert(clue(seen.detections.size) > 0.6 * clue(seen.images))

@@ -85,5 +85,5 @@ final class DroneImages(camera: Pinhole, seed: Long):
 
   private def drawn(moment: Moment, view: View): Array[Byte] =
     Renderer.draw(moment, view, Set(Kind.Scene), identity)(Kind.Scene) match
-      case Image.Bytes(bgr) => bgr
-      case other            => throw IllegalStateException(s"no colours: $other")
+      case Raster.Bytes(bgr) => bgr
+      case other             => throw IllegalStateException(s"no colours: $other")

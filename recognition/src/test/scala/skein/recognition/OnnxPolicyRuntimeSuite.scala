@@ -3,7 +3,7 @@ package skein.recognition
 import java.nio.file.Path
 import scala.util.Using
 import skein.flight.VirtualFlights
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.onnx.{OnnxFiles, OnnxFormat, OnnxGraph, OnnxPolicy}
 import skein.onnx.OnnxGraph.*
 import skein.policy.*
@@ -56,17 +56,18 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     assertEqualsDouble(policy.policy.heading(0, 0.4, 0, 0, 0, 0, 0.1), 0.1 * 0.42839235, 1e-7)
     val (one, other) =
       (flown(policy), flown(PolicyFile.parse(policy.role, policy.text).fold(fail(_), identity)))
-    assertEquals(one.landed.outcome, Outcome.Completed)
+    assertEquals(one.landed.outcome, FlightOutcome.Completed)
     assertEquals(one.recorder.digest, other.recorder.digest)
     written(folder, model("Sin")): Unit
     assert(PolicyFile.parse(policy.role, policy.text).left.exists(_.contains("came another")))
 
   folder.test("one whose answer is no number ends the flight with that, and vehicles hover"): folder =>
-    // Tried before, where it has one: the evader stands ahead, the logarithm of its place to the right is none.
+    // Tried before, where it has one: the evader stands ahead, the logarithm of its place to the right is
+    // none.
     val policy = PolicyFile.read(written(folder, model("Acos"))).fold(fail(_), identity)
     val landed = flown(policy)
     landed.landed.outcome match
-      case Outcome.Failed(reason) =>
+      case FlightOutcome.Failed(reason) =>
         assert(reason.contains("the policy: expected a number from -1 to 1, came NaN"), reason)
       case other => fail(s"$other")
     assert(landed.recorder.recording.commands.groupBy(_.vehicle).values.forall(_.nonEmpty))

@@ -22,7 +22,8 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
       assert(within > 0.85, s"seed $seed: $range m: ${row.inDeviations}")
 
   test(
-    "a box in the middle is ahead, one to the right and above is there, and what the border cuts is less certain"
+    "a box in the middle is ahead, one to the right and above is " +
+      "there, and what the border cuts is less certain"
   ):
     val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
     val ahead    = detector.polar(Box(380, 290, 420, 310, 0, 1))
@@ -42,7 +43,8 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
     assertEquals(
       BlindPursuit(recogniser = "missing.onnx").mistakes,
       Seq(
-        "recogniser: expected tags, detector or an ONNX file: missing.onnx: expected an ONNX model, there is no such file"
+        "recogniser: expected tags, detector or an ONNX file: " +
+          "missing.onnx: expected an ONNX model, there is no such file"
       )
     )
     assert(VehicleDetector.load(camera, Path.of("missing.onnx")).isLeft)

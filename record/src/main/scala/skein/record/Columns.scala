@@ -152,7 +152,7 @@ private[record] object FieldColumns:
 
   given FieldColumns[PredictedMotion] = prefixed(_, columns[PredictedMotion]())
 
-  given FieldColumns[Course] = _ => columns[Course]("courseNorthM", "courseEastM", "courseStep")
+  given FieldColumns[PlannedPath] = _ => columns[PlannedPath]("courseNorthM", "courseEastM", "courseStep")
 
   given FieldColumns[SolverClock] = _ => columns[SolverClock]("solverClockOffset", "solverClockUncertainty")
 

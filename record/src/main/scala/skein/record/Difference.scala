@@ -34,9 +34,9 @@ object Difference:
 
   private def nameOf(record: Record): String = record match
     case decision: DecisionRow => s"decision ${decision.sequence} of ${decision.vehicle}"
-    case read: Measurement     => s"measurement ${read.sequence} of ${read.vehicle}'s ${read.sensor}"
+    case read: MeasurementRow  => s"measurement ${read.sequence} of ${read.vehicle}'s ${read.sensor}"
     case reading: ReadingRow   => s"reading ${reading.sequence} of ${reading.vehicle}"
-    case command: Command      => s"command ${command.sequence} to ${command.vehicle}"
+    case command: CommandRow   => s"command ${command.sequence} to ${command.vehicle}"
     case other                 => s"a row of ${Table.of(other).name}"
 
   /** A double's shortest text is another for another double. */

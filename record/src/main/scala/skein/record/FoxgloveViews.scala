@@ -93,7 +93,7 @@ private[record] final class FoxgloveViews(
         cloudOf(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true)),
         () => ImageEncoding.cloud(cloud, at, form.mostPoints)
       ))
-    case Parameter(s"kind.$name", Car) if colours.contains(name) =>
+    case ParameterRow(s"kind.$name", Car) if colours.contains(name) =>
       cars += name
       Vector(drawn(name))
     case _ => Vector.empty

@@ -61,7 +61,7 @@ object McapRecording:
       scene: Map[String, String] => Scene,
       mcap: McapWriter
   ): Unit =
-    val names = rows.collect { case (_, vehicle: Vehicle) => vehicle.name }
+    val names = rows.collect { case (_, vehicle: VehicleRow) => vehicle.name }
     val from  =
       rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
         Instant.ofNanos(0)
@@ -78,7 +78,7 @@ object McapRecording:
     val isOurs = rows.exists:
       case (_, flight: FlightRow) => flight.isBuiltIn
       case _                      => false
-    if isOurs then scene(rows.collect { case (_, Parameter(name, value)) => name -> value }.toMap)
+    if isOurs then scene(rows.collect { case (_, ParameterRow(name, value)) => name -> value }.toMap)
     else Scene.Empty
 
   /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
@@ -253,7 +253,8 @@ object McapRecording:
     Using.resource(connection.createStatement()): statement =>
       val _ = statement.execute(
         s"INSERT INTO ${table.name} SELECT ${values.mkString(", ")} FROM " +
-          s"read_json($quoted, format = 'newline_delimited', columns = $types, maximum_object_size = $longest)"
+          s"read_json($quoted, format = 'newline_delimited', " +
+          s"columns = $types, maximum_object_size = $longest)"
       )
 
   /** DuckDB's own limit of a line, bytes. */

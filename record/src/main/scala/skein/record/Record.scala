@@ -60,7 +60,7 @@ final case class FlightRow(
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
 
 /** A run parameter that has no column in [[FlightRow]]. */
-final case class Parameter(name: String, value: String) extends Record
+final case class ParameterRow(name: String, value: String) extends Record
 
 /** A vehicle of the flight.
   *
@@ -69,15 +69,16 @@ final case class Parameter(name: String, value: String) extends Record
   * @param startNed
   *   the origin of its own frame in the world frame
   */
-final case class Vehicle(name: String, role: String, speed: MetresPerSecond, startNed: Vector3) extends Record
+final case class VehicleRow(name: String, role: String, speed: MetresPerSecond, startNed: Vector3)
+    extends Record
 
-object Vehicle:
-  def of(agent: Agent): Vehicle =
-    Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+object VehicleRow:
+  def of(agent: Agent): VehicleRow =
+    VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
   /** The parameter that says what a vehicle is, where it is no multirotor. */
-  def kind(name: String, kind: VehicleKind): Option[Parameter] =
-    Option.when(kind != VehicleKind.Multirotor)(Parameter(s"kind.$name", kind.toString))
+  def kind(name: String, kind: VehicleKind): Option[ParameterRow] =
+    Option.when(kind != VehicleKind.Multirotor)(ParameterRow(s"kind.$name", kind.toString))
 
 /** One answer of the simulator.
   *
@@ -95,7 +96,7 @@ final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kine
   * @param numbers
   *   as many
   */
-final case class Measurement(
+final case class MeasurementRow(
     sequence: Long,
     vehicle: String,
     sensor: String,
@@ -274,7 +275,7 @@ final case class Planned(
     cost: Option[Double],
     took: Span,
     breaches: Long,
-    course: Option[Course] = None
+    course: Option[PlannedPath] = None
 ) extends Record
 
 /** A decision that was made in another process, and the times of its ways there and back.
@@ -316,7 +317,7 @@ final case class SolvedRow(
 final case class SolverClock(offset: Span, uncertainty: Span)
 
 /** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command acts. */
-final case class Course(north: Vector[Double], east: Vector[Double], step: Span)
+final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
 /** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
@@ -392,7 +393,7 @@ final case class Prediction(
   * @param down
   *   the altitude goal, NED
   */
-final case class Command(
+final case class CommandRow(
     sequence: Long,
     vehicle: String,
     decision: Option[Long],

@@ -6,12 +6,12 @@ final case class Recording(
     readings: Vector[ReadingRow] = Vector.empty,
     decisions: Vector[DecisionRow] = Vector.empty,
     sightings: Vector[Sighting] = Vector.empty,
-    measurements: Vector[Measurement] = Vector.empty,
+    measurements: Vector[MeasurementRow] = Vector.empty,
     sensings: Vector[Sensing] = Vector.empty,
     planned: Vector[Planned] = Vector.empty,
     solved: Vector[SolvedRow] = Vector.empty,
     predictions: Vector[Prediction] = Vector.empty,
-    commands: Vector[Command] = Vector.empty,
+    commands: Vector[CommandRow] = Vector.empty,
     acknowledgements: Vector[Acknowledgement] = Vector.empty,
     latencies: Vector[Latency] = Vector.empty,
     events: Vector[Event] = Vector.empty,
@@ -25,18 +25,18 @@ object Recording:
   /** Parameters that came in flight count as the heading's, as in a file. */
   def apply(heading: RecordingHeader, records: Seq[Record]): Recording =
     Recording(
-      heading.copy(parameters = heading.parameters ++ records.collect { case parameter: Parameter =>
+      heading.copy(parameters = heading.parameters ++ records.collect { case parameter: ParameterRow =>
         parameter
       }),
       records.collect { case reading: ReadingRow => reading }.toVector,
       records.collect { case decision: DecisionRow => decision }.toVector,
       records.collect { case sighting: Sighting => sighting }.toVector,
-      records.collect { case measurement: Measurement => measurement }.toVector,
+      records.collect { case measurement: MeasurementRow => measurement }.toVector,
       records.collect { case sensing: Sensing => sensing }.toVector,
       records.collect { case planned: Planned => planned }.toVector,
       records.collect { case solved: SolvedRow => solved }.toVector,
       records.collect { case prediction: Prediction => prediction }.toVector,
-      records.collect { case command: Command => command }.toVector,
+      records.collect { case command: CommandRow => command }.toVector,
       records.collect { case acknowledgement: Acknowledgement => acknowledgement }.toVector,
       records.collect { case latency: Latency => latency }.toVector,
       records.collect { case event: Event => event }.toVector,

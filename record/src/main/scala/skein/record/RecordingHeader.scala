@@ -1,11 +1,15 @@
 package skein.record
 
 /** What a recording begins with; on disk before the first record is taken. */
-final case class RecordingHeader(flight: FlightRow, vehicles: Seq[Vehicle], parameters: Seq[Parameter] = Nil):
+final case class RecordingHeader(
+    flight: FlightRow,
+    vehicles: Seq[VehicleRow],
+    parameters: Seq[ParameterRow] = Nil
+):
   def records: Seq[Record] = flight +: (vehicles ++ parameters)
 
   /** The parameters whose names begin with a word and a full stop, by what follows. */
   def parametersOf(word: String): Map[String, String] =
     parameters
-      .collect { case Parameter(s"$before.$name", value) if before == word => name -> value }
+      .collect { case ParameterRow(s"$before.$name", value) if before == word => name -> value }
       .toMap

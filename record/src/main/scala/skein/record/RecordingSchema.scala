@@ -8,7 +8,8 @@ object RecordingSchema:
     val tables = Table.all.map: table =>
       val columns = (Column("row", "BIGINT") +: table.columns.definitions).map: column =>
         s"| `${column.name}` | ${column.sqlType} | ${if column.nullable then "may be absent" else ""} |"
-      s"## ${table.name}\n\n${meaning(table.name)}\n\n| column | type | |\n|---|---|---|\n${columns.mkString("\n")}\n"
+      s"## ${table.name}\n\n${meaning(table.name)}\n\n| column | " +
+        s"type | |\n|---|---|---|\n${columns.mkString("\n")}\n"
     s"$introduction\n${tables.mkString("\n")}"
 
   private val introduction =
@@ -37,34 +38,36 @@ object RecordingSchema:
     case "vehicle"   => "One row for each vehicle; `start…` is its own frame's origin in the world frame."
     case "reading"   => "One row for each answer of the simulator."
     case "decision"  =>
-      "One row for each decision, with the readings it was made from. `ownAge` and `opponentAge` count from a reading's " +
-        "arrival, as in the paper; `ownTrueAge` and `opponentTrueAge` from its valid time, with `uncertainty` as the " +
-        "bound of their error. `relativeX` and `relativeY` are the position of the evader relative to the pursuer, " +
-        "along its commanded heading and to the right of it (for other roles, of the opponent relative to the " +
-        "vehicle). `elapsed` is the time since the vehicle's last decision, `actsAt` the predicted time at which the " +
-        "command acts."
+      "One row for each decision, with the readings it was made from. `ownAge` and `opponentAge` count " +
+        "from a reading's arrival, as in the paper; `ownTrueAge` and `opponentTrueAge` from its valid " +
+        "time, with `uncertainty` as the bound of their error. `relativeX` and `relativeY` are the " +
+        "position of the evader relative to the pursuer, along its commanded heading and to the right of " +
+        "it (for other roles, of the opponent relative to the vehicle). `elapsed` is the time since the " +
+        "vehicle's last decision, `actsAt` the predicted time at which the command acts."
     case "sighting"    => "The readings of the other vehicles that a decision for a team was made from."
     case "measurement" => "One row for each answer of a sensor; `quantities` names its numbers, with units."
     case "sensing"     =>
       "The measurements that a decision was made from: one row for each sensor that its policy reads."
     case "image" =>
-      "One row for each image, if images are recorded (`fly --images`). `pixels` are compressed by Zstandard: rows from " +
-        "the top, `bgr8`, or `32FC1` as numbers of 32 bits. Position and orientation are the camera's at the exposure."
+      "One row for each image, if images are recorded (`fly --images`). `pixels` are " +
+        "compressed by Zstandard: rows from the top, `bgr8`, or `32FC1` as numbers of 32 " +
+        "bits. Position and orientation are the camera's at the exposure."
     case "cloud" =>
-      "One row for each scan of a lidar, if scans are recorded. `xyz` are compressed by Zstandard: three numbers of 32 " +
-        "bits for each point, in the lidar's frame."
+      "One row for each scan of a lidar, if scans are recorded. `xyz` are compressed by " +
+        "Zstandard: three numbers of 32 bits for each point, in the lidar's frame."
     case "plan" =>
-      "How a plan was found: candidates, slices of each search, cost, broken limits; and the planned path, from the " +
-        "moment at which its command acts, a position for each step."
+      "How a plan was found: candidates, slices of each search, cost, broken limits; and the " +
+        "planned path, from the moment at which its command acts, a position for each step."
     case "solved" =>
-      "Decisions that were made in another process: when the question left and the answer came, and how long the " +
-        "solver took. Questions without a row were not answered in time."
+      "Decisions that were made in another process: when the question left and the answer came, " +
+        "and how long the solver took. Questions without a row were not answered in time."
     case "prediction"      => "Predictions that a later reading could be compared with, and their errors."
     case "command"         => "One row for each command as it was sent."
     case "acknowledgement" => "How each command ended."
     case "latency"         => "Round trips over the link."
     case "event"           =>
-      "Everything unusual: every drop, skip, time-out and reconnection; and messages of a learner beside the loop."
+      "Everything unusual: every drop, skip, time-out and " +
+        "reconnection; and messages of a learner beside the loop."
     case "truth"  => "True positions of vehicles, if they are sampled apart from the readings."
     case "ending" => "How the flight ended: one row, or none if the recording is incomplete."
     case other    => throw IllegalArgumentException(s"table $other has no description")

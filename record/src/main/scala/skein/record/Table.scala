@@ -84,22 +84,22 @@ private[record] object Table:
   // What came with a later format than its table.
   private given action: FieldColumns[Option[Action]] =
     name => added(optional(summon[FieldColumns[Action]](name)))
-  private given course: FieldColumns[Option[Course]] =
-    name => added(optional(summon[FieldColumns[Course]](name)))
+  private given course: FieldColumns[Option[PlannedPath]] =
+    name => added(optional(summon[FieldColumns[PlannedPath]](name)))
 
   val flight: Table[FlightRow]                = table("flight")
-  val parameter: Table[Parameter]             = table("parameter")
-  val vehicle: Table[Vehicle]                 = table("vehicle")
+  val parameter: Table[ParameterRow]          = table("parameter")
+  val vehicle: Table[VehicleRow]              = table("vehicle")
   val reading: Table[ReadingRow]              = table("reading")
   val decision: Table[DecisionRow]            = table("decision")
   val sighting: Table[Sighting]               = table("sighting", since = 3)
-  val measurement: Table[Measurement]         = table("measurement", since = 5)
+  val measurement: Table[MeasurementRow]      = table("measurement", since = 5)
   val sensing: Table[Sensing]                 = table("sensing", since = 5)
   val image: Table[CameraImage]               = table("image", since = 6)
   val cloud: Table[Cloud]                     = table("cloud", since = 6)
   val solved: Table[SolvedRow]                = table("solved", since = 6)
   val prediction: Table[Prediction]           = table("prediction")
-  val command: Table[Command]                 = table("command")
+  val command: Table[CommandRow]              = table("command")
   val acknowledgement: Table[Acknowledgement] = table("acknowledgement")
   val latency: Table[Latency]                 = table("latency")
   val truth: Table[Truth]                     = table("truth")

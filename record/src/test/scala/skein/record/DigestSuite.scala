@@ -57,7 +57,7 @@ class DigestSuite extends munit.FunSuite, TemporaryFolders:
     val expected = HexFormat.of.formatHex(MessageDigest.getInstance("SHA-256").digest(bytes.toByteArray))
 
     import skein.units.*
-    val command = Command(
+    val command = CommandRow(
       2,
       "Pursuer",
       None,

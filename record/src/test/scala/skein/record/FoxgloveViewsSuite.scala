@@ -34,7 +34,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
   test("a car is as long as it is wide twice over, and stands on the ground where its frame is"):
     val seen    = FoxgloveViews(names, Some(Span.Zero))
     val _       = seen.opening(Samples.at(0))
-    val told    = Vehicle.kind("Evader", VehicleKind.Car).get
+    val told    = VehicleRow.kind("Evader", VehicleKind.Car).get
     val Seq(as) = seen.of(told): @unchecked
     assertEquals(as.topic, drawn(2).topic)
     val (body, before) = (entity(as)("cubes")(0), entity(drawn(2))("cubes")(0))
@@ -42,8 +42,9 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assert(body("size")("x").num > 2 * body("size")("y").num)
     // Down is positive.
     assertEqualsDouble(body("pose")("position")("z").num, -body("size")("z").num / 2, 1e-9)
-    assertEquals(Vehicle.kind("Evader", VehicleKind.Multirotor), None)
-    for other <- Seq(Parameter("kind.Nobody", "Car"), Parameter("kind.Evader", "Boat"), Parameter("car", ""))
+    assertEquals(VehicleRow.kind("Evader", VehicleKind.Multirotor), None)
+    for other <-
+        Seq(ParameterRow("kind.Nobody", "Car"), ParameterRow("kind.Evader", "Boat"), ParameterRow("car", ""))
     do
       assertEquals(seen.of(other).size, 0)
 
@@ -82,7 +83,8 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val turn            = read(drawn.head)("transforms")(0)
     val rotation        = turn("rotation")
     val Seq(x, y, z, w) = Seq("x", "y", "z", "w").map(rotation(_).num): @unchecked
-    // The rotation's matrix, by its definition, row by row: what was north becomes y, what was east x, down −z.
+    // The rotation's matrix, by its definition, row by row: what was north becomes y, what was east x, down
+    // −z.
     val rows = Vector(
       Vector(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
       Vector(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),

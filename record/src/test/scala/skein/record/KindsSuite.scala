@@ -17,10 +17,10 @@ class KindsSuite extends munit.FunSuite:
   test("parameters belong to the word before their first full stop"):
     val heading = Samples.heading.copy(parameters =
       Seq(
-        Parameter("ring.m", "8"),
-        Parameter("ring.at.s", "2"),
-        Parameter("other.m", "1"),
-        Parameter("ring", "0")
+        ParameterRow("ring.m", "8"),
+        ParameterRow("ring.at.s", "2"),
+        ParameterRow("other.m", "1"),
+        ParameterRow("ring", "0")
       )
     )
     assertEquals(heading.parametersOf("ring"), Map("m" -> "8", "at.s" -> "2"))

@@ -21,10 +21,10 @@ object Samples:
       startedAt = Instant.ofNanos(1_790_000_000_123_456_789L)
     ),
     Seq(
-      Vehicle("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
-      Vehicle("Evader", "evader", MetresPerSecond(5), Vector3(21, 0.5, -0.25))
+      VehicleRow("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
+      VehicleRow("Evader", "evader", MetresPerSecond(5), Vector3(21, 0.5, -0.25))
     ),
-    Seq(Parameter("turningRadiusM", "8"))
+    Seq(ParameterRow("turningRadiusM", "8"))
   )
 
   def at(nanos: Long): Instant = heading.flight.startedAt + Span.ofNanos(nanos)
@@ -126,7 +126,7 @@ object Samples:
       5,
       Some(PredictedMotion(Vector3(0.5, 1.5, -20.25), Vector3(-1, 2.25, 0.5)))
     ),
-    Measurement(
+    MeasurementRow(
       3,
       "Pursuer",
       "gps",
@@ -148,7 +148,7 @@ object Samples:
       Some(12.25),
       Span.ofMillis(60.5),
       0,
-      Some(Course(Vector(1.5, 2.5), Vector(-0.5, 0.25), Span.ofMillis(100)))
+      Some(PlannedPath(Vector(1.5, 2.5), Vector(-0.5, 0.25), Span.ofMillis(100)))
     ),
     Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
     SolvedRow(
@@ -170,8 +170,16 @@ object Samples:
       Vector3(21.5, 1.25, -19.75),
       Metres(0.0625)
     ),
-    Command(1, "Pursuer", Some(1), MetresPerSecond(6.4), MetresPerSecond(7.7), Metres(-20), at(41_000_000)),
-    Command(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
+    CommandRow(
+      1,
+      "Pursuer",
+      Some(1),
+      MetresPerSecond(6.4),
+      MetresPerSecond(7.7),
+      Metres(-20),
+      at(41_000_000)
+    ),
+    CommandRow(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
     Acknowledgement("Pursuer", 1, at(80_000_000), "superseded"),
     Latency("vpn", at(5), Span.ofNanos(102_800_001)),
     Event(at(6), EventKind.Skipped, Some("Evader"), "an answer was outstanding, it's late"),

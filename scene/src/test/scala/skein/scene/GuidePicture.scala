@@ -13,6 +13,6 @@ import skein.units.Vector3
     Set(Kind.Scene),
     identity
   )(Kind.Scene) match
-    case Image.Bytes(bgr) =>
-      val _ = Files.write(Path.of(file), Png.encode(bgr, view.width, view.height))
+    case Raster.Bytes(bgr) =>
+      val _ = Files.write(Path.of(file), PngEncoder.encode(bgr, view.width, view.height))
     case other => throw IllegalStateException(s"$other")

@@ -29,8 +29,8 @@ import skein.units.Vector3
 
   def draw(moment: Moment, kinds: Kind*): Long =
     Renderer.draw(moment, view, kinds.toSet, item => item & 255).values.map:
-      case Image.Bytes(bytes)    => crc(bytes)
-      case Image.Numbers(values) => values(values.length / 2).toInt.toLong
+      case Raster.Bytes(bytes)    => crc(bytes)
+      case Raster.Numbers(values) => values(values.length / 2).toInt.toLong
     .sum
 
   row("1280 × 720, 60 boxes: Scene")(draw(Scenes.Sixty, Kind.Scene))
@@ -43,9 +43,9 @@ import skein.units.Vector3
   row("  DepthPerspective")(draw(Scenes.Sixty, Kind.DepthPerspective))
   row("  forest: Scene")(draw(forest, Kind.Scene))
   val scene = Renderer.draw(Scenes.Sixty, view, Set(Kind.Scene), identity)(Kind.Scene) match
-    case Image.Bytes(bytes) => bytes
-    case _                  => Array.emptyByteArray
-  row(s"  PNG of Scene")(Png.encode(scene, 1280, 720).length)
+    case Raster.Bytes(bytes) => bytes
+    case _                   => Array.emptyByteArray
+  row(s"  PNG of Scene")(PngEncoder.encode(scene, 1280, 720).length)
   val lidar = Lidar()
   row("lidar, a turn of 10,000 rays, 60 boxes"):
     lidar.scan(Scenes.Sixty, Placement(Vector3(20, 0, -5)), Item.Nothing, Vector3.Zero, 0).items.length

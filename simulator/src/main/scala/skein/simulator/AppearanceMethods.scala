@@ -7,14 +7,14 @@ import skein.airsim.wire.{Pose, Vector3r}
   * says so as AirSim does of a name it does not know.
   */
 private[simulator] object AppearanceMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     one[Boolean]("simEnableWeather")((_, _) => Nil),
     many[(Int, Float)]("simSetWeatherParameter"):
       case (_, (effect, _)) =>
         if effect < 0 || effect > LastEffect then
-          Outcome.Threw(s"a weather parameter is 0 to $LastEffect, not $effect")
+          CallOutcome.Threw(s"a weather parameter is 0 to $LastEffect, not $effect")
         else Nil
     ,
     many[(Boolean, String, Boolean, Float, Float, Boolean)]("simSetTimeOfDay"):
@@ -42,7 +42,7 @@ private[simulator] object AppearanceMethods:
     ,
     many[(String, String, Int)]("simPrintLogMessage"):
       case (_, (message, parameter, severity)) =>
-        if severity < 0 || severity > 255 then Outcome.Threw("std::bad_cast")
+        if severity < 0 || severity > 255 then CallOutcome.Threw("std::bad_cast")
         else bounded(message + parameter)(Nil)
     ,
     one[String]("simRunConsoleCommand")((_, command) => bounded(command)(answer(true))),
@@ -64,27 +64,28 @@ private[simulator] object AppearanceMethods:
 
   private val LongestText = 10_000
 
-  private def plot(method: String): Method =
+  private def plot(method: String): ServerMethod =
     many[(Seq[Vector3r], Seq[Float], Float, Float, Boolean)](method):
       case (_, (_, colour, _, _, _)) => coloured(colour)(Nil)
 
-  private def material(method: String): Method =
+  private def material(method: String): ServerMethod =
     many[(String, String, Int)](method):
       case (_, (_, _, _)) => answer(false)
 
-  private def drawn(texts: Seq[String], colour: Seq[Float]): Outcome =
+  private def drawn(texts: Seq[String], colour: Seq[Float]): CallOutcome =
     coloured(colour)(bounded(texts.iterator.map(_.length).sum)(Nil))
 
   /** AirSim reads past the end of what is shorter. */
-  private def coloured(colour: Seq[Float])(run: => Outcome): Outcome =
-    if colour.size >= 4 then run else Outcome.Threw(s"a colour is four numbers (RGBA), not ${colour.size}")
+  private def coloured(colour: Seq[Float])(run: => CallOutcome): CallOutcome =
+    if colour.size >= 4 then run
+    else CallOutcome.Threw(s"a colour is four numbers (RGBA), not ${colour.size}")
 
-  private def paired(what: String, first: Seq[?], second: Seq[?])(run: => Outcome): Outcome =
+  private def paired(what: String, first: Seq[?], second: Seq[?])(run: => CallOutcome): CallOutcome =
     if first.size == second.size then run
-    else Outcome.Threw(s"$what must be as many, not ${first.size} and ${second.size}")
+    else CallOutcome.Threw(s"$what must be as many, not ${first.size} and ${second.size}")
 
-  private def bounded(text: String)(run: => Outcome): Outcome = bounded(text.length)(run)
+  private def bounded(text: String)(run: => CallOutcome): CallOutcome = bounded(text.length)(run)
 
-  private def bounded(length: Int)(run: => Outcome): Outcome =
+  private def bounded(length: Int)(run: => CallOutcome): CallOutcome =
     if length <= LongestText then run
-    else Outcome.Threw(s"texts have at most $LongestText characters, not $length")
+    else CallOutcome.Threw(s"texts have at most $LongestText characters, not $length")

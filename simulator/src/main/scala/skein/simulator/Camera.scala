@@ -77,8 +77,9 @@ final private[simulator] case class Lens(
 ):
   /** As AirSim writes it. */
   def text: String =
-    s"Name: $name;\n\t MinFocalLength: ${Lens.plain(shortestMm)}; \t MaxFocalLength: ${Lens.plain(longestMm)}" +
-      s"\n\t Min FStop: ${Lens.plain(widestF)}; \t Max Fstop: ${Lens.plain(narrowestF)}"
+    s"Name: $name;\n\t MinFocalLength: ${Lens.plain(shortestMm)}; \t " +
+      s"MaxFocalLength: ${Lens.plain(longestMm)}\n\t Min FStop: " +
+      s"${Lens.plain(widestF)}; \t Max Fstop: ${Lens.plain(narrowestF)}"
 
 private[simulator] object Lens:
   val Universal: Lens = Lens("Universal Zoom", 4, 1000, 1.2f, 22)

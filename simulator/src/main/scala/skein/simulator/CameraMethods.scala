@@ -6,12 +6,12 @@ import upickle.default.writeMsg
 
 /** Functions of cameras, and of images. */
 private[simulator] object CameraMethods:
-  import Method.*
+  import ServerMethod.*
 
   /** Larger than any film or lens. */
   private inline val LargestMm = 100_000f
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(String, String, Boolean)]("simGetCameraInfo"):
       case (simulation, (camera, name, external)) =>
         of(simulation, camera, name, external): (index, camera) =>
@@ -40,7 +40,7 @@ private[simulator] object CameraMethods:
       case (simulation, (camera, parameter, value, name, external)) =>
         val index = Camera.DistortionNames.indexOf(parameter)
         if index < 0 then
-          Outcome.Threw(
+          CallOutcome.Threw(
             s"no distortion parameter '$parameter': it is one of ${Camera.DistortionNames.mkString(", ")}"
           )
         else change(simulation, camera, name, external)(_.withDistortion(index, value))
@@ -60,8 +60,8 @@ private[simulator] object CameraMethods:
           positive("a sensor's height", height, LargestMm):
             val film = Filmback("Custom...", width, height)
             change(simulation, camera, name, external)(_.copy(filmback = film)) match
-              case Outcome.Answered(_) => answer(film.aspectRatio)
-              case refused             => refused
+              case CallOutcome.Answered(_) => answer(film.aspectRatio)
+              case refused                 => refused
     ,
     get("simGetFocalLength")(camera => answer(camera.focalLengthMm)),
     set("simSetFocalLength", "a focal length", LargestMm)(_.withFocalLength(_)),
@@ -82,34 +82,35 @@ private[simulator] object CameraMethods:
     many[(Seq[ImageRequest], String, Boolean)]("simGetImages"):
       case (simulation, (requests, name, external)) =>
         simulated(simulation, name): (index, _) =>
-          if external then Outcome.Threw("No external cameras exist")
+          if external then CallOutcome.Threw("No external cameras exist")
           else
             Shots.of(simulation, index, requests) match
-              case Left(refusal) => Outcome.Threw(refusal)
-              case Right(shots)  => Outcome.Draws(() => ImageResponse.encode(shots.take()))
+              case Left(refusal) => CallOutcome.Threw(refusal)
+              case Right(shots)  => CallOutcome.Draws(() => ImageResponse.encode(shots.take()))
     ,
     many[(String, Int, String, Boolean)]("simGetImage"):
       case (simulation, (camera, kind, name, external)) =>
         of(simulation, camera, name, external): (index, camera) =>
           val request = ImageRequest(camera, kind, pixels_as_float = false, compress = true)
           Shots.of(simulation, index, Seq(request)) match
-            case Left(refusal) => Outcome.Threw(refusal)
-            case Right(shots)  => Outcome.Draws(() => Binary(shots.take().head.image_data_uint8))
+            case Left(refusal) => CallOutcome.Threw(refusal)
+            case Right(shots)  => CallOutcome.Draws(() => Binary(shots.take().head.image_data_uint8))
     ,
     many[(String, Int, String, Boolean)]("simGetDetections"):
       case (simulation, (camera, kind, name, external)) =>
         of(simulation, camera, name, external): (index, camera) =>
           Shots.kindOf(kind) match
-            case Left(refusal) => Outcome.Threw(refusal)
+            case Left(refusal) => CallOutcome.Threw(refusal)
             case Right(_)      =>
               val found = Detections.of(simulation, index, camera, kind)
-              Outcome.Draws(() => writeMsg(found()))
+              CallOutcome.Draws(() => writeMsg(found()))
     ,
     many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
       case (simulation, (camera, kind, mesh, name, external)) =>
         detecting(simulation, camera, kind, name, external): filter =>
-          if filter.meshes.size < Detection.MostMeshes then Right(filter.copy(meshes = filter.meshes + mesh))
-          else Left(s"a detection filter holds at most ${Detection.MostMeshes} names")
+          if filter.meshes.size < DetectionFilter.MostMeshes then
+            Right(filter.copy(meshes = filter.meshes + mesh))
+          else Left(s"a detection filter holds at most ${DetectionFilter.MostMeshes} names")
     ,
     many[(String, Int, Float, String, Boolean)]("simSetDetectionFilterRadius"):
       case (simulation, (camera, kind, radiusCm, name, external)) =>
@@ -123,12 +124,16 @@ private[simulator] object CameraMethods:
   /** Kinds of images, from 0. */
   private val ImageTypes = 10
 
-  private def get(method: String)(read: Camera => Outcome): Method =
+  private def get(method: String)(read: Camera => CallOutcome): ServerMethod =
     many[(String, String, Boolean)](method):
       case (simulation, (camera, name, external)) =>
         of(simulation, camera, name, external)((index, camera) => read(cameraOf(simulation, index, camera)))
 
-  private def set(method: String, what: String, largest: Float)(change: (Camera, Float) => Camera): Method =
+  private def set(
+      method: String,
+      what: String,
+      largest: Float
+  )(change: (Camera, Float) => Camera): ServerMethod =
     many[(Float, String, String, Boolean)](method):
       case (simulation, (value, camera, name, external)) =>
         positive(what, value, largest):
@@ -138,7 +143,7 @@ private[simulator] object CameraMethods:
       method: String,
       presets: Seq[A],
       named: A => String
-  )(change: (Camera, A) => Camera): Method =
+  )(change: (Camera, A) => Camera): ServerMethod =
     many[(String, String, String, Boolean)](method):
       case (simulation, (preset, camera, name, external)) =>
         // As in AirSim, a name that is no preset's changes nothing.
@@ -146,41 +151,41 @@ private[simulator] object CameraMethods:
           presets.find(named(_) == preset).fold(camera)(change(camera, _))
 
   /** Accepted; nothing is drawn that would be in focus. */
-  private def switch(method: String): Method =
+  private def switch(method: String): ServerMethod =
     many[(Boolean, String, String, Boolean)](method):
       case (simulation, (_, camera, name, external)) => of(simulation, camera, name, external)((_, _) => Nil)
 
-  private def positive(what: String, value: Float, largest: Float)(run: => Outcome): Outcome =
+  private def positive(what: String, value: Float, largest: Float)(run: => CallOutcome): CallOutcome =
     if value > 0 && value <= largest then run
-    else Outcome.Threw(s"$what is above 0 and at most $largest, not $value")
+    else CallOutcome.Threw(s"$what is above 0 and at most $largest, not $value")
 
   private def change(simulation: Simulated, camera: String, name: String, external: Boolean)(
       change: Camera => Camera
-  ): Outcome =
+  ): CallOutcome =
     of(simulation, camera, name, external): (index, camera) =>
       done(simulation.cameras(index, camera) = change(cameraOf(simulation, index, camera)))
 
   private def detecting(simulation: Simulated, camera: String, kind: Int, name: String, external: Boolean)(
-      change: Detection => Either[String, Detection]
-  ): Outcome =
+      change: DetectionFilter => Either[String, DetectionFilter]
+  ): CallOutcome =
     of(simulation, camera, name, external): (index, camera) =>
       if kind < 0 || kind >= ImageTypes then
-        Outcome.Threw(s"an image type is 0 to ${ImageTypes - 1}, not $kind")
+        CallOutcome.Threw(s"an image type is 0 to ${ImageTypes - 1}, not $kind")
       else
         change(simulation.cameras.detection(index, camera, kind)) match
-          case Left(refusal) => Outcome.Threw(refusal)
+          case Left(refusal) => CallOutcome.Threw(refusal)
           case Right(filter) =>
             done(simulation.cameras.setDetection(index, camera, kind, filter))
 
   /** The vehicle's index and the camera's own name. AirSim ends itself on a camera that is not there. */
   private def of(simulation: Simulated, camera: String, name: String, external: Boolean)(
-      run: (Int, String) => Outcome
-  ): Outcome =
-    if external then Outcome.Threw(s"No external camera with name $camera exist")
+      run: (Int, String) => CallOutcome
+  ): CallOutcome =
+    if external then CallOutcome.Threw(s"No external camera with name $camera exist")
     else
       simulated(simulation, name): (index, vehicle) =>
         simulation.cameras.canonical(vehicle, camera)
-          .fold(Outcome.Threw(Shots.noCamera(camera)))(run(index, _))
+          .fold(CallOutcome.Threw(Shots.noCamera(camera)))(run(index, _))
 
   private def cameraOf(simulation: Simulated, vehicle: Int, camera: String): Camera =
     simulation.cameras(vehicle, simulation.world.vehicles(vehicle), camera)

@@ -8,9 +8,9 @@ import skein.units.{Quaternion, Vector3}
   * @param equipment
   *   of the settings
   */
-final private[simulator] class Cameras(equipment: Equipment):
+final private[simulator] class Cameras(equipment: SensorSettings):
   private val changed  = mutable.Map.empty[(Int, String), Camera]
-  private val detected = mutable.Map.empty[(Int, String, Int), Detection]
+  private val detected = mutable.Map.empty[(Int, String, Int), DetectionFilter]
 
   /** A camera's own name, if the vehicle has such a one. */
   def canonical(vehicle: SimulatedVehicle, name: String): Option[String] =
@@ -37,10 +37,10 @@ final private[simulator] class Cameras(equipment: Equipment):
   def update(vehicle: Int, name: String, camera: Camera): Unit = changed((vehicle, name)) = camera
 
   /** What is looked for in images of this kind. */
-  def detection(vehicle: Int, name: String, imageType: Int): Detection =
-    detected.getOrElse((vehicle, name, imageType), Detection())
+  def detection(vehicle: Int, name: String, imageType: Int): DetectionFilter =
+    detected.getOrElse((vehicle, name, imageType), DetectionFilter())
 
-  def setDetection(vehicle: Int, name: String, imageType: Int, detection: Detection): Unit =
+  def setDetection(vehicle: Int, name: String, imageType: Int, detection: DetectionFilter): Unit =
     detected((vehicle, name, imageType)) = detection
 
 /** What is looked for in images.
@@ -48,7 +48,7 @@ final private[simulator] class Cameras(equipment: Equipment):
   * @param meshes
   *   names, which may hold wild cards
   */
-final private[simulator] case class Detection(meshes: Set[String] = Set.empty, radiusCm: Float = 20_000)
+final private[simulator] case class DetectionFilter(meshes: Set[String] = Set.empty, radiusCm: Float = 20_000)
 
-private[simulator] object Detection:
+private[simulator] object DetectionFilter:
   val MostMeshes = 1000

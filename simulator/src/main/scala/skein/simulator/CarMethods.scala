@@ -4,9 +4,9 @@ import skein.airsim.wire.{CarControls, CarState}
 
 /** Functions of cars: those that AirSim's `CarClient` has beside those of all vehicles. */
 private[simulator] object CarMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(CarControls, String)]("setCarControls"):
       case (simulation, (controls, name)) =>
         car(simulation, name)((_, car) => done(car.setControls(controls)))

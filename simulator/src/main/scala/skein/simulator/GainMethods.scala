@@ -6,22 +6,22 @@ import skein.vehicle.{AxisGains, CascadeGains, Pid}
   * the integral ones, then the derivative ones. All controllers then start anew, as AirSim's do. Gains outlive a reset.
   */
 private[simulator] object GainMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     gains("setAngleRateControllerGains")((set, axes) => set.copy(rate = axes)),
     gains("setAngleLevelControllerGains")((set, axes) => set.copy(angle = axes)),
     gains("setVelocityControllerGains")((set, axes) => set.copy(velocity = axes)),
     gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
   )
 
-  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): Method =
+  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): ServerMethod =
     many[(Seq[Float], Seq[Float], Seq[Float], String)](method):
       case (simulation, (p, i, d, name)) =>
         multirotor(simulation, name): (_, vehicle) =>
           // AirSim reads past the end of a shorter one.
           if Seq(p, i, d).exists(_.size < 3) then
-            Outcome.Threw("gains are three lists of three numbers: P, I, D")
+            CallOutcome.Threw("gains are three lists of three numbers: P, I, D")
           else
             def axis(n: Int) = Pid(p(n), i(n), d(n))
             vehicle.tune(change(vehicle.gains, AxisGains(axis(0), axis(1), axis(2))))

@@ -20,10 +20,10 @@ final private[simulator] class ManualMove private (
 
   override def lastsAtLeast: Span = duration
 
-  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress =
     val goal = Option.when(vehicle.sticks.is_valid)(towards(vehicle.sticks, vehicle.state.z))
-    if elapsed >= duration then Progress.Ended(true, goal)
-    else goal.fold(Progress.Idle)(Progress.Going(_))
+    if elapsed >= duration then MoveProgress.Ended(true, goal)
+    else goal.fold(MoveProgress.Idle)(MoveProgress.Going(_))
 
   private def towards(sticks: RcData, z: Double): Setpoint =
     val wanted   = Vector3(sticks.pitch * speedY / FullStick, sticks.roll * speedX / FullStick, 0)

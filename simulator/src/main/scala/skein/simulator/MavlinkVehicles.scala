@@ -17,7 +17,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
   private val world      = simulation.world
   private val startedAt  = world.now
   private val autopilots = world.vehicles.indices.map(OnBoard(_)).toVector
-  private val channels   = mutable.LinkedHashMap.empty[Long, Channel]
+  private val channels   = mutable.LinkedHashMap.empty[Long, MavlinkChannel]
 
   /** By peers that have left. */
   private var damagedBefore = 0L
@@ -26,7 +26,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
 
   def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit =
     val seen = if systems.isEmpty then autopilots.map(_.system) else systems
-    channels(channel) = Channel(seen, sinceBoot, isDatagrams)
+    channels(channel) = MavlinkChannel(seen, sinceBoot, isDatagrams)
 
   def leave(channel: Long): Unit = channels.remove(channel).foreach(gone => damagedBefore += gone.damaged)
 
@@ -70,14 +70,14 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
     private var decided      = Autopilot(system, vehicle.home)
     def autopilot: Autopilot = decided
 
-    def motion: Motion = motionAt(world.now)
+    def motion: VehicleMotion = motionAt(world.now)
 
-    private def motionAt(at: Instant): Motion =
+    private def motionAt(at: Instant): VehicleMotion =
       val state = vehicle.state.kinematics.copy(
         positionNed = vehicle.positionAt(at),
         velocityNed = vehicle.velocityAt(at)
       )
-      Motion(at.since(startedAt), state, vehicle.flying)
+      VehicleMotion(at.since(startedAt), state, vehicle.flying)
 
     def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       val wasArmed          = decided.isArmed
@@ -89,7 +89,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
         setpoint
       else None
 
-    def hear(message: Message, from: (system: Int, component: Int), peer: Channel): Unit =
+    def hear(message: Message, from: (system: Int, component: Int), peer: MavlinkChannel): Unit =
       val heard = decided.heard(message, from, motion)
       decided = heard.next
       takeOver()

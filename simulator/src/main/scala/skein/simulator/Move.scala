@@ -13,12 +13,12 @@ private[simulator] trait Move:
     * @param elapsed
     *   since the move began; zero at the first turn
     */
-  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress
 
   /** It does not end before this much time has elapsed. */
   def lastsAtLeast: Span = Span.Zero
 
-private[simulator] enum Progress:
+private[simulator] enum MoveProgress:
   case Going(goal: Setpoint)
 
   /** It goes on and leaves the goal as it is. */
@@ -40,10 +40,10 @@ private[simulator] object Move:
     Right(new Move:
       override def lastsAtLeast: Span = duration
 
-      def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
-        if duration <= Span.Zero then Progress.Ended(ifNone, None)
-        else if elapsed >= duration then Progress.Ended(true, Some(setpoint))
-        else Progress.Going(setpoint))
+      def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress =
+        if duration <= Span.Zero then MoveProgress.Ended(ifNone, None)
+        else if elapsed >= duration then MoveProgress.Ended(true, Some(setpoint))
+        else MoveProgress.Going(setpoint))
 
   /** Sinks at 0.2 m/s until it has not sunk for eleven turns. */
   def land(timeoutS: Float): Order = _ =>
@@ -51,9 +51,9 @@ private[simulator] object Move:
     val sink  = Setpoint.velocity(0, 0, 0.2)
     Right: (vehicle, elapsed) =>
       still = if vehicle.state.vz <= ApproximatelyZeroMps then still + 1 else 0
-      if still > 10 then Progress.Ended(true, Some(sink))
-      else if elapsed >= span(timeoutS) then Progress.Ended(false, Some(sink))
-      else Progress.Going(sink)
+      if still > 10 then MoveProgress.Ended(true, Some(sink))
+      else if elapsed >= span(timeoutS) then MoveProgress.Ended(false, Some(sink))
+      else MoveProgress.Going(sink)
 
   /** Turns on the spot to a heading, then stops turning. */
   def rotate(yawDeg: Float, timeoutS: Float, marginDeg: Float): Order = start =>
@@ -62,10 +62,10 @@ private[simulator] object Move:
     Right: (vehicle, elapsed) =>
       val there = math.abs(math.toDegrees(vehicle.state.yawRad) - target) <= marginDeg
       val next  = if there then goal else goal.withYaw(math.toRadians(target))
-      if timeoutS <= 0 then Progress.Ended(true, None)
-      else if there && math.abs(vehicle.state.wz) <= 0.01 then Progress.Ended(true, Some(next))
-      else if elapsed >= span(timeoutS) then Progress.Ended(false, Some(next))
-      else Progress.Going(next)
+      if timeoutS <= 0 then MoveProgress.Ended(true, None)
+      else if there && math.abs(vehicle.state.wz) <= 0.01 then MoveProgress.Ended(true, Some(next))
+      else if elapsed >= span(timeoutS) then MoveProgress.Ended(false, Some(next))
+      else MoveProgress.Going(next)
 
   /** The goal with a yaw or yaw rate in degrees. */
   def withYaw(goal: Setpoint, yaw: YawMode): Setpoint =

@@ -8,9 +8,9 @@ import skein.vehicle.Setpoint
   * pitch, in degrees for yaw modes and rotations, as in AirSim.
   */
 private[simulator] object MoveMethods:
-  import Method.many
+  import ServerMethod.many
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(Float, String)]("takeoff"):
       case (simulation, (timeout, name)) => fly(simulation, name)(PathMove.takeoff(timeout))
     ,
@@ -21,9 +21,9 @@ private[simulator] object MoveMethods:
       case (simulation, (timeout, name)) =>
         fly(simulation, name)(PathMove.order(Seq(Vector3.Zero), 0.5f, timeout, Travel.Plain))
     ,
-    Method.one[String]("hover"): (simulation, name) =>
+    ServerMethod.one[String]("hover"): (simulation, name) =>
       // AirSim sends it along a path to where it is, which ends at once with false; then its goal runs out.
-      fly(simulation, name)(_ => Right((_, _) => Progress.Ended(false, None))),
+      fly(simulation, name)(_ => Right((_, _) => MoveProgress.Ended(false, None))),
     byVelocity("moveByVelocity", ifNone = true): (_, x, y, vz) =>
       Setpoint.velocity(x, y, vz),
     byVelocity("moveByVelocityZ", ifNone = false): (_, x, y, z) =>
@@ -87,18 +87,18 @@ private[simulator] object MoveMethods:
     byAngles("moveByMotorPWMs")(Setpoint.rotors)
   )
 
-  private def fly(simulation: Simulated, name: String)(order: Move.Order): Outcome =
-    Method.multirotor(simulation, name)((index, _) => Outcome.Flies(index, order))
+  private def fly(simulation: Simulated, name: String)(order: Move.Order): CallOutcome =
+    ServerMethod.multirotor(simulation, name)((index, _) => CallOutcome.Flies(index, order))
 
   private def byVelocity(method: String, ifNone: Boolean)(
       goal: (SimulatedMultirotor, Double, Double, Double) => Setpoint
-  ): Method =
+  ): ServerMethod =
     many[(Float, Float, Float, Float, Int, YawMode, String)](method):
       case (simulation, (x, y, third, duration, drivetrain, yaw, name)) =>
         fly(simulation, name)(Move.hold(duration, ifNone): vehicle =>
           Move.withYaw(goal(vehicle, x, y, third), Move.facing(drivetrain, yaw, Vector3(x, y, 0))))
 
-  private def byAngles(method: String)(goal: (Double, Double, Double, Double) => Setpoint): Method =
+  private def byAngles(method: String)(goal: (Double, Double, Double, Double) => Setpoint): ServerMethod =
     many[(Float, Float, Float, Float, Float, String)](method):
       case (simulation, (first, second, third, fourth, duration, name)) =>
         fly(simulation, name)(Move.hold(duration)(_ => goal(first, second, third, fourth)))

@@ -46,11 +46,11 @@ final private[simulator] class PathMove private (
   private var progress = 0.0
   private var complete = false
 
-  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress =
     val position = vehicle.state.positionNed
     if elapsed > Span.Zero then follow(position)
-    if elapsed >= timeout || (aim.segment >= last && progress <= 0) then Progress.Ended(complete, None)
-    else Progress.Going(towardsAim(position))
+    if elapsed >= timeout || (aim.segment >= last && progress <= 0) then MoveProgress.Ended(complete, None)
+    else MoveProgress.Going(towardsAim(position))
 
   /** How far the vehicle has come towards the point it aimed at, and the next one. */
   private def follow(position: Vector3): Unit =
@@ -99,17 +99,19 @@ private[simulator] object PathMove:
   def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>
     val perTurn   = speedMps * PathFollowing.Period.toSeconds
     val lookahead = travel.lookaheadM
-    if path.isEmpty then Right((_, _) => Progress.Ended(true, None))
+    if path.isEmpty then Right((_, _) => MoveProgress.Ended(true, None))
     else if travel.drivetrain == Move.ForwardOnly && travel.yaw.is_rate then
       Left("Yaw cannot be specified as rate if drivetrain is ForwardOnly")
     else if lookahead == 0 then Left("lookahead distance cannot be 0")
     else if lookahead > 0 && perTurn > lookahead then
       Left(
-        s"lookahead value ${lookahead.fixed(6)} is too small for velocity ${speedMps.fixed(6)}. It must be at least ${perTurn.fixed(6)}"
+        s"lookahead value ${lookahead.fixed(6)} is too small for velocity " +
+          s"${speedMps.fixed(6)}. It must be at least ${perTurn.fixed(6)}"
       )
     else if lookahead > 0 && PathFollowing.DistanceAccuracyM > lookahead then
       Left(
-        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's distance accuracy ${PathFollowing.DistanceAccuracyM.fixed(6)}."
+        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's " +
+          s"distance accuracy ${PathFollowing.DistanceAccuracyM.fixed(6)}."
       )
     else
       val distance =

@@ -10,9 +10,9 @@ import skein.units.*
   * meshes.
   */
 private[simulator] object SceneMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(String, String, Pose, String)]("simAddVehicle"):
       case (simulation, (name, kind, pose, _)) => addVehicle(simulation, name, kind, pose)
     ,
@@ -20,7 +20,7 @@ private[simulator] object SceneMethods:
       case (simulation, (state, _, name)) =>
         simulated(simulation, name): (_, vehicle) =>
           if !isFlyable(state) then
-            Outcome.Threw(
+            CallOutcome.Threw(
               "kinematics within 1000 km, 10 km/s, 1000 rad/s, 1000 km/s² and 1000000 rad/s² are wanted"
             )
           else
@@ -59,7 +59,7 @@ private[simulator] object SceneMethods:
     ,
     many[(String, String, Pose, Vector3r, Boolean, Boolean)]("simSpawnObject"):
       case (_, (_, asset, _, _, _, _)) =>
-        Outcome.Threw(s"There were no objects with name $asset found in the Registry")
+        CallOutcome.Threw(s"There were no objects with name $asset found in the Registry")
     ,
     one[String]("simDestroyObject")((_, _) => answer(false)),
     none("simListAssets")(_ => answer(Seq.empty[String])),
@@ -95,7 +95,7 @@ private[simulator] object SceneMethods:
     many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid"):
       case (simulation, (centre, x, y, z, edge, path)) =>
         VoxelGrid.render(simulation.objects.boxes, centre.toVector, (x, y, z), edge) match
-          case Left(refusal) => Outcome.Threw(refusal)
+          case Left(refusal) => CallOutcome.Threw(refusal)
           case Right(grid)   => answer(simulation.save(path, grid))
   )
 
@@ -110,13 +110,13 @@ private[simulator] object SceneMethods:
   private val Nowhere =
     Pose(Vector3r(Float.NaN, Float.NaN, Float.NaN), Quaternionr(Float.NaN, Float.NaN, Float.NaN, Float.NaN))
 
-  private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): Outcome =
+  private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): CallOutcome =
     val start = pose.position.toVector
     if name.isEmpty || name.length > LongestName then
-      Outcome.Threw(s"a vehicle's name has 1 to $LongestName characters, not ${name.length}")
+      CallOutcome.Threw(s"a vehicle's name has 1 to $LongestName characters, not ${name.length}")
     else if simulation.world.vehicles.size >= MostVehicles then
-      Outcome.Threw(s"the built-in simulator flies at most $MostVehicles vehicles")
-    else if start.norm > FarthestM then Outcome.Threw(s"a start within ${FarthestM / 1000} km is wanted")
+      CallOutcome.Threw(s"the built-in simulator flies at most $MostVehicles vehicles")
+    else if start.norm > FarthestM then CallOutcome.Threw(s"a start within ${FarthestM / 1000} km is wanted")
     else
       val added = VehicleSettings(name, start, vehicleType = kind)
       val known = (added.isCar || kind.equalsIgnoreCase(WorldSettings.SimpleFlight)) &&

@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.airsim.wire.*
-import skein.scene.render.{Kind, Image, Png, Renderer, View}
+import skein.scene.render.{Kind, Raster, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
 
 /** Images that were asked for together: all of one instant, and, where they are of one camera and size, of one pass.
@@ -20,23 +20,23 @@ final private[simulator] class Shots private (
       view -> Renderer.draw(moment, view, shots.map(_.kind).toSet, ids(_), except = moment.itemOf(vehicle))
     wanted.map(shot => response(shot, drawn(shot.view)(shot.kind)))
 
-  private def response(shot: Wanted, image: Image): ImageResponse =
+  private def response(shot: Wanted, image: Raster): ImageResponse =
     val view  = shot.view
     val empty = shot.response.copy(width = view.width, height = view.height)
     if shot.response.pixels_as_float then empty.copy(image_data_float = numbers(image))
     else if shot.response.compress then
-      empty.copy(image_data_uint8 = Png.encode(bytes(image), view.width, view.height))
+      empty.copy(image_data_uint8 = PngEncoder.encode(bytes(image), view.width, view.height))
     else empty.copy(image_data_uint8 = bytes(image))
 
   /** Of a coloured image the red, from 0 to 1, as AirSim. */
-  private def numbers(image: Image): Array[Float] = image match
-    case Image.Numbers(values) => values
-    case Image.Bytes(bgr)      => Array.tabulate(bgr.length / 3)(i => (bgr(3 * i + 2) & 0xff) / 255f)
+  private def numbers(image: Raster): Array[Float] = image match
+    case Raster.Numbers(values) => values
+    case Raster.Bytes(bgr)      => Array.tabulate(bgr.length / 3)(i => (bgr(3 * i + 2) & 0xff) / 255f)
 
   /** Of an image of numbers a grey that is white from 1 on, as AirSim. */
-  private def bytes(image: Image): Array[Byte] = image match
-    case Image.Bytes(bgr)      => bgr
-    case Image.Numbers(values) => values.flatMap: value =>
+  private def bytes(image: Raster): Array[Byte] = image match
+    case Raster.Bytes(bgr)      => bgr
+    case Raster.Numbers(values) => values.flatMap: value =>
         val grey = (math.min(1f, value) * 255 + 0.5f).toByte
         Array(grey, grey, grey)
 

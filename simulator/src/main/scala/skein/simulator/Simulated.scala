@@ -18,7 +18,7 @@ private[simulator] trait Simulated:
 
   private[simulator] def cameras: Cameras
 
-  private[simulator] def equipment: Equipment
+  private[simulator] def equipment: SensorSettings
 
   /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the controller's. */
   private[simulator] def recording: Boolean

@@ -10,12 +10,12 @@ import upack.{Bool, Msg}
 final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
 
 /** What a call is answered: its result, or what draws it, or the text of its error. */
-final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | Drawing])
+final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
 
 /** A result that takes a while to compute, such as an image: of the moment at which it was asked for, whenever and on
   * whatever thread that is done.
   */
-final class Drawing(work: () => Msg | Encoded):
+final class DeferredResult(work: () => Msg | Encoded):
   def result(): Msg | Encoded = work()
 
 /** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
@@ -177,11 +177,11 @@ final class Simulation(
         fail(Rpclib.arity(call.method, passed = call.params.size, wanted = method.arity))
       case Some(method) =>
         method(this, call.params) match
-          case Outcome.Answered(result)      => answers += SimulatorAnswer(call.token, Right(result))
-          case Outcome.Draws(work)           => answers += SimulatorAnswer(call.token, Right(Drawing(work)))
-          case Outcome.Threw(text)           => fail(Rpclib.threw(call.method, call.params.size, text))
-          case Outcome.Steps(span)           => continueFor(span, call.token, at)
-          case Outcome.Flies(vehicle, order) =>
+          case CallOutcome.Answered(result) => answers += SimulatorAnswer(call.token, Right(result))
+          case CallOutcome.Draws(work) => answers += SimulatorAnswer(call.token, Right(DeferredResult(work)))
+          case CallOutcome.Threw(text) => fail(Rpclib.threw(call.method, call.params.size, text))
+          case CallOutcome.Steps(span) => continueFor(span, call.token, at)
+          case CallOutcome.Flies(vehicle, order) =>
             val flight = Waiting(call, order)
             if workers.acquire(vehicle, flight) then start(vehicle, flight, at)
             else if !settings.losesCancel() then world.cancelMove(vehicle)
@@ -232,11 +232,12 @@ object Simulation:
 
   final private case class Waiting(call: SimulatorCall, order: Move.Order)
 
-  private[simulator] val methods: Seq[Method] =
-    SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++ GainMethods.all ++ SceneMethods.all ++
+  private[simulator] val methods: Seq[ServerMethod] =
+    SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++
+      GainMethods.all ++ SceneMethods.all ++
       CameraMethods.all ++ AppearanceMethods.all
 
-  private val named: Map[String, Method] = methods.map(method => method.name -> method).toMap
+  private val named: Map[String, ServerMethod] = methods.map(method => method.name -> method).toMap
 
   /** The functions it has. */
   val methodNames: Set[String] = named.keySet

@@ -5,9 +5,9 @@ import skein.units.*
 
 /** Functions that concern the whole simulator. */
 private[simulator] object SimulatorMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     none("ping")(_ => answer(true)),
     none("getServerVersion")(_ => answer(1)),
     none("getMinRequiredClientVersion")(_ => answer(1)),
@@ -27,4 +27,4 @@ private[simulator] object SimulatorMethods:
   /** A day: far beyond use, and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
 
-  private def steps(span: Span): Outcome = Outcome.Steps(span.max(Span.Zero))
+  private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))

@@ -266,11 +266,11 @@ object SimulatorServer:
     /** Images are drawn beside the simulation, which goes on meanwhile. */
     private def complete(
         promise: Promise[Either[String, Msg | Encoded]],
-        result: Either[String, Msg | Encoded | Drawing]
+        result: Either[String, Msg | Encoded | DeferredResult]
     )(using ExecutionContext): Unit = result match
-      case Left(text)                    => promise.success(Left(text))
-      case Right(drawing: Drawing)       => promise.completeWith(Future(Right(drawing.result())))
-      case Right(value: (Msg | Encoded)) => promise.success(Right(value))
+      case Left(text)                     => promise.success(Left(text))
+      case Right(drawing: DeferredResult) => promise.completeWith(Future(Right(drawing.result())))
+      case Right(value: (Msg | Encoded))  => promise.success(Right(value))
 
     /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection. */
     private def takeCalls(): Unit =

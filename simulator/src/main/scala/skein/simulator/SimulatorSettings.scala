@@ -54,7 +54,8 @@ final case class SimulatorSettings(
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
   /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]] says so. */
-  private[simulator] def equipment: Equipment = Equipment.read(world.text).getOrElse(Equipment.None)
+  private[simulator] def equipment: SensorSettings =
+    SensorSettings.read(world.text).getOrElse(SensorSettings.None)
 
   /** Autopilots outside want their sensors at whole milliseconds. */
   private[simulator] def multirotors: RotorcraftKind =
@@ -86,4 +87,4 @@ object SimulatorSettings:
         )
       )
       .toLeft(world)
-      .flatMap(_ => Equipment.read(world.text).map(_ => world))
+      .flatMap(_ => SensorSettings.read(world.text).map(_ => world))

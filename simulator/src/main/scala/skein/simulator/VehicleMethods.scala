@@ -10,9 +10,9 @@ import upickle.default.Writer
   * tells it 0.2 s late.
   */
 private[simulator] object VehicleMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(Boolean, String)]("enableApiControl"):
       case (simulation, (on, name)) =>
         vehicle(simulation, name)((_, vehicle) => done(vehicle.setApiControl(on)))
@@ -50,9 +50,9 @@ private[simulator] object VehicleMethods:
       case (simulation, (pose, name)) =>
         multirotor(simulation, name): (_, vehicle) =>
           val place = pose.position.toVector
-          if !vehicle.apiControl then Outcome.Threw("only a vehicle under api control can hover")
+          if !vehicle.apiControl then CallOutcome.Threw("only a vehicle under api control can hover")
           else if !vehicle.isAboveGround(place) then
-            Outcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
+            CallOutcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
           else
             val turn = pose.orientation.toQuaternion
             done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
@@ -71,7 +71,7 @@ private[simulator] object VehicleMethods:
             yield scan
           scan.fold(missing("lidar", sensor)): scan =>
             val ids = simulation.objects.ids
-            Outcome.Draws(() => LidarData.encode(scan.data(ids(_))))
+            CallOutcome.Draws(() => LidarData.encode(scan.data(ids(_))))
     ,
     many[(String, String)]("getDistanceSensorData"):
       case (simulation, (sensor, name)) =>
@@ -83,15 +83,15 @@ private[simulator] object VehicleMethods:
   /** What is so of a vehicle that is found by its name, now. */
   private def read[V, A: Writer](
       method: String,
-      find: (Simulated, String) => ((Int, V) => Outcome) => Outcome
-  )(value: (V, Instant) => A): Method =
+      find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
+  )(value: (V, Instant) => A): ServerMethod =
     one[String](method): (simulation, name) =>
       find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
 
   /** The empty name means the first of its kind. */
   private def sensor[A: Writer](method: String, kind: SensorKind, called: String)(
       value: (SimulatedVehicle, Instant) => A
-  ): Method =
+  ): ServerMethod =
     many[(String, String)](method):
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name): (_, vehicle) =>
@@ -100,7 +100,7 @@ private[simulator] object VehicleMethods:
           else missing(called, sensor)
 
   /** To what the sensor's front points to, at most its greatest distance. */
-  private def distance(simulation: Simulated, index: Int, ranger: Equipment.Ranger): DistanceSensorData =
+  private def distance(simulation: Simulated, index: Int, ranger: SensorSettings.Ranger): DistanceSensorData =
     val at     = simulation.world.now
     val sensor = simulation.world.placeOf(index, at).outside(ranger.place)
     val moment = simulation.objects.moment
@@ -114,8 +114,8 @@ private[simulator] object VehicleMethods:
       Pose(Vector3r(ranger.place.position), Quaternionr(ranger.place.orientation))
     )
 
-  private def missing(kind: String, sensor: String): Outcome =
-    Outcome.Threw(s"No $kind with name $sensor exist on vehicle")
+  private def missing(kind: String, sensor: String): CallOutcome =
+    CallOutcome.Threw(s"No $kind with name $sensor exist on vehicle")
 
   private def state(vehicle: SimulatedMultirotor, at: Instant) = MultirotorState(
     CollisionInfo.None,

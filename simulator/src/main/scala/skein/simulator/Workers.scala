@@ -39,12 +39,6 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   /** One more vehicle has a lock; the number of workers stays, as in AirSim. */
   def addVehicle(): Unit = locks += Lock()
 
-  /** Workers held by moves. */
-  def held: Int = busy
-
-  /** Requests that wait for a worker. */
-  def queued: Int = jobs.size
-
   /** Whether a request offered now is run at once. */
   def isFree: Boolean = busy < limit && jobs.isEmpty
 

@@ -20,7 +20,7 @@ final class World(
     start: Instant,
     kind: RotorcraftKind = RotorcraftKind.AirSim,
     private[simulator] var scene: Scene = Scene.Empty,
-    equipment: Equipment = Equipment.None
+    equipment: SensorSettings = SensorSettings.None
 ):
   import World.*
 
@@ -203,11 +203,11 @@ final class World(
   private def takeTurn(vehicle: Int): Unit =
     for running <- moves(vehicle) do
       running.move.turn(multirotor(vehicle), clock.since(running.startedAt)) match
-        case Progress.Going(goal) =>
+        case MoveProgress.Going(goal) =>
           multirotor(vehicle).command(goal, clock)
           goOn(vehicle, running)
-        case Progress.Idle                => goOn(vehicle, running)
-        case Progress.Ended(result, goal) =>
+        case MoveProgress.Idle                => goOn(vehicle, running)
+        case MoveProgress.Ended(result, goal) =>
           goal.foreach(multirotor(vehicle).command(_, clock))
           end(vehicle, result)
 

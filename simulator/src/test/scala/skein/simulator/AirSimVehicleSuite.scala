@@ -9,7 +9,7 @@ import skein.policy.Action
 import skein.airsim.*
 import skein.link.*
 import skein.port.VehicleError
-import skein.rpc.{Framed, Framer, Message, RpcClient}
+import skein.rpc.{Framed, Framer, RpcMessage, RpcClient}
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -19,7 +19,7 @@ class AirSimVehicleSuite extends munit.FunSuite:
 
   /** The simulator's transport; of the messages that it sends, `isLost` takes away some. Messages are whole segments here.
     */
-  private final class Lossy(transport: Transport, isLost: Message => Boolean) extends Transport:
+  private final class Lossy(transport: Transport, isLost: RpcMessage => Boolean) extends Transport:
     def connect(to: Address) = transport.connect(to)
     def listen(at: Address)  =
       transport.listen(at).map(incoming => incoming.copy(flow = losing.via(incoming.flow)))
@@ -37,13 +37,14 @@ class AirSimVehicleSuite extends munit.FunSuite:
         _ => None
       )
       .mapConcat(identity)
-      .filterNot(frame => isLost(Message.fromServer(frame)))
+      .filterNot(frame => isLost(RpcMessage.fromServer(frame)))
       .map(ByteString.fromArrayUnsafe)
 
   /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the second's sending,
     * and how the first ended, and what was said of lost answers.
     */
-  private def firstOfTwo(isLost: Message => Boolean): (Long, Either[VehicleError, Boolean], Vector[String]) =
+  private def firstOfTwo(isLost: RpcMessage => Boolean)
+      : (Long, Either[VehicleError, Boolean], Vector[String]) =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem = system
@@ -82,15 +83,16 @@ class AirSimVehicleSuite extends munit.FunSuite:
         yield (endedAt.since(sentAt).toNanos / 1_000_000, result, noted)
       .value
 
-  private def isMovesAnswer(message: Message): Boolean = message match
-    case Message.Reply(_, _, upack.False) => true
-    case _                                => false
+  private def isMovesAnswer(message: RpcMessage): Boolean = message match
+    case RpcMessage.Reply(_, _, upack.False) => true
+    case _                                   => false
 
   test("a move that is replaced ends a round trip later, and nothing is taken for lost"):
     assertEquals(firstOfTwo(_ => false), (40L, Right(false), Vector.empty))
 
   test(
-    "where its answer is lost it is taken for replaced, once the next move has come and a further cancel has ended nothing"
+    "where its answer is lost it is taken for replaced, once the next " +
+      "move has come and a further cancel has ended nothing"
   ):
     val (afterMs, result, noted) = firstOfTwo(isMovesAnswer)
     assertEquals((afterMs, result, noted.size), (780L, Right(false), 1))

@@ -124,7 +124,7 @@ class ArgumentSuite extends munit.FunSuite:
       assertEquals(bench.error(method, params*), Rpclib.threw(method, params.size, "std::bad_cast"))
 
   test("a function that fails within answers with its exception"):
-    val broken = Method.none("broken")(_ => throw IllegalStateException("within"))
+    val broken = ServerMethod.none("broken")(_ => throw IllegalStateException("within"))
     broken(Bench().simulation, Vector.empty) match
-      case Outcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")
-      case other               => fail(s"$other")
+      case CallOutcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")
+      case other                   => fail(s"$other")

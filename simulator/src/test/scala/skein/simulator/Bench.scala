@@ -158,8 +158,8 @@ final private[skein] class Bench(
       answers(token) = (
         elapsedS,
         result.map:
-          case drawing: Drawing       => decoded(drawing.result())
-          case value: (Msg | Encoded) => decoded(value)
+          case drawing: DeferredResult => decoded(drawing.result())
+          case value: (Msg | Encoded)  => decoded(value)
       )
 
 private[skein] object Bench:

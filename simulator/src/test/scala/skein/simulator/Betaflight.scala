@@ -72,7 +72,8 @@ private object Betaflight:
             told += next.toChar
           told.toString
         socket.setSoTimeout(1000)
-        // Without a newline, which would be a command already; whether anybody listens yet shows in the answer.
+        // Without a newline, which would be a command already; whether anybody listens yet shows in the
+        // answer.
         def awake(tries: Int): Unit =
           say("#")
           try prompt(): Unit

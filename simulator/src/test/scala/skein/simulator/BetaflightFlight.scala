@@ -32,8 +32,8 @@ private final case class BetaflightFlight(
     track: String
 ):
   override def toString: String =
-    f"armed: $isArmed; at most $worstM%.3f m from its place, $updatesPerS%.0f updates of its motors a second, " +
-      f"${longestPauseS * 1000}%.0f ms between two"
+    f"armed: $isArmed; at most $worstM%.3f m from its place, $updatesPerS%.0f updates " +
+      f"of its motors a second, ${longestPauseS * 1000}%.0f ms between two"
 
 private object BetaflightFlight:
   /** Flies the firmware by the interface that `serve --hil betaflight` has.
@@ -114,9 +114,9 @@ private object BetaflightFlight:
     private def note(now: Double, seen: Kinematics): Unit = if now >= nextNote then
       nextNote = now + 0.2
       val (at, v, turn) = (seen.positionNed, seen.velocityNed, seen.orientation)
-      track ++= f"$now%.2f s: at ${at.x}%.2f ${at.y}%.2f ${at.z}%.2f m, ${v.x}%.2f ${v.y}%.2f ${v.z}%.2f m/s, " +
-        f"roll ${turn.rollRad}%.3f, pitch ${turn.pitchRad}%.3f, yaw ${turn.yawRad}%.3f rad, " +
-        f"${control.updates} updates\n"
+      track ++= f"$now%.2f s: at ${at.x}%.2f ${at.y}%.2f ${at.z}%.2f m, ${v.x}%.2f " +
+        f"${v.y}%.2f ${v.z}%.2f m/s, roll ${turn.rollRad}%.3f, pitch " +
+        f"${turn.pitchRad}%.3f, yaw ${turn.yawRad}%.3f rad, ${control.updates} updates\n"
 
   private val RisesS   = 10.0
   private val PeriodMs = 10.0

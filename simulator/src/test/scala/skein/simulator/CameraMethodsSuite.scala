@@ -110,7 +110,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     bench.tell("simSetDetectionFilterRadius", Str("0"), Int32(0), Float32(500), Str(""), Bool(false))
     assertEquals(
       bench.simulation.cameras.detection(0, "front_center", 0),
-      Detection(Set("Car*", "Tree*"), 500)
+      DetectionFilter(Set("Car*", "Tree*"), 500)
     )
     bench.tell("simClearDetectionMeshNames", Str("0"), Int32(0), Str(""), Bool(false))
     assertEquals(bench.simulation.cameras.detection(0, "front_center", 0).meshes, Set.empty)

@@ -156,7 +156,8 @@ class ControlSuite extends munit.FunSuite:
     assert(hoverAt(Bench().ready(), 0).contains("expected a place above the ground, came z = 0.0 m"))
 
   test(
-    "position hold wanders when the yaw is not 0, as AirSim's does: at 99 degrees it does not come to rest near"
+    "position hold wanders when the yaw is not 0, as AirSim's " +
+      "does: at 99 degrees it does not come to rest near"
   ):
     def wandering(yawDeg: Double) =
       val bench = Bench().ready()

@@ -13,7 +13,8 @@ class ErrorSuite extends munit.FunSuite:
   test("a wrong number of arguments is answered with rpclib's words, numbers swapped as there"):
     assertEquals(
       Bench().error("ping", Int32(1)),
-      "rpclib: client error C0002: Function 'ping' was called with an invalid number of arguments. Expected: 1, got: 0"
+      "rpclib: client error C0002: Function 'ping' was called with " +
+        "an invalid number of arguments. Expected: 1, got: 0"
     )
 
   test("an argument of another type is a bad cast"):
@@ -46,16 +47,16 @@ class ErrorSuite extends munit.FunSuite:
       Bench()
         .error("getMultirotorState", Str("Nope"))
         .contains(
-          "Vehicle API for 'Nope' is not available. This could either because this is simulation-only API or this " +
-            "vehicle does not exist"
+          "Vehicle API for 'Nope' is not available. This could either because " +
+            "this is simulation-only API or this vehicle does not exist"
         )
     )
     assert(
       Bench()
         .error("simGetGroundTruthKinematics", Str("Nope"))
         .contains(
-          "Vehicle Sim-API for 'Nope' is not available. This could either because this is not a simulation or this " +
-            "vehicle does not exist"
+          "Vehicle Sim-API for 'Nope' is not available. This could either " +
+            "because this is not a simulation or this vehicle does not exist"
         )
     )
 

@@ -190,7 +190,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(told.map(_.normal), Some(Vector3r(-1, 0, 0)))
 
   test("what does not fit in the settings is told with its key"):
-    def error(text: String) = Equipment.read(text).fold(_.message, equipment => fail(s"$equipment"))
+    def error(text: String) = SensorSettings.read(text).fold(_.message, equipment => fail(s"$equipment"))
     assert(error(
       """{"CameraDefaults": {"CaptureSettings": [{"Width": 0}]}}"""
     ).contains("CameraDefaults.CaptureSettings.Width: expected a number from 1.0 to 8192.0, found 0"))

@@ -116,7 +116,8 @@ private val MostOnTheWay = 4
     if isShown then
       println(
         f"$name%-44s $asked%7d asked $images%7d came ${asked - images}%4d lost ${came.map(_.repeated).sum}%3d repeated " +
-          f"${images / spent}%6.1f/s ${bytes / spent * 1e-9}%5.2f GB/s, round trip p50 ${trips(trips.size / 2)}%.1f p99 ${trips((trips.size * 0.99).toInt)}%.1f ms, " +
+          f"${images / spent}%6.1f/s ${bytes / spent * 1e-9}%5.2f GB/s, round trip p50 " +
+          f"${trips(trips.size / 2)}%.1f p99 ${trips((trips.size * 0.99).toInt)}%.1f ms, " +
           f"$cores%.2f cores; stamps ${came.map(_.witness).reduce(_ ^ _)}%08x"
       )
     Await.result(client.close(), 10.seconds): Unit

@@ -19,7 +19,7 @@ private[simulator] object MethodFuzz:
     * @param file
     *   a path that a simulator may write a voxel grid to; without it none is written
     */
-  final class Calls(methods: Seq[Method], vehicle: String, file: Option[String] = None):
+  final class Calls(methods: Seq[ServerMethod], vehicle: String, file: Option[String] = None):
     private val palette = plain(vehicle) ++ file.map(Str(_)) ++ nested(vehicle)
     private val right   = methods.map: method =>
       method.arguments.map(argument => palette.filter(accepts(argument, _)).toIndexedSeq)

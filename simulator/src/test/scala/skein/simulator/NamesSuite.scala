@@ -60,7 +60,8 @@ class NamesSuite extends munit.FunSuite:
     assert(bench.error("getImuData", Str("imu"), Str("")).contains("No IMU with name imu exist on vehicle"))
 
   test(
-    "rotor states say thrust and torque as at sea level, the torque by the turning direction, the speed never negative"
+    "rotor states say thrust and torque as at sea level, the torque " +
+      "by the turning direction, the speed never negative"
   ):
     val bench  = Bench().hovering(-20)
     val answer = bench.answerOf(bench.call("getRotorStates", Str(""))).toOption.get
@@ -73,7 +74,8 @@ class NamesSuite extends munit.FunSuite:
     rotors.foreach(rotor => assertEqualsDouble(rotor.speed, math.sqrt(0.5947) * 669.857, 0.05))
 
   test(
-    "the GPS is silent for a second after the start and after a reset; then its dilutions fall from 100 to 0.1"
+    "the GPS is silent for a second after the start and after a " +
+      "reset; then its dilutions fall from 100 to 0.1"
   ):
     val bench = Bench()
     def gps   = bench.now[GpsData]("getGpsData", Str(""), Str(""))

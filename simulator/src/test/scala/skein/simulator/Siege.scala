@@ -42,7 +42,8 @@ object Siege:
     val honest   = Honest(server.address.port)
     println(s"seed $seed; honest client: getMultirotorState every 5 ms; waits in ms")
     println(
-      f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s ${"max"}%7s | 2 s after: ${"p99"}%6s ${"max"}%7s | held MiB"
+      f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s " +
+        f"${"max"}%7s | 2 s after: ${"p99"}%6s ${"max"}%7s | held MiB"
     )
     def row(what: String)(attack: => String): Unit =
       honest.reset()
@@ -54,8 +55,10 @@ object Siege:
       val after = honest.reset()
       val held  = server.stats.mostHeldBytes / 1048576.0
       println(
-        f"$what%-12s ${during.length}%6d ${at(during, 0.5)}%6.1f ${at(during, 0.99)}%6.1f ${at(during, 1)}%7.1f |" +
-          f"            ${at(after, 0.99)}%6.1f ${at(after, 1)}%7.1f | $held%.1f of ${settings.limits.heldBytes >> 20}  $said"
+        f"$what%-12s ${during.length}%6d ${at(during, 0.5)}%6.1f " +
+          f"${at(during, 0.99)}%6.1f ${at(during, 1)}%7.1f |            " +
+          f"${at(after, 0.99)}%6.1f ${at(after, 1)}%7.1f | $held%.1f of " +
+          f"${settings.limits.heldBytes >> 20}  $said"
       )
     row("nobody") { Thread.sleep(5000); "" }
     if attacks.contains("fuzz") then
@@ -128,8 +131,8 @@ object Siege:
         id += 1
         connection.ask(id, "getMultirotorState", Seq(Str("")))
         connection.reply() match
-          case Message.Reply(answered, Null, _) if answered == id => ()
-          case _                                                  => wrong += 1
+          case RpcMessage.Reply(answered, Null, _) if answered == id => ()
+          case _                                                     => wrong += 1
         val _ = waits.add((System.nanoTime() - start) * 1e-6)
         Thread.sleep(5)
 
@@ -155,9 +158,9 @@ private final class Connection(port: Int):
   def send(bytes: Array[Byte]): Unit = socket.getOutputStream.write(bytes)
 
   /** The next reply; [[IOException]] when closed. */
-  def reply(): Message =
+  def reply(): RpcMessage =
     framer.next() match
-      case Framed.Complete(frame)   => Message.fromServer(frame)
+      case Framed.Complete(frame)   => RpcMessage.fromServer(frame)
       case Framed.Malformed(reason) => throw IOException(reason)
       case Framed.NeedsMore         =>
         val count = socket.getInputStream.read(segment)
@@ -295,14 +298,14 @@ object Attackers:
         val reader = Thread.ofPlatform().daemon().start: () =>
           while true do
             connection.reply() match
-              case Message.Reply(Nudge, _, _)        => ()
-              case Message.Reply(answered, error, _) =>
+              case RpcMessage.Reply(Nudge, _, _)        => ()
+              case RpcMessage.Reply(answered, error, _) =>
                 asked.remove(answered): Unit
                 ended.incrementAndGet(): Unit
                 mine.decrementAndGet(): Unit
                 if error != Null then
                   refused.incrementAndGet(): Unit
-                  val text = Message.errorText(error)
+                  val text = RpcMessage.errorText(error)
                   if MethodFuzz.isDefect(text) && defects.size < 20 then defects.add(text): Unit
                 window.release()
               case _ => ()
@@ -328,5 +331,6 @@ object Attackers:
     threads.foreach(_.join())
     val took = (System.nanoTime() - start) * 1e-9
     println(
-      f"${ended.get} calls ended, ${refused.get} of them refused, in $took%.0f s; defects: ${defects.asScala.toSeq.distinct.mkString("; ")}"
+      f"${ended.get} calls ended, ${refused.get} of them refused, in $took%.0f " +
+        f"s; defects: ${defects.asScala.toSeq.distinct.mkString("; ")}"
     )

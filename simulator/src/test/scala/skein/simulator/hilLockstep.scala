@@ -10,7 +10,7 @@ import skein.units.Span
   val flights              = Vector.fill(3)(HilFlightSimulation.fly(1, Span.ofSeconds(seconds), speed = 1))
   for flight <- flights do
     println(
-      s"$seconds s simulated in ${round(flight.seconds)} s: ${round(seconds / flight.seconds)} times real time; " +
-        s"${flight.sensors} HIL_SENSOR; at ${flight.positionNed}; ${flight.digest}"
+      s"$seconds s simulated in ${round(flight.seconds)} s: ${round(seconds / flight.seconds)} times " +
+        s"real time; ${flight.sensors} HIL_SENSOR; at ${flight.positionNed}; ${flight.digest}"
     )
   println(if flights.map(_.digest).distinct.size == 1 then "digests are equal" else "DIGESTS DIFFER")

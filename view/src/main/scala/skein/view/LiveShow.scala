@@ -23,8 +23,8 @@ final class LiveShow(
     heading: RecordingHeader,
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
-    limits: Limits = Limits(),
-    override val controls: Map[Control, () => Unit] = Map.empty,
+    limits: ViewerLimits = ViewerLimits(),
+    override val controls: Map[FlightControl, () => Unit] = Map.empty,
     scene: Scene = Scene.Empty,
     sensors: Vector[ImagingSensor] = Vector.empty
 ) extends Show(heading.flight.id, LiveShow.topics(heading, sensors) ++ gauges.map(_.topic), limits):

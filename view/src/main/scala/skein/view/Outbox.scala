@@ -9,7 +9,7 @@ import scala.collection.immutable.{Queue, TreeMap, VectorMap}
   *   messages, since the viewer came
   */
 final case class Outbox[A] private (
-    limits: Limits,
+    limits: ViewerLimits,
     notices: VectorMap[String, A],
     waiting: TreeMap[Long, Outbox.Waiting[A]],
     places: Map[Long, Queue[Long]],
@@ -66,5 +66,5 @@ final case class Outbox[A] private (
 object Outbox:
   final case class Waiting[A](subscription: Long, message: A, size: Int)
 
-  def empty[A](limits: Limits): Outbox[A] =
+  def empty[A](limits: ViewerLimits): Outbox[A] =
     Outbox(limits, VectorMap.empty, TreeMap.empty, Map.empty, bytes = 0, next = 0, lost = 0)

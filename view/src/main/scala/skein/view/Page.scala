@@ -34,8 +34,10 @@ private[view] object Page:
   private def answer(status: StatusCode, entity: ResponseEntity) = HttpResponse(status, guards, entity)
 
   private val guards = Vector(
-    "Content-Security-Policy" ->
-      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "Content-Security-Policy" -> (
+      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; " +
+        "img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
     "X-Content-Type-Options"       -> "nosniff",
     "Referrer-Policy"              -> "no-referrer",
     "Cross-Origin-Resource-Policy" -> "same-origin",

@@ -8,7 +8,7 @@ import skein.record.Topic
 import skein.units.Instant
 
 /** A topic as a connection names it. */
-final case class Channel(id: Long, topic: Topic)
+final case class FoxgloveChannel(id: Long, topic: Topic)
 
 /** What a viewer says. Numbers of subscriptions are its own, those of channels the server's. */
 enum ClientMessage:
@@ -71,7 +71,7 @@ object Protocol:
       info("dataEndTime") = time(end)
     info.render()
 
-  def advertise(channels: Seq[Channel]): String = ujson.Obj(
+  def advertise(channels: Seq[FoxgloveChannel]): String = ujson.Obj(
     "op"       -> "advertise",
     "channels" -> ujson.Arr.from(channels.map(channel =>
       ujson.Obj(

@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSensor, Vehicle}
+import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSensor, VehicleRow}
 import skein.scene.Scene
 import skein.units.Instant
 
@@ -15,7 +15,7 @@ final class RecordedShow(
     id: String,
     vehicles: Vector[String],
     rows: Vector[(Long, Record)],
-    limits: Limits = Limits(),
+    limits: ViewerLimits = ViewerLimits(),
     scene: Scene = Scene.Empty
 ) extends Show(id, RecordedShow.topics(vehicles, rows), limits):
 
@@ -106,7 +106,7 @@ object RecordedShow:
       scene: Map[String, String] => Scene = _ => Scene.Empty
   ): RecordedShow = RecordedShow(
     rows.collectFirst { case (_, flight: FlightRow) => flight.id }.getOrElse("flight"),
-    rows.collect { case (_, vehicle: Vehicle) => vehicle.name },
+    rows.collect { case (_, vehicle: VehicleRow) => vehicle.name },
     rows,
     scene = McapRecording.sceneOf(rows, scene)
   )

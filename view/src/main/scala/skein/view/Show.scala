@@ -18,10 +18,10 @@ import skein.units.Instant
 abstract class Show private[view] (
     val id: String,
     topics: Vector[Topic],
-    val limits: Limits
+    val limits: ViewerLimits
 ):
-  val channels: Vector[Channel] =
-    topics.zipWithIndex.map((topic, at) => Channel(at + 1L, topic))
+  val channels: Vector[FoxgloveChannel] =
+    topics.zipWithIndex.map((topic, at) => FoxgloveChannel(at + 1L, topic))
 
   private val byTopic = channels.map(channel => channel.topic.name -> channel.id).toMap
   private val latest  = channels.filter(_.topic.newestOnly).map(_.id).toSet
@@ -36,7 +36,7 @@ abstract class Show private[view] (
   def recorded: Option[(Instant, Instant)]
 
   /** What may be done to it from the page. */
-  def controls: Map[Control, () => Unit] = Map.empty
+  def controls: Map[FlightControl, () => Unit] = Map.empty
 
   /** Looks what is new, and tells the viewers. To be called some forty times a second. */
   def turn(now: Instant): Unit

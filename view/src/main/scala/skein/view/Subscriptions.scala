@@ -1,7 +1,7 @@
 package skein.view
 
 /** What one viewer wants to see: its subscriptions by channel. */
-final case class Subscriptions private (limits: Limits, channels: Set[Long], chosen: Map[Long, Long]):
+final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long], chosen: Map[Long, Long]):
 
   /** The subscriptions to a channel. */
   def of(channel: Long): Iterable[Long] = byChannel.getOrElse(channel, Nil)
@@ -27,4 +27,5 @@ final case class Subscriptions private (limits: Limits, channels: Set[Long], cho
     )
 
 object Subscriptions:
-  def none(limits: Limits, channels: Set[Long]): Subscriptions = Subscriptions(limits, channels, Map.empty)
+  def none(limits: ViewerLimits, channels: Set[Long]): Subscriptions =
+    Subscriptions(limits, channels, Map.empty)

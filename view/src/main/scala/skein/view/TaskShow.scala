@@ -11,7 +11,8 @@ import skein.units.Instant
   * @param id
   *   of the work
   */
-final class TaskShow(id: String, limits: Limits = Limits()) extends Show(id, TaskShow.topics, limits):
+final class TaskShow(id: String, limits: ViewerLimits = ViewerLimits())
+    extends Show(id, TaskShow.topics, limits):
   private val said = AtomicReference(VectorMap.empty[String, (Topic, String)])
 
   /** How far it is.

@@ -18,9 +18,13 @@ import skein.units.Clock
   *
   * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
   * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` control a
-  * flight ([[Control]]), and `POST /hover` pauses all.
+  * flight ([[FlightControl]]), and `POST /hover` pauses all.
   */
-final class ViewServer private (binding: Http.ServerBinding, val counts: Counts, turning: () => Unit)(using
+final class ViewServer private (
+    binding: Http.ServerBinding,
+    val counts: RefusalCounts,
+    turning: () => Unit
+)(using
     system: ActorSystem
 ):
   def port: Int = binding.localAddress.getPort
@@ -57,12 +61,12 @@ object ViewServer:
       port: Int = DefaultPort,
       origins: Set[String] = Set.empty,
       token: Token = Token.drawn(),
-      limits: Limits = Limits()
+      limits: ViewerLimits = ViewerLimits()
   ): Future[ViewServer] =
     given system: ActorSystem =
       HttpSystem("skein-view", threads, "websocket.periodic-keep-alive-max-idle = 20s")
     import system.dispatcher
-    val counts = Counts()
+    val counts = RefusalCounts()
     val open   = AtomicInteger()
     Http()
       .newServerAt("127.0.0.1", port)
@@ -94,7 +98,7 @@ object ViewServer:
       token: Token,
       shows: Vector[Show],
       clock: Clock,
-      counts: Counts
+      counts: RefusalCounts
   )(using ActorSystem): HttpResponse =
     def refused(status: StatusCode, why: String) =
       counts.refusedRequest()
@@ -141,19 +145,20 @@ object ViewServer:
   private def listed(show: Show) =
     ujson.Obj(
       "id"       -> show.id,
-      "controls" -> ujson.Arr.from(Control.values.filter(show.controls.contains).map(_.word))
+      "controls" -> ujson.Arr.from(FlightControl.values.filter(show.controls.contains).map(_.word))
     )
 
   private def wanted(path: String, shows: Vector[Show]): Vector[() => Unit] =
-    if path == "/hover" then shows.flatMap(_.controls.get(Control.Pause))
+    if path == "/hover" then shows.flatMap(_.controls.get(FlightControl.Pause))
     else
       for
         show    <- shows
-        control <- Control.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
-        act     <- show.controls.get(control)
+        control <-
+          FlightControl.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
+        act <- show.controls.get(control)
       yield act
 
-  private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: Counts)(using
+  private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: RefusalCounts)(using
       ActorSystem
   ): Option[HttpResponse] =
     Protocol.Names
@@ -163,7 +168,9 @@ object ViewServer:
       )
 
   /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
-  private def whole(limits: Limits, counts: Counts)(using ActorSystem): Flow[Message, Message, ?] =
+  private def whole(limits: ViewerLimits, counts: RefusalCounts)(using
+      ActorSystem
+  ): Flow[Message, Message, ?] =
     given ExecutionContext = ExecutionContext.parasitic
     def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
       parts

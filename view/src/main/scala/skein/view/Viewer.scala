@@ -13,7 +13,7 @@ private[view] final case class ServerBytes(bytes: ByteString) extends ServerMess
   * @param wake
   *   called where something waits again, after [[take]] has found nothing
   */
-private[view] final class Viewer(limits: Limits, channels: Set[Long], wake: () => Unit):
+private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake: () => Unit):
   @volatile private var subscriptions = Subscriptions.none(limits, channels)
   private var outbox                  = Outbox.empty[ServerMessage](limits)
   private var idle                    = false

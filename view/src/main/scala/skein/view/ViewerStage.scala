@@ -11,7 +11,7 @@ import skein.units.Clock
   * bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever way, or the viewer has said
   * too much that is none of the protocol. '''Cancels when''' downstream cancels.
   */
-private[view] final class ViewerStage(show: Show, clock: Clock, counts: Counts)
+private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalCounts)
     extends GraphStage[FlowShape[Message, Message]]:
   private val in  = Inlet[Message]("ViewerStage.in")
   private val out = Outlet[Message]("ViewerStage.out")

@@ -28,7 +28,8 @@ private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
         out.write(request.getBytes(US_ASCII))
         out.flush()
         handshake(socket.getInputStream)
-        // The server may close at any of them: what it has not read then counts, too, for it had to be dealt with.
+        // The server may close at any of them: what it has not read then counts, too, for it had to be dealt
+        // with.
         val burst = math.min(1 + random.nextInt(400), frames - written)
         for _ <- 1 to burst do
           written += 1
@@ -106,10 +107,12 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
       case 4 => said(s"GET / HTTP/1.1\r\n$host" + s"X: ${letters(30)}\r\n" * random.nextInt(200) + "\r\n")
       case 5 => said(s"POST /hover HTTP/1.1\r\n${host}Content-Length: ${random.nextLong()}\r\n\r\n")
       case 6 => said(
-          s"GET / HTTP/1.1\r\n${host}Upgrade: websocket\r\nConnection: Upgrade\r\nOrigin: http://${letters(6)}\r\n\r\n"
+          s"GET / HTTP/1.1\r\n${host}Upgrade: websocket\r\nConnection: " +
+            s"Upgrade\r\nOrigin: http://${letters(6)}\r\n\r\n"
         )
       case _ => said(
-          s"POST /flights/stream-vpn/abort HTTP/1.1\r\n${host}X-Skein-Token: ${letters(16)}\r\nContent-Length: 0\r\n\r\n"
+          "POST /flights/stream-vpn/abort " +
+            s"HTTP/1.1\r\n${host}X-Skein-Token: ${letters(16)}\r\nContent-Length: 0\r\n\r\n"
         )
 
 /** How a server bears as many malformed frames, then as many malformed requests, and then a thousand connections that stay
@@ -138,7 +141,7 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
   val third   = System.nanoTime()
   val sockets = Vector.fill(1000)(Socket("127.0.0.1", server.port))
   // All but the most that may be open see their end.
-  val ended = sockets.drop(Limits().connections).count(socket =>
+  val ended = sockets.drop(ViewerLimits().connections).count(socket =>
     scala.util.Try(socket.getInputStream.read()).getOrElse(-1) == -1
   )
   told(s"1,000 connections, of which $ended were closed at once,", third)

@@ -3,7 +3,7 @@ package skein.view
 import scala.util.Random
 
 class OutboxSuite extends munit.FunSuite:
-  private val limits = Limits(waiting = 3, waitingBytes = 100)
+  private val limits = ViewerLimits(waiting = 3, waitingBytes = 100)
 
   private def drained(outbox: Outbox[String]): Vector[String] =
     Vector.unfold(outbox)(_.taken)

@@ -168,7 +168,7 @@ class ShowSuite extends munit.FunSuite:
 
   test("a viewer that takes nothing loses what is oldest, and is told how much when it looks again"):
     val feed   = Feed()
-    val show   = LiveShow(heading, feed, limits = Limits(waiting = 10))
+    val show   = LiveShow(heading, feed, limits = ViewerLimits(waiting = 10))
     val viewer = watching(show, "/skein/reading")
     for step <- 1 to 30 do feed.offer(Samples.reading(step))
     show.turn(at(1))

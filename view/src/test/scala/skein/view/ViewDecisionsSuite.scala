@@ -7,7 +7,7 @@ import skein.units.Instant
 class ViewDecisionsSuite extends munit.FunSuite:
 
   test("a subscription is to a channel that there is, once, and within the limit"):
-    val none = Subscriptions.none(Limits(subscriptions = 2), Set(1, 2))
+    val none = Subscriptions.none(ViewerLimits(subscriptions = 2), Set(1, 2))
     val two  = none.added(10, 1).flatMap(_.added(11, 1)).toOption.get
     assertEquals(two.of(1).toSet, Set(10L, 11L))
     assertEquals(two.of(2).toSet, Set.empty[Long])

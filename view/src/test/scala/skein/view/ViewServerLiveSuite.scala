@@ -25,15 +25,15 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
-  private final class Served(limits: Limits):
-    val done: ConcurrentLinkedQueue[Control] = ConcurrentLinkedQueue()
-    val feed: Feed                           = Feed()
-    val show: LiveShow                       =
+  private final class Served(limits: ViewerLimits):
+    val done: ConcurrentLinkedQueue[FlightControl] = ConcurrentLinkedQueue()
+    val feed: Feed                                 = Feed()
+    val show: LiveShow                             =
       LiveShow(
         Samples.heading,
         feed,
         limits = limits,
-        controls = Control.values.map(control => control -> (() => done.add(control): Unit)).toMap
+        controls = FlightControl.values.map(control => control -> (() => done.add(control): Unit)).toMap
       )
     val shows: Shows = Shows()
     shows.add(show)
@@ -48,7 +48,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
       )
     )
 
-  private def serving(limits: Limits = Limits()) =
+  private def serving(limits: ViewerLimits = ViewerLimits()) =
     FunFixture[Served](_ => Served(limits), served => await(served.server.close()): Unit)
 
   private final class Connection(
@@ -148,7 +148,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     for path <- Seq("/../build.sbt", "/page.js/", "/nothing", "//etc/passwd") do
       assertEquals(get(port, path)._1, 404)
 
-  serving(Limits(refusals =
+  serving(ViewerLimits(refusals =
     3
   )).test("a viewer that speaks nonsense is told so, and then turned out; others look on"): served =>
     val other = connect(served.server.port, Protocol.Names*)()
@@ -160,7 +160,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     assertEquals(other.until(text)("op").str, "serverInfo")
     assertEquals(served.server.counts.refusedMessages >= 4, true)
 
-  serving(Limits(connections =
+  serving(ViewerLimits(connections =
     5
   )).test("of two hundred connections all but the most that may are closed at once"): served =>
     val port    = served.server.port
@@ -189,7 +189,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
       assertEquals(served.done.size, 0)
       for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
         assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
-      import Control.*
+      import FlightControl.*
       assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
 
   serving().test("of thirty thousand malformed frames none disturbs another viewer"): served =>

@@ -13,7 +13,7 @@ import skein.vtime.agent.{Environment, Redirect}
   *
   * Made, run and left on the thread that starts it. All other threads may only read [[nanoTime]].
   */
-private final class Loop(seed: Long, limits: Limits) extends Environment with BlockContext:
+private final class Loop(seed: Long, limits: RunLimits) extends Environment with BlockContext:
   val thread                                                 = Thread.currentThread
   private val queue                                          = ArrayDeque[Runnable]()
   private val timers                                         = TimerQueue()
@@ -30,7 +30,7 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
 
   def nanoTime(): Long        = now
   def elapsed: FiniteDuration = (now - Loop.epochNanos).nanos
-  def counts: Counts          = Counts(tasks, fired, instants)
+  def counts: RunCounts       = RunCounts(tasks, fired, instants)
 
   def post(task: Runnable): Unit =
     requireOwnThread(s"posted ${TaskName.of(task)}")

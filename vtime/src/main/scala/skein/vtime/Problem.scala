@@ -47,10 +47,11 @@ enum Problem:
     case Blocked(call) =>
       s"$call would block the loop's thread; compose futures instead. The caller is in the cause below"
     case LeftTheLoop(executionContext) =>
-      s"a task was handed to $executionContext, whose threads are not in virtual time; use the actor system's " +
-        "dispatcher. The caller is in the cause below"
+      s"a task was handed to $executionContext, whose threads are not in virtual time; " +
+        "use the actor system's dispatcher. The caller is in the cause below"
     case NeedsThreads(dispatcher) =>
-      s"dispatcher '$dispatcher' is of type PinnedDispatcher, which needs threads of its own; use type Dispatcher"
+      s"dispatcher '$dispatcher' is of type PinnedDispatcher, " +
+        "which needs threads of its own; use type Dispatcher"
     case Sockets =>
       "TCP, UDP and DNS answer in real time and are not supported in virtual time; " +
         "give the code an in-memory transport"

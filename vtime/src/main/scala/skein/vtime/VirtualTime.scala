@@ -21,7 +21,7 @@ object VirtualTime:
     * @throws Throwable
     *   with which the future failed
     */
-  def run[A](seed: Long, limits: Limits = Limits(), config: Config = ConfigFactory.load())(
+  def run[A](seed: Long, limits: RunLimits = RunLimits(), config: Config = ConfigFactory.load())(
       body: ActorSystem => Future[A]
   ): Finished[A] =
     if Redirect.environment() != null then

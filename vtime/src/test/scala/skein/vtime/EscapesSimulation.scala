@@ -11,7 +11,7 @@ import skein.testing.Unhurried
 
 /** What cannot be right in virtual time stops the run and names the culprit. */
 class EscapesSimulation extends munit.FunSuite, Unhurried:
-  private def stopped(limits: Limits = Limits(), config: String = "")(
+  private def stopped(limits: RunLimits = RunLimits(), config: String = "")(
       body: ActorSystem => Future[?]
   ): VirtualTimeException =
     intercept[VirtualTimeException]:
@@ -93,7 +93,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
     assertEquals(error.problem, Problem.Sockets)
 
   test("two actors that talk for ever without time advancing are a livelock and are named"):
-    val error = stopped(Limits(tasksPerInstant = 10_000)): system =>
+    val error = stopped(RunLimits(tasksPerInstant = 10_000)): system =>
       val echo = system.actorOf(Props(Echo()), "echo")
       system.actorOf(Props(Echo()), "reply").tell("ball", echo)
       after(1.second)(Future.successful(Done))(using system)
@@ -138,7 +138,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       case other => fail(s"another problem: $other")
 
   test("a run ends at its limit of virtual time"):
-    val error = stopped(Limits(duration = 10.seconds)): system =>
+    val error = stopped(RunLimits(duration = 10.seconds)): system =>
       given ActorSystem = system
       Source.tick(0.seconds, 1.second, ()).runWith(Sink.ignore)
     assert(clue(error.problem).isInstanceOf[Problem.Overrun])

@@ -12,7 +12,7 @@ class RealClockLiveSuite extends munit.FunSuite:
 
   test("a task that waits for a latch is ended, and shows where it stood"):
     val error = intercept[VirtualTimeException]:
-      VirtualTime.run(1, Limits(standstill = 100.millis)): _ =>
+      VirtualTime.run(1, RunLimits(standstill = 100.millis)): _ =>
         CountDownLatch(1).await()
         Future.unit
     assertEquals(error.problem, Problem.Stuck(100.millis))

@@ -26,5 +26,6 @@ import scala.concurrent.duration.*
     var witness = ""
     val took    = seconds((1 to repeats).foreach(_ => witness = SampleGraph.digest(1, graphs, duration)))
     println(
-      f"$graphs%3d graphs: ${duration.toSeconds * graphs * repeats / took}%.0f graph-seconds per second, ${witness.take(12)}"
+      f"$graphs%3d graphs: " +
+        f"${duration.toSeconds * graphs * repeats / took}%.0f graph-seconds per second, ${witness.take(12)}"
     )

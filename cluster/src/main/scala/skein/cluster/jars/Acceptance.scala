@@ -24,7 +24,8 @@ final class Acceptance(
       digests(digest),
       digest,
       if digests.isEmpty then
-        "the coordinator ships its program to workers that are started with --accept-jars and the digest that it prints"
+        "the coordinator ships its program to workers that are started " +
+          "with --accept-jars and the digest that it prints"
       else "the coordinator ships another program than those that --accept-jars names"
     )
 
@@ -60,7 +61,8 @@ final class Acceptance(
         program.jars.distinct.flatMap(jar => here.get(jar.sha256).orElse(store.find(jar)).map(jar -> _))
       val missing = program.jars.distinct.filterNot(known.toMap.contains)
       tell(
-        s"the program has ${program.jars.size} jars, of which ${missing.size} come from the coordinator, ${missing.map(_.bytes).sum} bytes"
+        s"the program has ${program.jars.size} jars, of which ${missing.size} " +
+          s"come from the coordinator, ${missing.map(_.bytes).sum} bytes"
       )
       missing
         .foldLeft[Either[NotFetched, Map[Jar, Path]]](Right(known.toMap)): (before, jar) =>

@@ -17,4 +17,4 @@ enum Learning:
     * @param news
     *   what was new before which decision
     */
-  case Again(explore: Double, news: Map[Long, Vector[News]])
+  case Again(explore: Double, news: Map[Long, Vector[LearnerUpdate]])

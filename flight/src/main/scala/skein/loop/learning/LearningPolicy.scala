@@ -23,7 +23,7 @@ final class LearningPolicy(
     explore: Double,
     seed: Long,
     lessons: Lessons,
-    note: (Long, News) => Unit
+    note: (Long, LearnerUpdate) => Unit
 ) extends Policy:
   import LearningPolicy.*
 

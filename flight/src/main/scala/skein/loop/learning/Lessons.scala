@@ -16,7 +16,7 @@ trait Lessons:
     * @param decision
     *   its number
     */
-  def news(decision: Long): Vector[News]
+  def news(decision: Long): Vector[LearnerUpdate]
 
   /** Never blocks. */
   def flown(transition: Transition): Unit
@@ -30,7 +30,7 @@ trait Lessons:
   * @param parameters
   *   of the policy that decides from now on, if it is another
   */
-final case class News(text: String, parameters: Option[Vector[Double]] = None)
+final case class LearnerUpdate(text: String, parameters: Option[Vector[Double]] = None)
 
 /** Lessons by a learner that runs beside the flight: it may be slow, hang or fail, and no decision waits for it. Of versions
   * between two decisions the last counts.
@@ -41,8 +41,8 @@ final case class News(text: String, parameters: Option[Vector[Double]] = None)
 final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using ActorSystem) extends Lessons:
   import LessonsBeside.*
 
-  private val newest  = AtomicReference(Option.empty[News])
-  private val said    = AtomicReference(Vector.empty[News])
+  private val newest  = AtomicReference(Option.empty[LearnerUpdate])
+  private val said    = AtomicReference(Vector.empty[LearnerUpdate])
   private val dropped = AtomicLong()
   private val told    = AtomicLong()
   private val learned = AtomicLong()
@@ -64,26 +64,29 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
     .run()
 
   ended.failed.foreach(error =>
-    say(News(s"learning failed, the policy stays as it is: $error"))
+    say(LearnerUpdate(s"learning failed, the policy stays as it is: $error"))
   )(using ExecutionContext.parasitic)
 
   private def publish(parameters: Vector[Double], transitions: Long): Unit =
     version += 1
     val wrong = parameters.count(!_.isFinite)
     if wrong > 0 then
-      say(News(s"version $version refused: $wrong of its ${parameters.size} numbers are not finite"))
+      say(LearnerUpdate(s"version $version refused: $wrong of its ${parameters.size} numbers are not finite"))
     else
-      newest.set(Some(News(
+      newest.set(Some(LearnerUpdate(
         s"version $version decides from here, learned from $transitions flown decisions",
         Some(parameters)
       )))
 
-  private def say(news: News): Unit = said.updateAndGet(before => (before :+ news).takeRight(MostSaid)): Unit
+  private def say(news: LearnerUpdate): Unit =
+    said.updateAndGet(before => (before :+ news).takeRight(MostSaid)): Unit
 
-  def news(decision: Long): Vector[News] =
+  def news(decision: Long): Vector[LearnerUpdate] =
     val lost  = dropped.get
     val fresh = lost - told.getAndSet(lost)
-    Option.when(fresh > 0)(News(s"$fresh flown decisions are not learned from, $lost in all")).toVector ++
+    Option.when(fresh > 0)(
+      LearnerUpdate(s"$fresh flown decisions are not learned from, $lost in all")
+    ).toVector ++
       said.getAndSet(Vector.empty) ++ newest.getAndSet(None)
 
   def flown(transition: Transition): Unit = queue.offer(transition) match
@@ -105,10 +108,10 @@ object LessonsBeside:
   * @param recorded
   *   what was new before which decision; where that was made in the policy's place, it is new before the next
   */
-final class LessonsAgain(recorded: Map[Long, Vector[News]]) extends Lessons:
+final class LessonsAgain(recorded: Map[Long, Vector[LearnerUpdate]]) extends Lessons:
   private var left = recorded.toVector.sortBy(_._1)
 
-  def news(decision: Long): Vector[News] =
+  def news(decision: Long): Vector[LearnerUpdate] =
     val (fresh, later) = left.span(_._1 <= decision)
     left = later
     fresh.flatMap(_._2)

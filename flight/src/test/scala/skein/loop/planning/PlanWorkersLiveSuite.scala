@@ -21,7 +21,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
       Vector(
         Part(objective, situation, stream),
         Part(
-          objective.copy(separation = Separation(2)),
+          objective.copy(separation = SeparationCost(2)),
           situation.copy(own = meeting, headingRad = math.Pi),
           stream + 100
         )

@@ -20,10 +20,10 @@ object McapFile:
       result
 
   /** Reads by index; the reader must not be used after `body` returns. */
-  def read[A](path: Path, limits: Limits = Limits())(body: IndexedReader => A): Either[McapError, A] =
+  def read[A](path: Path, limits: McapLimits = McapLimits())(body: IndexedReader => A): Either[McapError, A] =
     Using.resource(FileChannel.open(path, READ)): channel =>
       IndexedReader.open(FileSource(channel), limits).map(body)
 
   /** Reads all records in the file's order and holds every CRC; the stream must not be used after `body` returns. */
-  def stream[A](path: Path, limits: Limits = Limits())(body: RecordStream => A): A =
+  def stream[A](path: Path, limits: McapLimits = McapLimits())(body: RecordStream => A): A =
     Using.resource(FileChannel.open(path, READ))(channel => body(RecordStream(channel, limits)))

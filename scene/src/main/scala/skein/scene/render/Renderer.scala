@@ -21,7 +21,7 @@ object Renderer:
       kinds: Set[Kind],
       idOf: Int => Int,
       except: Int = Item.Nothing
-  ): Map[Kind, Image] =
+  ): Map[Kind, Raster] =
     val surfaces                 = seen(moment, view, except)
     val needed                   = kinds.map(_.drawnAs)
     val layers: Map[Kind, Layer] =
@@ -53,23 +53,23 @@ object Renderer:
 
   private def layerOf(kind: Kind, moment: Moment, view: View, surfaces: Surfaces, idOf: Int => Int): Layer =
     kind match
-      case Kind.DepthPlanar      => Layer.Planar(view, surfaces, Image.BeyondM)
-      case Kind.DepthPerspective => Layer.Perspective(view, surfaces, Image.BeyondM)
+      case Kind.DepthPlanar      => Layer.Planar(view, surfaces, Raster.BeyondM)
+      case Kind.DepthPerspective => Layer.Perspective(view, surfaces, Raster.BeyondM)
       case Kind.Segmentation     =>
         Layer.Flat(view, surfaces, Palette.rgb(0), (_, item) => Palette.rgb(idOf(item)))
       case Kind.Infrared       => Layer.Flat(view, surfaces, 0, (_, item) => idOf(item) * 0x010101)
       case Kind.SurfaceNormals => Layer.Flat(view, surfaces, 0x808080, (face, _) => normalRgb(face))
       case _                   => Layer.Lit(view, surfaces, moment.scene.skyRgb)
 
-  private def imageOf(kind: Kind, view: View, layer: Layer): Image = (kind, layer) match
-    case (Kind.DepthVis, depth: Layer.Planar)            => Image.Bytes(grey(depth.metres, _ / Image.WhiteM))
+  private def imageOf(kind: Kind, view: View, layer: Layer): Raster = (kind, layer) match
+    case (Kind.DepthVis, depth: Layer.Planar) => Raster.Bytes(grey(depth.metres, _ / Raster.WhiteM))
     case (Kind.DisparityNormalized, depth: Layer.Planar) =>
-      val most = (Image.BaselineM * view.focalPx / view.width).toFloat
-      Image.Numbers(depth.metres.map(most / _))
-    case (_, depth: Layer.Planar)      => Image.Numbers(depth.metres)
-    case (_, depth: Layer.Perspective) => Image.Numbers(depth.metres)
-    case (_, flat: Layer.Flat)         => Image.Bytes(flat.bytes)
-    case (_, lit: Layer.Lit)           => Image.Bytes(lit.bytes)
+      val most = (Raster.BaselineM * view.focalPx / view.width).toFloat
+      Raster.Numbers(depth.metres.map(most / _))
+    case (_, depth: Layer.Planar)      => Raster.Numbers(depth.metres)
+    case (_, depth: Layer.Perspective) => Raster.Numbers(depth.metres)
+    case (_, flat: Layer.Flat)         => Raster.Bytes(flat.bytes)
+    case (_, lit: Layer.Lit)           => Raster.Bytes(lit.bytes)
     case (_, other)                    => throw IllegalStateException(s"no image of $other")
 
   private inline def grey(values: Array[Float], inline brightness: Float => Float): Array[Byte] =

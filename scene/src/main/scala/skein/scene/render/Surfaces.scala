@@ -100,7 +100,8 @@ final private[render] class Surfaces(view: View):
       val here = ahead(from) >= Surfaces.NearM
       if here then put(ahead(from), right(from), down(from))
       if here != ahead(to) >= Surfaces.NearM then
-        // From the corner before the plane, whichever way the face goes: its neighbour meets it at the same place.
+        // From the corner before the plane, whichever way the face goes: its neighbour meets it at the same
+        // place.
         val near = if here then from else to
         val far  = if here then to else from
         val t    = (ahead(near) - Surfaces.NearM) / (ahead(near) - ahead(far))

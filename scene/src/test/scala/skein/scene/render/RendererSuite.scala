@@ -19,13 +19,13 @@ class RendererSuite extends munit.FunSuite:
   private def draw(moment: Moment, view: View, kinds: Kind*) =
     Renderer.draw(moment, view, kinds.toSet, idOf = item => 1 + item)
 
-  private def bgr(images: Map[Kind, Image], kind: Kind) = images(kind) match
-    case Image.Bytes(bytes) => bytes
-    case other              => fail(s"$kind came as $other")
+  private def bgr(images: Map[Kind, Raster], kind: Kind) = images(kind) match
+    case Raster.Bytes(bytes) => bytes
+    case other               => fail(s"$kind came as $other")
 
-  private def numbers(images: Map[Kind, Image], kind: Kind) = images(kind) match
-    case Image.Numbers(values) => values
-    case other                 => fail(s"$kind came as $other")
+  private def numbers(images: Map[Kind, Raster], kind: Kind) = images(kind) match
+    case Raster.Numbers(values) => values
+    case other                  => fail(s"$kind came as $other")
 
   test("every pixel shows what a ray through its middle meets, as far away as it meets it"):
     for seed <- 1 to 6 do
@@ -58,12 +58,12 @@ class RendererSuite extends munit.FunSuite:
     val digest = MessageDigest.getInstance("SHA-256")
     for kind <- kinds do
       images(kind) match
-        case Image.Bytes(bytes)    => digest.update(bytes)
-        case Image.Numbers(values) =>
+        case Raster.Bytes(bytes)    => digest.update(bytes)
+        case Raster.Numbers(values) =>
           val bytes = java.nio.ByteBuffer.allocate(4 * values.length)
           values.foreach(bytes.putFloat)
           digest.update(bytes.array)
-    digest.update(Png.encode(bgr(images, Kind.Scene), 320, 180))
+    digest.update(PngEncoder.encode(bgr(images, Kind.Scene), 320, 180))
     assertEquals(digest.digest.map(b => f"$b%02x").mkString.take(16), "31eaba862189aeaf")
 
   test("a kind drawn beside others is as drawn alone"):
@@ -112,7 +112,7 @@ class RendererSuite extends munit.FunSuite:
     for (pixels, width, height) <-
         Seq((noise, 31, 17), (stripe, 600, 5), (drawn, 320, 180), (colour, 320, 180))
     do
-      val read = ImageIO.read(ByteArrayInputStream(Png.encode(pixels, width, height)))
+      val read = ImageIO.read(ByteArrayInputStream(PngEncoder.encode(pixels, width, height)))
       assertEquals((read.getWidth, read.getHeight), (width, height))
       for y <- 0 until height; x <- 0 until width do
         val at  = 3 * (y * width + x)

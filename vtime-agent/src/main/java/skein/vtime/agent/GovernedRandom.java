@@ -4,8 +4,8 @@ import java.util.Random;
 import java.util.function.Supplier;
 
 /**
- * Draws from the environment of the thread that asks; without one, or once a seed was set, as any {@code Random}. For
- * generators that outlive runs.
+ * Draws from the environment of the thread that asks; without one, or once a seed was set, as any
+ * {@code Random}. For generators that outlive runs.
  */
 final class GovernedRandom extends Random {
   private static final long serialVersionUID = 1;

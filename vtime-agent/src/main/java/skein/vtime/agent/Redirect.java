@@ -19,8 +19,8 @@ import java.util.concurrent.TimeUnit;
 import java.util.random.RandomGenerator;
 
 /**
- * Where rewritten call sites lead. A thread that has an {@link Environment} is answered by it; any other thread gets
- * what the JVM would have said, so live systems in the same JVM are undisturbed.
+ * Where rewritten call sites lead. A thread that has an {@link Environment} is answered by it; any other
+ * thread gets what the JVM would have said, so live systems in the same JVM are undisturbed.
  *
  * <p>Public only because rewritten classes call it; {@link Rewriter} lists which call becomes which method.
  */
@@ -143,7 +143,9 @@ public final class Redirect {
     return random(RandomGenerator.getDefault());
   }
 
-  /** In place of what Scala's {@code Random} without a seed draws from: its one instance outlives every run. */
+  /**
+   * In place of what Scala's {@code Random} without a seed draws from: its one instance outlives every run.
+   */
   public static Random governed(Random real) {
     return new GovernedRandom(Redirect::environment);
   }

@@ -63,7 +63,10 @@ final class Rewriter implements ClassFileTransformer {
   private static final String SUPERVISOR_NAME =
       "org/apache/pekko/stream/impl/StreamSupervisor$.nextName()Ljava/lang/String;";
 
-  /** A shared kill switch tells its streams in the order of these objects' hash codes, which are their identities'. */
+  /**
+   * A shared kill switch tells its streams in the order of these objects' hash codes, which are their
+   * identities'.
+   */
   private static final String KILL_SWITCH_LISTENER = "org/apache/pekko/stream/TerminationSignal$Listener";
 
   /** Scala's generator: made without a seed, it makes one of Java's. */
@@ -72,7 +75,9 @@ final class Rewriter implements ClassFileTransformer {
 
   private record Target(ClassDesc owner, String name, MethodTypeDesc type) {}
 
-  /** What tells the parameter of the other constructor, and what makes the object where a reference stands. */
+  /**
+   * What tells the parameter of the other constructor, and what makes the object where a reference stands.
+   */
   private record Making(Target parameter, Target factory) {}
 
   static {
@@ -111,7 +116,9 @@ final class Rewriter implements ClassFileTransformer {
     CALLS.put(internalName(owner) + "." + name + type.descriptorString(), target);
   }
 
-  /** Has a class's constructor without parameters, of which time or chance is one, be that of a {@code long}. */
+  /**
+   * Has a class's constructor without parameters, of which time or chance is one, be that of a {@code long}.
+   */
   private static void redirectMaking(String owner, String parameter, String factory) {
     var made = ClassDesc.of(owner);
     var target =
@@ -122,8 +129,8 @@ final class Rewriter implements ClassFileTransformer {
   }
 
   /**
-   * {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it: by a static method of a
-   * class that is made here, since all do the same.
+   * {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it: by a static
+   * method of a class that is made here, since all do the same.
    */
   private static void redirectDraws() {
     var bytes = ClassFile.of().build(DRAWS, made -> {
@@ -199,7 +206,8 @@ final class Rewriter implements ClassFileTransformer {
       if (isListener) transform = transform.andThen(hashed(model));
       return classFile.transformClass(model, transform);
     } catch (Throwable failure) {
-      // The JVM swallows what a transformer throws and loads the class as it was, which would read the wrong clock.
+      // The JVM swallows what a transformer throws and loads the class as it was, which would read the wrong
+      // clock.
       failed.accept(name, failure);
       return null;
     }
@@ -314,7 +322,8 @@ final class Rewriter implements ClassFileTransformer {
       code.invokestatic(target.owner(), target.name(), target.type());
     } else {
       if (SUBMISSIONS.contains(key)) {
-        // Stack: context, task. The context is copied below the task's copy and handed over, the rest is dropped.
+        // Stack: context, task. The context is copied below the task's copy and handed over, the rest is
+        // dropped.
         code.dup2().pop().invokestatic(REDIRECT, "submitted", MethodTypeDesc.of(CD_void, CD_Object));
       }
       code.with(call);

@@ -14,13 +14,14 @@ import scala.concurrent.duration.*
   * @param standstill
   *   real time for which the loop's thread may wait in one task
   */
-final case class Limits(
+final case class RunLimits(
     duration: FiniteDuration = 1.day,
     tasksPerInstant: Long = 1_000_000,
     processorPerInstant: FiniteDuration = 3.seconds,
     standstill: FiniteDuration = 10.seconds
 ):
   require(
-    duration > Duration.Zero && tasksPerInstant > 0 && processorPerInstant > Duration.Zero && standstill > 1.milli,
+    duration > Duration.Zero && tasksPerInstant > 0 && processorPerInstant > Duration.Zero &&
+      standstill > 1.milli,
     s"limits must be positive: $this"
   )

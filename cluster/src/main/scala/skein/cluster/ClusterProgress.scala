@@ -17,7 +17,7 @@ import skein.blocks.Coordinator
   * @param ledgerBytes
   *   of the file
   */
-final case class Progress(
+final case class ClusterProgress(
     coordinator: Coordinator = Coordinator(),
     done: Int = 0,
     of: Int = 0,
@@ -41,11 +41,12 @@ object Traffic:
     counts.updated(kind, counts.getOrElse(kind, 0L) + 1)
 
 /** What a coordinator tells of its workers, in a line for a person. */
-enum News(val text: String):
+enum WorkerEvent(val text: String):
   case Joined(worker: String, cores: Int)
-      extends News(s"$worker joined, with $cores ${if cores == 1 then "core" else "cores"}")
+      extends WorkerEvent(s"$worker joined, with $cores ${if cores == 1 then "core" else "cores"}")
   case Lost(worker: String, blocks: Int)
-      extends News(s"$worker is gone; $blocks blocks that it had wait again")
-  case Refused(worker: String, reason: String) extends News(s"refused $worker: $reason")
-  case Fetching(worker: String) extends News(s"$worker fetches this program, for its own is another")
-  case Unread(worker: String, reason: String) extends News(s"$worker cannot have this program: $reason")
+      extends WorkerEvent(s"$worker is gone; $blocks blocks that it had wait again")
+  case Refused(worker: String, reason: String) extends WorkerEvent(s"refused $worker: $reason")
+  case Fetching(worker: String) extends WorkerEvent(s"$worker fetches this program, for its own is another")
+  case Unread(worker: String, reason: String)
+      extends WorkerEvent(s"$worker cannot have this program: $reason")

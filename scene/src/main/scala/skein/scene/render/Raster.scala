@@ -15,7 +15,7 @@ enum Kind:
   /** Metres from the camera. */
   case DepthPerspective
 
-  /** Grey by depth along the axis: white from [[Image.WhiteM]] on. */
+  /** Grey by depth along the axis: white from [[Raster.WhiteM]] on. */
   case DepthVis
 
   /** How far a point is apart in the images of two cameras 25 cm apart, over their width. */
@@ -35,14 +35,14 @@ enum Kind:
     case other                          => other
 
 /** Rows from the top, without gaps. */
-enum Image:
+enum Raster:
   /** Three a pixel: blue, green, red. */
   case Bytes(bgr: Array[Byte])
 
   /** One a pixel. */
   case Numbers(values: Array[Float])
 
-object Image:
+object Raster:
   /** The depth of the sky: the greatest that a half-precision float holds, as AirSim's depth is one. */
   val BeyondM = 65504f
 

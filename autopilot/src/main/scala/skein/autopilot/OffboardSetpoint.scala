@@ -5,7 +5,7 @@ import skein.units.*
 import skein.vehicle.{GoTo, Setpoint}
 
 /** What somebody outside wants the vehicle to do now, in offboard. */
-enum Target:
+enum OffboardSetpoint:
   /** Per axis a place, a velocity, or nothing; in the vehicle's own frame. A place and a velocity together are flown to
     * with that velocity added.
     *
@@ -18,7 +18,7 @@ enum Target:
       down: Option[Double],
       velocity: (Option[Double], Option[Double], Option[Double]),
       inBody: Boolean,
-      turn: Target.Turn
+      turn: OffboardSetpoint.Turn
   )
 
   /** Thrust is a share of the most. */
@@ -27,7 +27,7 @@ enum Target:
   /** Body rates. */
   case Rates(rollRadps: Double, pitchRadps: Double, yawRadps: Double, thrust: Double)
 
-object Target:
+object OffboardSetpoint:
   enum Turn:
     case None
     case Towards(yawRad: Double)
@@ -40,7 +40,7 @@ object Target:
     * @return
     *   None where it is no setpoint, or why it cannot be flown
     */
-  def of(message: Message, home: GeoLocation): Option[Either[String, Target]] = message match
+  def of(message: Message, home: GeoLocation): Option[Either[String, OffboardSetpoint]] = message match
     case one: SetPositionTargetLocalNed =>
       import CommonDialect.Frame.*
       val frame = one.coordinateFrame
@@ -110,7 +110,7 @@ object Target:
       inBody: Boolean,
       yaw: Float,
       yawRate: Float
-  ): Either[String, Target.Move] =
+  ): Either[String, OffboardSetpoint.Move] =
     import CommonDialect.Ignore
     def asked(value: Double, bit: Int) = Option.when((mask & bit) == 0 && !value.isNaN)(value)
     val place                          = places.zip(Seq(Ignore.X, Ignore.Y, Ignore.Z)).map(asked)
@@ -123,7 +123,7 @@ object Target:
     else if numbers.exists(number => !(math.abs(number) <= Most)) then
       Left("setpoint: expected finite numbers, came others")
     else
-      Right(Target.Move(
+      Right(OffboardSetpoint.Move(
         place(0),
         place(1),
         place(2),
@@ -132,39 +132,42 @@ object Target:
         turn.map(Turn.Towards(_)).orElse(rate.map(Turn.Turning(_))).getOrElse(Turn.None)
       ))
 
-  extension (move: Target.Move) private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
+  extension (move: OffboardSetpoint.Move)
+    private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
 
   /** What the flight controller is told for it.
     *
     * @param cruise
     *   the fastest that places are flown to
     */
-  def setpoint(target: Target, motion: Motion, cruise: MetresPerSecond): Setpoint = target match
-    case Attitude(roll, pitch, yaw, thrust) => Setpoint.anglesThrottle(roll, pitch, yaw, thrust)
-    case Rates(roll, pitch, yaw, thrust)    => Setpoint.ratesThrottle(roll, pitch, yaw, thrust)
-    case move: Move                         =>
-      val state        = motion.state
-      val (vn, ve, vd) = move.velocity
-      val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
-      val yaw          = state.orientation.yawRad
-      val velocity     =
-        if move.inBody then Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
-        else asked
-      val goal = Vector3(
-        move.north.getOrElse(state.positionNed.x),
-        move.east.getOrElse(state.positionNed.y),
-        move.down.getOrElse(state.positionNed.z)
-      )
-      val towards = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, cruise)
-      val north   = velocity.x + move.north.fold(0.0)(_ => towards.x)
-      val east    = velocity.y + move.east.fold(0.0)(_ => towards.y)
-      // By velocity in the plane and at an altitude: what the flight controller does by itself.
-      val byPlane  = move.north.isEmpty && move.east.isEmpty && vd.isEmpty
-      val setpoint = move.down match
-        case Some(down) if byPlane => Setpoint.velocityZ(north, east, down)
-        case Some(_)               => Setpoint.velocity(north, east, velocity.z + towards.z)
-        case None                  => Setpoint.velocity(north, east, velocity.z)
-      turned(setpoint, move.turn)
+  def setpoint(target: OffboardSetpoint, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint =
+    target match
+      case Attitude(roll, pitch, yaw, thrust) => Setpoint.anglesThrottle(roll, pitch, yaw, thrust)
+      case Rates(roll, pitch, yaw, thrust)    => Setpoint.ratesThrottle(roll, pitch, yaw, thrust)
+      case move: Move                         =>
+        val state        = motion.state
+        val (vn, ve, vd) = move.velocity
+        val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
+        val yaw          = state.orientation.yawRad
+        val velocity     =
+          if move.inBody then
+            Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
+          else asked
+        val goal = Vector3(
+          move.north.getOrElse(state.positionNed.x),
+          move.east.getOrElse(state.positionNed.y),
+          move.down.getOrElse(state.positionNed.z)
+        )
+        val towards = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, cruise)
+        val north   = velocity.x + move.north.fold(0.0)(_ => towards.x)
+        val east    = velocity.y + move.east.fold(0.0)(_ => towards.y)
+        // By velocity in the plane and at an altitude: what the flight controller does by itself.
+        val byPlane  = move.north.isEmpty && move.east.isEmpty && vd.isEmpty
+        val setpoint = move.down match
+          case Some(down) if byPlane => Setpoint.velocityZ(north, east, down)
+          case Some(_)               => Setpoint.velocity(north, east, velocity.z + towards.z)
+          case None                  => Setpoint.velocity(north, east, velocity.z)
+        turned(setpoint, move.turn)
 
   private[autopilot] def turned(setpoint: Setpoint, turn: Turn): Setpoint = turn match
     case Turn.None           => setpoint

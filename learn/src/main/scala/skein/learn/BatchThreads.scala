@@ -6,7 +6,7 @@ import java.util.stream.IntStream
 /** Threads among which a batch's rows are shared out, in parts of a fixed number of rows: so sums over parts have the same
   * bits on any number of threads. A batch takes less time than threads take to start, so they wait for the next one here.
   */
-final class Workers(threads: Int) extends AutoCloseable:
+final class BatchThreads(threads: Int) extends AutoCloseable:
   private val pool = Option.when(threads > 1)(ForkJoinPool(threads))
 
   /** Blocks until all parts are done.
@@ -15,8 +15,9 @@ final class Workers(threads: Int) extends AutoCloseable:
     *   of a part's number, its first row and the one behind its last
     */
   def share(rows: Int)(work: (Int, Int, Int) => Unit): Unit =
-    val parts          = Workers.parts(rows)
-    def one(part: Int) = work(part, part * Workers.Rows, (part * Workers.Rows + Workers.Rows).min(rows))
+    val parts          = BatchThreads.parts(rows)
+    def one(part: Int) =
+      work(part, part * BatchThreads.Rows, (part * BatchThreads.Rows + BatchThreads.Rows).min(rows))
     pool match
       case Some(pool) if parts > 1 =>
         val all: Runnable = () => IntStream.range(0, parts).parallel().forEach(one)
@@ -25,7 +26,7 @@ final class Workers(threads: Int) extends AutoCloseable:
 
   def close(): Unit = pool.foreach(_.shutdownNow())
 
-object Workers:
+object BatchThreads:
   /** Of a part. */
   private val Rows = 64
 
@@ -33,7 +34,7 @@ object Workers:
 
 /** A network's gradient, summed part by part. */
 private[learn] final class Gradient(size: Int, rows: Int):
-  private val parts = Array.fill(Workers.parts(rows))(Array.ofDim[Float](size))
+  private val parts = Array.fill(BatchThreads.parts(rows))(Array.ofDim[Float](size))
 
   /** To which one part adds. */
   def of(part: Int): Array[Float] = parts(part)

@@ -11,7 +11,7 @@ package skein.mcap
   * @param openBytes
   *   chunks that a reader in order of log time holds at once because their times overlap, uncompressed
   */
-final case class Limits(
+final case class McapLimits(
     recordBytes: Int = 256 << 20,
     chunkBytes: Int = 256 << 20,
     summaryBytes: Int = 256 << 20,

@@ -10,25 +10,25 @@ import skein.scene.{Lidar, Placement}
   * @param captures
   *   of `CameraDefaults`, by image type
   */
-final private[simulator] case class Equipment(
-    captures: Map[Int, Equipment.Capture],
-    cameras: Map[String, Map[String, Equipment.Carried]],
+final private[simulator] case class SensorSettings(
+    captures: Map[Int, SensorSettings.Capture],
+    cameras: Map[String, Map[String, SensorSettings.Carried]],
     lidars: Map[String, Vector[(String, Lidar)]],
-    rangers: Map[String, Vector[(String, Equipment.Ranger)]]
+    rangers: Map[String, Vector[(String, SensorSettings.Ranger)]]
 ):
   /** The size of images, and their field of view, of a vehicle's camera. */
-  def capture(vehicle: String, camera: String, imageType: Int): Equipment.Capture =
+  def capture(vehicle: String, camera: String, imageType: Int): SensorSettings.Capture =
     cameras.get(vehicle).flatMap(_.get(camera)).flatMap(_.captures.get(imageType))
-      .orElse(captures.get(imageType)).getOrElse(Equipment.Capture())
+      .orElse(captures.get(imageType)).getOrElse(SensorSettings.Capture())
 
   /** The empty name means the first. */
   def lidar(vehicle: String, name: String): Option[(String, Lidar)] =
     lidars.getOrElse(vehicle, Vector.empty).find((own, _) => name.isEmpty || own == name)
 
-  def ranger(vehicle: String, name: String): Option[Equipment.Ranger] =
+  def ranger(vehicle: String, name: String): Option[SensorSettings.Ranger] =
     rangers.getOrElse(vehicle, Vector.empty).find((own, _) => name.isEmpty || own == name).map(_._2)
 
-private[simulator] object Equipment:
+private[simulator] object SensorSettings:
   final case class Capture(width: Int = 256, height: Int = 144, fovDeg: Float = 90)
 
   /** A camera of the settings.
@@ -44,12 +44,12 @@ private[simulator] object Equipment:
   /** Of an image. */
   val MostPixels: Int = 8192 * 4096
 
-  val None: Equipment = Equipment(Map.empty, Map.empty, Map.empty, Map.empty)
+  val None: SensorSettings = SensorSettings(Map.empty, Map.empty, Map.empty, Map.empty)
 
   /** Reads it from the file's text, which is JSON. */
-  def read(text: String): Either[SettingsError, Equipment] = SettingsSection.read(text)(of)
+  def read(text: String): Either[SettingsError, SensorSettings] = SettingsSection.read(text)(of)
 
-  private def of(root: SettingsSection): Equipment =
+  private def of(root: SettingsSection): SensorSettings =
     val vehicles                                                 = root.sections("Vehicles")
     val unless                                                   = root.sections("DefaultSensors")
     def sensors[A](kind: SensorKind)(read: SettingsSection => A) = vehicles.map: (name, vehicle) =>
@@ -61,7 +61,7 @@ private[simulator] object Equipment:
         .filter((_, sensor) => sensor.flag("Enabled", unless = false))
         .map((sensorName, sensor) => sensorName -> read(sensor))
     .toMap
-    Equipment(
+    SensorSettings(
       captures(root.section("CameraDefaults"), Capture()),
       vehicles.map((name, vehicle) =>
         name -> vehicle.sections("Cameras").map((n, c) => n -> camera(c)).toMap

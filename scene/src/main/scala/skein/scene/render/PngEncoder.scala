@@ -9,7 +9,7 @@ import java.util.zip.CRC32
   * one deflate block of fixed codes whose only matches are runs. What is as in the row above, most of a drawn image, is
   * found by comparing arrays.
   */
-object Png:
+object PngEncoder:
 
   /** @param bgr
     *   three bytes a pixel: blue, green, red; rows from the top

@@ -3,22 +3,22 @@ package skein.lanes
 /** A way by which a [[Timetable]]'s reading is carried forward: parts flown under one command each. What the numbers mean,
   * the kind of predicted vehicles says.
   */
-private[skein] final class Course(
-    val parts: Array[Course.Part],
+private[skein] final class Propagation(
+    val parts: Array[Propagation.Part],
     val first: Double = 0,
     val second: Double = 0
 ):
   /** With the places of the commands that its decisions became. */
-  private[lanes] def placed(placeOf: Int => Int): Course =
-    def place(decision: Int) = if decision == 0 then Course.Rest else placeOf(decision)
-    Course(parts.map(part => part.copy(command = place(part.command))), first, second)
+  private[lanes] def placed(placeOf: Int => Int): Propagation =
+    def place(decision: Int) = if decision == 0 then Propagation.Rest else placeOf(decision)
+    Propagation(parts.map(part => part.copy(command = place(part.command))), first, second)
 
   /** About so much memory is held. */
   private[lanes] def bytes: Long = 48 + 56L * parts.length
 
-private[skein] object Course:
+private[skein] object Propagation:
   /** Of what is not carried forward. */
-  private[lanes] val Nowhere: Course = Course(Array.empty)
+  private[lanes] val Nowhere: Propagation = Propagation(Array.empty)
 
   /** In the place of a command: none yet. */
   val Rest: Int = -1

@@ -3,7 +3,7 @@ package skein.rpc
 import scala.util.Random
 import upack.*
 
-class MessageSuite extends munit.FunSuite:
+class RpcMessageSuite extends munit.FunSuite:
 
   test("what the writer encodes is what the oracle reads"):
     for seed <- 1 to 100 do
@@ -19,8 +19,8 @@ class MessageSuite extends munit.FunSuite:
     for seed <- 1 to 100 do
       val random = Random(seed)
       val result = Wire.randomMsg(random)
-      Message.fromServer(Wire.pack(Arr(Int32(1), Int32(7), Null, result))) match
-        case Message.Reply(7, Null, read: Msg) =>
+      RpcMessage.fromServer(Wire.pack(Arr(Int32(1), Int32(7), Null, result))) match
+        case RpcMessage.Reply(7, Null, read: Msg) =>
           assertEquals(Wire.toValue(read), Wire.toValue(result), s"seed $seed")
         case other => fail(s"$other, seed $seed")
 
@@ -43,7 +43,7 @@ class MessageSuite extends munit.FunSuite:
     assertEquals(writer.take().length, 0)
     val frames = Wire.framed(Framer(), Seq(taken)).collect { case Framed.Complete(bytes) => bytes }
     assertEquals(
-      frames.map(Message.fromClient).map(_.productPrefix),
+      frames.map(RpcMessage.fromClient).map(_.productPrefix),
       Seq("Request", "Notification", "Request")
     )
 
@@ -51,41 +51,41 @@ class MessageSuite extends munit.FunSuite:
     val params = Arr(Int32(1))
     assertEquals(
       fromClient(Arr(Str("?"), Int64(0xffffffffL), Str("f"), params)),
-      Message.Request(0xffffffffL, "f", Vector(Int32(1)))
+      RpcMessage.Request(0xffffffffL, "f", Vector(Int32(1)))
     )
-    assertEquals(fromClient(Arr(Int32(9), Str("f"), params)), Message.Notification("f", Vector(Int32(1))))
+    assertEquals(fromClient(Arr(Int32(9), Str("f"), params)), RpcMessage.Notification("f", Vector(Int32(1))))
 
   test("a method name may come as binary, params as nil or an empty map"):
-    val none = Message.Request(1, "ping", Vector.empty)
+    val none = RpcMessage.Request(1, "ping", Vector.empty)
     assertEquals(fromClient(Arr(Int32(0), Int32(1), Binary("ping".getBytes), Arr())), none)
     assertEquals(fromClient(Arr(Int32(0), Int32(1), Str("ping"), Null)), none)
     assertEquals(fromClient(Arr(Int32(0), Int32(1), Str("ping"), Obj())), none)
 
   test("arrays of another length, maps and integers are ignored"):
-    assertEquals(fromClient(Arr(Int32(0), Int32(1))), Message.Ignored("an array of 2"))
-    assertEquals(fromClient(Obj(Str("a") -> Null)), Message.Ignored("a map"))
-    assertEquals(fromClient(Int32(5)), Message.Ignored("an integer"))
-    assertEquals(fromServer(Arr(Int32(2), Str("f"), Arr())), Message.Ignored("an array of 3"))
+    assertEquals(fromClient(Arr(Int32(0), Int32(1))), RpcMessage.Ignored("an array of 2"))
+    assertEquals(fromClient(Obj(Str("a") -> Null)), RpcMessage.Ignored("a map"))
+    assertEquals(fromClient(Int32(5)), RpcMessage.Ignored("an integer"))
+    assertEquals(fromServer(Arr(Int32(2), Str("f"), Arr())), RpcMessage.Ignored("an array of 3"))
 
   test("an id that is a string, negative or beyond 32 bits is malformed"):
     def request(id: Msg) = fromClient(Arr(Int32(0), id, Str("f"), Arr()))
-    assertEquals(request(Str("7")), Message.Malformed("an id that is a string"))
-    assertEquals(request(Int32(-1)), Message.Malformed("a negative id: -1"))
-    assertEquals(request(Int64(1L << 32)), Message.Malformed("an id outside 0 to 2^32 - 1: 4294967296"))
+    assertEquals(request(Str("7")), RpcMessage.Malformed("an id that is a string"))
+    assertEquals(request(Int32(-1)), RpcMessage.Malformed("a negative id: -1"))
+    assertEquals(request(Int64(1L << 32)), RpcMessage.Malformed("an id outside 0 to 2^32 - 1: 4294967296"))
     assertEquals(
       request(UInt64(-1)),
-      Message.Malformed("an id outside 0 to 2^32 - 1: 18446744073709551615")
+      RpcMessage.Malformed("an id outside 0 to 2^32 - 1: 18446744073709551615")
     )
 
   test("a method that is no string and params that are no list are malformed"):
     assertEquals(
       fromClient(Arr(Int32(0), Int32(1), Int32(2), Arr())),
-      Message.Malformed("a method name that is an integer")
+      RpcMessage.Malformed("a method name that is an integer")
     )
     assertEquals(
       fromClient(Arr(Int32(0), Int32(1), Str("f"), Str("x"))),
-      Message.Malformed("params that are a string")
+      RpcMessage.Malformed("params that are a string")
     )
 
-  private def fromClient(msg: Msg) = Message.fromClient(Wire.pack(msg))
-  private def fromServer(msg: Msg) = Message.fromServer(Wire.pack(msg))
+  private def fromClient(msg: Msg) = RpcMessage.fromClient(Wire.pack(msg))
+  private def fromServer(msg: Msg) = RpcMessage.fromServer(Wire.pack(msg))

@@ -10,7 +10,7 @@ import skein.units.*
   * @param newest
   *   and when it was so, on the vehicle's clock
   */
-final case class Estimate(
+final case class ReportedMotion(
     newest: Option[(state: Kinematics, at: Instant)] = None,
     attitude: Option[AttitudeQuaternion] = None,
     hasOdometry: Boolean = false
@@ -18,7 +18,7 @@ final case class Estimate(
   /** @return
     *   and whether there is something new
     */
-  def heard(message: Message): (Estimate, Boolean) = message match
+  def heard(message: Message): (ReportedMotion, Boolean) = message match
     case one: Odometry if one.frameId == LocalNed && one.q.size == 4 =>
       val turn     = Quaternion(one.q(0), one.q(1), one.q(2), one.q(3))
       val told     = Vector3(one.vx, one.vy, one.vz)
@@ -43,7 +43,7 @@ final case class Estimate(
         withNewest(state, Instant.ofNanos(one.timeBootMs * 1_000_000 + 500_000))
     case _ => (this, false)
 
-  private def withNewest(state: Kinematics, at: Instant): (Estimate, Boolean) =
+  private def withNewest(state: Kinematics, at: Instant): (ReportedMotion, Boolean) =
     if state.isFinite && newest.forall(at > _.at) then (copy(newest = Some((state = state, at = at))), true)
     else (this, false)
 

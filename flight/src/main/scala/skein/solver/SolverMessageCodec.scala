@@ -3,14 +3,14 @@ package skein.solver
 import java.io.IOException
 import skein.bytes.Codec
 import skein.forecast.Estimate
-import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
+import skein.loop.{Chosen, Memory, SentCommand, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
-import skein.record.Course
+import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
 /** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
-object MessageCodec:
+object SolverMessageCodec:
   /** Peers of another version are refused. */
   val Version = 4
 
@@ -22,13 +22,13 @@ object MessageCodec:
   /** @throws IllegalArgumentException
     *   if it is longer than [[MostBytes]]
     */
-  def bytes(message: Message): Array[Byte] =
+  def bytes(message: SolverMessage): Array[Byte] =
     val made = Version.toByte +: Codec.bytes(message)
     require(made.length <= MostBytes, s"a message has ${made.length} bytes, at most $MostBytes go")
     made
 
   /** @return or what was expected, and what came */
-  def message(bytes: Array[Byte]): Either[String, Message] =
+  def message(bytes: Array[Byte]): Either[String, SolverMessage] =
     if bytes.length > MostBytes then Left(s"expected $MostBytes bytes at most, came ${bytes.length}")
     else
       bytes.headOption match
@@ -36,7 +36,7 @@ object MessageCodec:
           Left(
             s"expected messages of version $Version of the solver's protocol, came version ${version & 0xff}"
           )
-        case _ => Codec.message[Message](bytes.drop(1))
+        case _ => Codec.message[SolverMessage](bytes.drop(1))
 
   private given [A](using Codec[A]): Codec[Stamped[A]] = Codec.derived
 
@@ -44,7 +44,7 @@ object MessageCodec:
   private given Codec[Yaw]           = Codec.derived
   private given Codec[Action]        = Codec.derived
   private given Codec[Reading]       = Codec.derived
-  private given Codec[Move]          = Codec.derived
+  private given Codec[SentCommand]   = Codec.derived
   private given Codec[SensorReading] = Codec.derived
   private given Codec[Estimate]      = Codec.derived
   private given Codec[TeamView]      = Codec.derived[Seen].imap(_.view)(Seen.of)
@@ -58,14 +58,14 @@ object MessageCodec:
     .derived[Question]
     .imap(checked)(asked => asked.copy(view = withSensorsOf(asked.deciders.map(_.vehicle).toSet, asked.view)))
 
-  private given Codec[Course]     = Codec.derived
-  private given Codec[PlanReport] = Codec.derived
-  private given Codec[Chosen]     = Codec.derived
+  private given Codec[PlannedPath] = Codec.derived
+  private given Codec[PlanReport]  = Codec.derived
+  private given Codec[Chosen]      = Codec.derived
 
-  private given Codec[Choice]   = Codec.derived
-  private given Codec[Answer]   = Codec.derived
-  private given Codec[Briefing] = Codec.derived
-  private given Codec[Message]  = Codec.derived
+  private given Codec[Choice]        = Codec.derived
+  private given Codec[Answer]        = Codec.derived
+  private given Codec[Briefing]      = Codec.derived
+  private given Codec[SolverMessage] = Codec.derived
 
   private def checked(asked: Question): Question =
     val vehicles = asked.view.readings.size
@@ -82,7 +82,7 @@ object MessageCodec:
   /** A view without its forecast, as it is written. */
   private final case class Seen(
       readings: Vector[Option[Reading]],
-      moves: Vector[Option[Move]],
+      moves: Vector[Option[SentCommand]],
       clocks: Option[(offset: Span, uncertainty: Span)],
       sensed: Vector[SensorReading],
       estimates: Option[Vector[Estimate]]

@@ -2,7 +2,7 @@ package skein.solver
 
 import skein.loop.{Chosen, Memory, TeamView}
 import skein.policy.Fleet
-import skein.record.{ClockKind, FlightRow, Parameter, Recording, RecordingHeader}
+import skein.record.{ClockKind, FlightRow, ParameterRow, Recording, RecordingHeader}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
@@ -11,7 +11,7 @@ import skein.units.*
 /** What crosses between a flight and a solver. Instants are the controller's, unless they say that they are the
   * solver's. A flight is named by a number that no other flight at the same solver has, and so is each start of a solver.
   */
-enum Message:
+enum SolverMessage:
   /** A flight would like to be decided for. */
   case Hello(flight: Long, build: String, briefing: Briefing)
 
@@ -82,7 +82,7 @@ object Briefing:
       "",
       Instant.Epoch
     )
-    val parameters = briefing.parameters.map((name, value) => Parameter(name, value))
+    val parameters = briefing.parameters.map((name, value) => ParameterRow(name, value))
     RecordedPlan.of(Recording(RecordingHeader(flight, Nil, parameters)))
 
   /** A line for each vehicle, without what two processes write differently. */
@@ -91,7 +91,8 @@ object Briefing:
     val policy = s"${agent.policy}".replaceAll("@[0-9a-f]+", "")
     val shown  =
       if policy.length <= MostShown then policy else s"${policy.take(MostShown)}… ${policy.hashCode}"
-    s"${agent.name}, ${agent.role}, from ${start.x} ${start.y} ${start.z} at ${agent.speed.value} m/s by $shown"
+    s"${agent.name}, ${agent.role}, from ${start.x} ${start.y} " +
+      s"${start.z} at ${agent.speed.value} m/s by $shown"
 
   private val MostShown = 400
 

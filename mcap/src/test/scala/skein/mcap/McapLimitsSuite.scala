@@ -1,6 +1,6 @@
 package skein.mcap
 
-class LimitsSuite extends munit.FunSuite:
+class McapLimitsSuite extends munit.FunSuite:
   private val begin =
     val out = ByteBuilder(64)
     out.raw(Magic.bytes)
@@ -13,9 +13,10 @@ class LimitsSuite extends munit.FunSuite:
     records(out)
     Bytes.of(out.array.take(out.size))
 
-  private def errorOf(file: Bytes, limits: Limits = Limits()) = Parsing.all(file, limits = limits).end match
-    case Parsed.Failed(error) => error.message
-    case other                => s"$other"
+  private def errorOf(file: Bytes, limits: McapLimits = McapLimits()) =
+    Parsing.all(file, limits = limits).end match
+      case Parsed.Failed(error) => error.message
+      case other                => s"$other"
 
   test("a record that claims more than the limit is refused before room is made for it"):
     val file = after: out =>
@@ -31,7 +32,7 @@ class LimitsSuite extends munit.FunSuite:
     val file    = after: out =>
       out.u8(Opcode.Attachment)
       out.u64(Int.MaxValue - 100)
-    val limits = Limits(recordBytes = Int.MaxValue - 100)
+    val limits = McapLimits(recordBytes = Int.MaxValue - 100)
     // More such parsers than the heap could hold if each made room for what is claimed.
     val parsers = Vector.fill((runtime.maxMemory >> 31).toInt + 8): () =>
       val parser = StreamParser(limits)
@@ -55,10 +56,10 @@ class LimitsSuite extends munit.FunSuite:
       writer.message(one, at, at, at, Bytes.of(new Array[Byte](500)))
       writer.message(one, at, 1000, 0, Bytes.of(new Array[Byte](500)))
     writer.finish()
-    def read(limits: Limits) =
+    def read(limits: McapLimits) =
       IndexedReader.open(ByteSource.of(sink.bytes), limits).toOption.get.messages().toVector
-    assertEquals(read(Limits()).count(_.isRight), 200)
-    read(Limits(openBytes = 20000)).last match
+    assertEquals(read(McapLimits()).count(_.isRight), 200)
+    read(McapLimits(openBytes = 20000)).last match
       case Left(McapError.TooLarge(_, what, _, limit)) =>
         assertEquals((what, limit), ("what overlaps in time", 20000L))
       case other => fail(s"$other")
@@ -79,7 +80,8 @@ class LimitsSuite extends munit.FunSuite:
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.Chunk(0, 0, 3, 5, "", Bytes.utf8("abc")), _))),
-      "byte 25: the CRC of the chunk's records, uncompressed, is written as 0x00000005, its bytes give 0x352441c2"
+      "byte 25: the CRC of the chunk's records, uncompressed, is " +
+        "written as 0x00000005, its bytes give 0x352441c2"
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.SummaryOffset(3, 0, 0), _))),

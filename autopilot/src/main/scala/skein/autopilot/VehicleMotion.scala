@@ -12,4 +12,4 @@ import skein.units.Span
   * @param isFlying
   *   whether it has taken off and not landed since
   */
-final case class Motion(sinceBoot: Span, state: Kinematics, isFlying: Boolean)
+final case class VehicleMotion(sinceBoot: Span, state: Kinematics, isFlying: Boolean)

@@ -3,7 +3,7 @@ package skein.view
 import java.util.concurrent.atomic.AtomicLong
 
 /** What a server has turned away. */
-final class Counts:
+final class RefusalCounts:
   private val connections, requests, messages = AtomicLong()
 
   private[view] def refusedConnection(): Unit = connections.incrementAndGet(): Unit

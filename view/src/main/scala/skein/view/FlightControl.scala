@@ -1,7 +1,7 @@
 package skein.view
 
 /** What may be done to a flight from the page. */
-enum Control:
+enum FlightControl:
   /** Its vehicles hover and no decisions are made, until it continues or ends. */
   case Pause
 

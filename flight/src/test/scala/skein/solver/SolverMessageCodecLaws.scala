@@ -3,13 +3,13 @@ package skein.solver
 import org.scalacheck.Prop.forAll
 import org.scalacheck.{Arbitrary, Gen}
 import skein.forecast.Estimate
-import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
+import skein.loop.{Chosen, Memory, SentCommand, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
-import skein.record.Course
+import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-class MessageCodecLaws extends munit.ScalaCheckSuite:
+class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
   private val number  = Gen.oneOf(Gen.double, Gen.oneOf(-0.0, 1e300, Double.MinPositiveValue, -12.5))
   private val instant = Gen.choose(-1e18.toLong, 4e18.toLong).map(Instant.ofNanos)
   private val span    = Gen.choose(-1e12.toLong, 1e12.toLong).map(Span.ofNanos)
@@ -53,7 +53,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
   private def move(vehicle: Int) =
     Gen.zip(Gen.long, number, instant, speed, Gen.option(action)).map(
       (decision, heading, at, speed, action) =>
-        Move(vehicle, decision, heading, at, speed, action)
+        SentCommand(vehicle, decision, heading, at, speed, action)
     )
 
   /** Of which middle and half width are whole. */
@@ -73,7 +73,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
           Gen.option(Gen.zip(Gen.long, stamped(kinematics)).map(Reading(vehicle, _, _)))
         )
       )
-      moves <- Gen.sequence[Vector[Option[Move]], Option[Move]](
+      moves <- Gen.sequence[Vector[Option[SentCommand]], Option[SentCommand]](
         (0 until vehicles).map(vehicle => Gen.option(move(vehicle)))
       )
       alignment <- Gen.option(alignment)
@@ -115,7 +115,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
 
   private val course =
     Gen.zip(Gen.listOf(number), Gen.listOf(number), span).map((north, east, step) =>
-      Course(north.toVector, east.toVector, step)
+      PlannedPath(north.toVector, east.toVector, step)
     )
 
   private val plan =
@@ -151,59 +151,63 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
       (scenario, loop, seed, period, duration, parameters, agents) =>
         Briefing(scenario, loop, seed, period, duration, parameters.toVector, agents.toVector)
 
-  private val message: Gen[Message] = Gen.oneOf(
-    Gen.zip(Gen.long, text, briefing).map(Message.Hello(_, _, _)),
-    Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(Message.Welcome(_, _, _)),
-    Gen.zip(Gen.long, text).map(Message.Refused(_, _)),
-    Gen.long.map(Message.Unknown(_)),
-    question.map(Message.Ask(_)),
-    answer.map(Message.Tell(_)),
-    Gen.long.map(Message.Goodbye(_))
+  private val message: Gen[SolverMessage] = Gen.oneOf(
+    Gen.zip(Gen.long, text, briefing).map(SolverMessage.Hello(_, _, _)),
+    Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(SolverMessage.Welcome(_, _, _)),
+    Gen.zip(Gen.long, text).map(SolverMessage.Refused(_, _)),
+    Gen.long.map(SolverMessage.Unknown(_)),
+    question.map(SolverMessage.Ask(_)),
+    answer.map(SolverMessage.Tell(_)),
+    Gen.long.map(SolverMessage.Goodbye(_))
   )
 
   property("a message reads back as it was written, to the last bit"):
     forAll(message): message =>
-      val bytes = MessageCodec.bytes(message)
-      val read  = MessageCodec.message(bytes).fold(fail(_), identity)
+      val bytes = SolverMessageCodec.bytes(message)
+      val read  = SolverMessageCodec.message(bytes).fold(fail(_), identity)
       assertEquals(read, message)
-      assertEquals(MessageCodec.bytes(read).toVector, bytes.toVector)
+      assertEquals(SolverMessageCodec.bytes(read).toVector, bytes.toVector)
 
   property("a message that is cut off, or goes on, is refused"):
     forAll(message, Gen.double): (message, share) =>
-      val bytes = MessageCodec.bytes(message)
-      assert(MessageCodec.message(bytes.take((bytes.length * share).toInt)).isLeft)
-      assert(MessageCodec.message(bytes :+ 0.toByte).left.exists(_.contains("1 more byte")))
+      val bytes = SolverMessageCodec.bytes(message)
+      assert(SolverMessageCodec.message(bytes.take((bytes.length * share).toInt)).isLeft)
+      assert(SolverMessageCodec.message(bytes :+ 0.toByte).left.exists(_.contains("1 more byte")))
 
   property("whatever comes is read or refused, and no length that it states is believed"):
     forAll(message, Gen.listOf(Gen.zip(Gen.double, Arbitrary.arbitrary[Byte]))): (message, changes) =>
-      val bytes = MessageCodec.bytes(message)
+      val bytes = SolverMessageCodec.bytes(message)
       for (share, value) <- changes do bytes((bytes.length * share).toInt.min(bytes.length - 1)) = value
-      val _ = MessageCodec.message(bytes)
+      val _ = SolverMessageCodec.message(bytes)
 
   property("garbage is refused"):
-    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => MessageCodec.message(bytes).isLeft || bytes.length > 9)
+    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes =>
+      SolverMessageCodec.message(bytes).isLeft || bytes.length > 9
+    )
 
   test("a mistake says what was expected and what came"):
-    val welcome = MessageCodec.bytes(Message.Welcome(1, 2, true))
+    val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
-      MessageCodec.message(welcome.updated(0, 9.toByte)),
+      SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
       Left("expected messages of version 4 of the solver's protocol, came version 9")
     )
     assertEquals(
-      MessageCodec.message(welcome.updated(1, 42.toByte)),
-      Left("expected a kind of message from 1 to 7, came 42")
+      SolverMessageCodec.message(welcome.updated(1, 42.toByte)),
+      Left("expected a kind of solver message from 1 to 7, came 42")
     )
     assertEquals(
-      MessageCodec.message(new Array[Byte](MessageCodec.MostBytes + 1)),
-      Left(s"expected ${MessageCodec.MostBytes} bytes at most, came ${MessageCodec.MostBytes + 1}")
+      SolverMessageCodec.message(new Array[Byte](SolverMessageCodec.MostBytes + 1)),
+      Left(
+        s"expected ${SolverMessageCodec.MostBytes} bytes at most, came ${SolverMessageCodec.MostBytes + 1}"
+      )
     )
     val memory   = Memory(0, None, 0)
     val question = Question(1, Vector.empty, 0, Instant.Epoch, None, None, TeamView.empty(2))
     for deciders <- Seq(Vector(), Vector(2), Vector(-1), Vector(1, 1)) do
       val asked = question.copy(deciders = deciders.map(vehicle => (vehicle = vehicle, memory = memory)))
       assertEquals(
-        MessageCodec.message(MessageCodec.bytes(Message.Ask(asked))),
+        SolverMessageCodec.message(SolverMessageCodec.bytes(SolverMessage.Ask(asked))),
         Left(s"expected different vehicles below 2, came ${deciders.mkString(", ")}")
       )
-    val claims = MessageCodec.bytes(Message.Refused(1, "no")).updated(10, 0x7f.toByte)
-    assert(MessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))
+    val claims = SolverMessageCodec.bytes(SolverMessage.Refused(1, "no")).updated(10, 0x7f.toByte)
+    assert(SolverMessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))

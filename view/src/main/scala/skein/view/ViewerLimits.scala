@@ -15,7 +15,7 @@ package skein.view
   * @param waitingBytes
   *   of all that waits for one viewer
   */
-final case class Limits(
+final case class ViewerLimits(
     connections: Int = 32,
     messageBytes: Int = 64 * 1024,
     subscriptions: Int = 1024,

@@ -3,7 +3,7 @@ package skein.plot
 import java.util.Locale
 
 /** One axis: what it shows, from where to where, and where its marks stand. */
-final case class Axis(label: String, from: Double, to: Double, ticks: Vector[Double]):
+final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector[Double]):
   require(from < to, s"axis '$label' runs from $from to $to")
 
   /** Where a value lies: 0 at the axis' begin, 1 at its end. */
@@ -16,19 +16,19 @@ final case class Axis(label: String, from: Double, to: Double, ticks: Vector[Dou
     // Avoids a minus before zero.
     String.format(Locale.ROOT, s"%.${decimals}f", if math.abs(tick) < step / 1e6 then 0.0 else tick)
 
-object Axis:
+object PlotAxis:
 
   /** Ends at ticks, so that all values lie between. */
-  def around(label: String, least: Double, most: Double, ticks: Int = 5): Axis =
+  def around(label: String, least: Double, most: Double, ticks: Int = 5): PlotAxis =
     val upper = if most > least then most else least + 1
     val step  = niceStep((upper - least) / ticks)
     val from  = math.floor(least / step + 1e-9) * step
     val to    = math.ceil(upper / step - 1e-9) * step
-    Axis(label, from, to, ticksBetween(from, to, step))
+    PlotAxis(label, from, to, ticksBetween(from, to, step))
 
   /** Ends exactly where told. */
-  def exactly(label: String, from: Double, to: Double, ticks: Int = 5): Axis =
-    Axis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
+  def exactly(label: String, from: Double, to: Double, ticks: Int = 5): PlotAxis =
+    PlotAxis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
 
   /** The smallest of 1, 2, 5 × 10^n^ that is not below `atLeast`. */
   private def niceStep(atLeast: Double): Double =

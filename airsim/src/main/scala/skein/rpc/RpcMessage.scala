@@ -9,7 +9,7 @@ import upack.{Arr, Binary, Int32, Int64, Msg, Null, Obj, Str, UInt64}
   * Which an array is follows from its length and the role of the reader; the type field is not checked, as AirSim's
   * server does not check it either.
   */
-enum Message:
+enum RpcMessage:
   case Request(id: Long, method: String, params: IndexedSeq[Msg])
   case Notification(method: String, params: IndexedSeq[Msg])
   case Reply(id: Long, error: Msg, result: Msg | Received)
@@ -20,12 +20,12 @@ enum Message:
   /** Something that must not be answered or guessed at; its connection is to be closed. */
   case Malformed(reason: String)
 
-object Message:
+object RpcMessage:
   /** Ids are unsigned 32-bit. */
   val MaxId: Long = 0xffffffffL
 
   /** What a server makes of one encoded value. */
-  def fromClient(frame: Array[Byte]): Message = decode(frame):
+  def fromClient(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) =>
       fields.length match
         case 4 =>
@@ -61,13 +61,13 @@ object Message:
       else Option.when(bytes > 0)((1 to bytes).foldLeft(0L)((value, i) => value << 8 | at(id + i)))
 
   /** What a client makes of one encoded value. */
-  def fromServer(frame: Array[Byte]): Message = decode(frame):
+  def fromServer(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) if fields.length == 4 => idOf(fields(1)).map(Reply(_, fields(2), fields(3)))
     case Arr(fields)                       => Right(Ignored(s"an array of ${fields.length}"))
     case other                             => Right(Ignored(kindOf(other)))
 
   /** The same, with a reply's result left as it came: of a large one no tree is made. */
-  def fromServerUnread(frame: Array[Byte]): Message =
+  def fromServerUnread(frame: Array[Byte]): RpcMessage =
     val reader = MessageReader.of(frame)
     try
       if !reader.isArray then Ignored("no array")
@@ -91,7 +91,7 @@ object Message:
 
   private val LongestError = 4000
 
-  private def decode(frame: Array[Byte])(meaning: Msg => Either[String, Message]): Message =
+  private def decode(frame: Array[Byte])(meaning: Msg => Either[String, RpcMessage]): RpcMessage =
     try meaning(upack.read(frame, trace = false)).fold(Malformed(_), identity)
     catch case NonFatal(e) => Malformed(s"not readable as MessagePack: $e")
 

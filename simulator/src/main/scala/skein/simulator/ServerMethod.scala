@@ -7,7 +7,7 @@ import upack.Msg
 import upickle.default.{Writer, writeMsg}
 
 /** What a call leads to. */
-private[simulator] enum Outcome:
+private[simulator] enum CallOutcome:
   case Answered(result: Msg | Encoded)
 
   /** The function throws; `text` is the exception's. */
@@ -29,69 +29,80 @@ private[simulator] enum Outcome:
   * @param run
   *   what to do with what was read
   */
-final private[simulator] class Method(
+final private[simulator] class ServerMethod(
     val name: String,
     val arguments: List[Argument[?]],
-    run: (Simulated, Tuple) => Outcome
+    run: (Simulated, Tuple) => CallOutcome
 ):
   def arity: Int = arguments.size
 
   /** Never throws: a function that fails answers with its exception, as AirSim's do. */
-  def apply(simulation: Simulated, params: IndexedSeq[Msg]): Outcome =
+  def apply(simulation: Simulated, params: IndexedSeq[Msg]): CallOutcome =
     try run(simulation, Tuple.fromArray(arguments.iterator.zip(params).map(_.read(_)).toArray[Any]))
     catch
-      case bad: BadArgument  => Outcome.Threw(bad.getMessage)
-      case NonFatal(failure) => Outcome.Threw(failure.toString)
+      case bad: BadArgument  => CallOutcome.Threw(bad.getMessage)
+      case NonFatal(failure) => CallOutcome.Threw(failure.toString)
 
-private[simulator] object Method:
+private[simulator] object ServerMethod:
 
-  def none(name: String)(run: Simulated => Outcome): Method =
-    Method(name, List.empty, (simulation, _) => run(simulation))
+  def none(name: String)(run: Simulated => CallOutcome): ServerMethod =
+    ServerMethod(name, List.empty, (simulation, _) => run(simulation))
 
-  def one[A](name: String)(run: (Simulated, A) => Outcome)(using argument: Argument[A]): Method =
-    Method(name, List(argument), (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1))
+  def one[A](name: String)(run: (Simulated, A) => CallOutcome)(using argument: Argument[A]): ServerMethod =
+    ServerMethod(
+      name,
+      List(argument),
+      (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1)
+    )
 
   /** A function of several parameters, read as the tuple that `run` takes. */
-  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => Outcome): Method =
-    Method(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
+  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => CallOutcome): ServerMethod =
+    ServerMethod(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
 
-  def answer[A: Writer](value: A): Outcome = Outcome.Answered(writeMsg(value))
+  def answer[A: Writer](value: A): CallOutcome = CallOutcome.Answered(writeMsg(value))
 
   /** Does what answers nothing. */
-  def done(effect: => Unit): Outcome =
+  def done(effect: => Unit): CallOutcome =
     effect
     Nil
 
-  val Nil: Outcome = Outcome.Answered(upack.Null)
+  val Nil: CallOutcome = CallOutcome.Answered(upack.Null)
 
   /** The vehicle of this name, or the default one if it is empty. */
-  def vehicle(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => Outcome): Outcome =
+  def vehicle(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => CallOutcome): CallOutcome =
     find(simulation, name, "Vehicle API", "this is simulation-only API")(run)
 
   /** The same, with the words of AirSim's functions that exist in simulation only. */
-  def simulated(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => Outcome): Outcome =
+  def simulated(
+      simulation: Simulated,
+      name: String
+  )(run: (Int, SimulatedVehicle) => CallOutcome): CallOutcome =
     find(simulation, name, "Vehicle Sim-API", "this is not a simulation")(run)
 
   /** A multirotor; a car has no such function. */
-  def multirotor(simulation: Simulated, name: String)(run: (Int, SimulatedMultirotor) => Outcome): Outcome =
+  def multirotor(
+      simulation: Simulated,
+      name: String
+  )(run: (Int, SimulatedMultirotor) => CallOutcome): CallOutcome =
     vehicle(simulation, name):
       case (index, multirotor: SimulatedMultirotor) => run(index, multirotor)
-      case (_, other) => Outcome.Threw(s"expected a multirotor, '${other.settings.name}' is a car")
+      case (_, other) => CallOutcome.Threw(s"expected a multirotor, '${other.settings.name}' is a car")
 
   /** A car; a multirotor has no such function. */
-  def car(simulation: Simulated, name: String)(run: (Int, SimulatedCar) => Outcome): Outcome =
+  def car(simulation: Simulated, name: String)(run: (Int, SimulatedCar) => CallOutcome): CallOutcome =
     vehicle(simulation, name):
       case (index, car: SimulatedCar) => run(index, car)
-      case (_, other) => Outcome.Threw(s"expected a car, '${other.settings.name}' is a multirotor")
+      case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a multirotor")
 
   private def find(simulation: Simulated, name: String, what: String, reason: String)(
-      run: (Int, SimulatedVehicle) => Outcome
-  ): Outcome =
+      run: (Int, SimulatedVehicle) => CallOutcome
+  ): CallOutcome =
     val vehicles = simulation.world.vehicles
     val wanted   = if name.isEmpty then simulation.settings.world.defaultVehicle.name else name
     val index    = vehicles.indexWhere(_.settings.name == wanted)
     if index >= 0 then run(index, vehicles(index))
     else
-      Outcome.Threw(
-        s"$what for '${name}' is not available. This could either because $reason or this vehicle does not exist"
+      CallOutcome.Threw(
+        s"$what for '${name}' is not available. This could either " +
+          s"because $reason or this vehicle does not exist"
       )

@@ -4,7 +4,7 @@ import skein.signal.*
 import skein.units.*
 import skein.vehicle.*
 
-class TrackSuite extends munit.FunSuite:
+class VehicleForecastSuite extends munit.FunSuite:
 
   /** The simulator's clock minus the controller's. */
   private val skew   = Span.ofSeconds(1000)
@@ -28,10 +28,11 @@ class TrackSuite extends munit.FunSuite:
   private def command(sequence: Long, north: Double, sentMs: Double) =
     Commanded(sequence, Setpoint.velocityZ(north, 0, -20), controller(sentMs))
 
-  private def northAt(track: Track[?], validMs: Double, nowMs: Double): Double =
+  private def northAt(track: VehicleForecast[?], validMs: Double, nowMs: Double): Double =
     track.estimateAt(simulator(validMs), delays, controller(nowMs)).kinematics.positionNed.x
 
-  private val commanded = Track(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
+  private val commanded =
+    VehicleForecast(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
 
   test("each command acts when it is expected to arrive, whatever the clocks show"):
     assertEqualsDouble(northAt(commanded, 50, 60), 0, 1e-4)
@@ -53,9 +54,10 @@ class TrackSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(crossed, 350, 400), 1, 0.02)
 
   test(
-    "a command without receipt is presumed lost after two round trips and grace, and acts again when one comes"
+    "a command without receipt is presumed lost after two round " +
+      "trips and grace, and acts again when one comes"
   ):
-    val overdueMs = 100 + 2 * 100 + Track.Grace.toMillis + 1
+    val overdueMs = 100 + 2 * 100 + VehicleForecast.Grace.toMillis + 1
     assertEqualsDouble(northAt(commanded, 300, overdueMs), 2.5, 1e-4)
     assertEqualsDouble(northAt(commanded.replaced(0, controller(200)), 300, overdueMs), 4, 1e-4)
 
@@ -92,9 +94,9 @@ class TrackSuite extends munit.FunSuite:
 
   test("what is remembered is bounded"):
     val busy = (2 to 1000).foldLeft(commanded)((track, n) => track.sent(command(n, 1, n)))
-    assertEquals(busy.commands.size, Track.CommandLimit)
+    assertEquals(busy.commands.size, VehicleForecast.CommandLimit)
     val readings = (1 to 100).foldLeft(commanded)((track, n) => track.seen(reading(100.0 * n, at(n)), delays))
-    assertEquals(readings.readings.size, Track.ReadingLimit)
+    assertEquals(readings.readings.size, VehicleForecast.ReadingLimit)
 
   test(
     "a position between two readings is that of the cubic through them, within 5 mm; over a gap there is none"
@@ -107,9 +109,10 @@ class TrackSuite extends munit.FunSuite:
         Quaternion.Identity,
         Vector3.Zero
       )
-    val track = Seq(300.0, 400.0, 1000.0).foldLeft(Track(obedient, reading(0, circling(0))))((track, ms) =>
-      track.seen(reading(ms, circling(ms)), delays)
-    )
+    val track =
+      Seq(300.0, 400.0, 1000.0).foldLeft(VehicleForecast(obedient, reading(0, circling(0))))((track, ms) =>
+        track.seen(reading(ms, circling(ms)), delays)
+      )
     for ms <- 0 to 400 by 10 do
       val position = track.positionNedAt(simulator(ms)).get
       assert((position - circling(ms).positionNed).norm < 5e-3, s"$ms ms: $position")
@@ -117,7 +120,8 @@ class TrackSuite extends munit.FunSuite:
     assertEquals(track.positionNedAt(simulator(1100)), None)
 
   test(
-    "a quadrotor is estimated within 5 mm when its command acts, from readings 50 ms old and commands in flight"
+    "a quadrotor is estimated within 5 mm when its command acts, " +
+      "from readings 50 ms old and commands in flight"
   ):
     val quadrotor = Quadrotor.AirSim
     val model     = QuadrotorModel.AirSim
@@ -131,8 +135,8 @@ class TrackSuite extends munit.FunSuite:
       val before = real.kinematics
       quadrotor.step(real, if 3 * n < 50 then Setpoint.hold(start) else setpoint(3 * n - 50))
       before
-    var track: Track[?] = Track(model, reading(0, truth(0)))
-    var worst           = 0.0
+    var track: VehicleForecast[?] = VehicleForecast(model, reading(0, truth(0)))
+    var worst                     = 0.0
     for n <- 33 until 1900 by 33 do
       val sampledMs = 3 * n
       for sentMs <- 0 to sampledMs + 49 by 100 if sentMs > sampledMs - 50 do

@@ -13,7 +13,7 @@ import skein.units.*
   * @param mostBytes
   *   of a datagram
   */
-final class Channel(
+final class MavlinkChannel(
     val systems: Vector[Int],
     from: Span,
     isDatagrams: Boolean = false,

@@ -19,7 +19,7 @@ import skein.vehicle.{Guidance, Setpoint, VehicleModel}
   * @param commands
   *   in the order of their sending: the one in effect at the newest reading, and all later ones
   */
-final case class Track[S] private (
+final case class VehicleForecast[S] private (
     model: VehicleModel[S],
     state: S,
     readings: Vector[Stamped[Kinematics]],
@@ -32,14 +32,14 @@ final case class Track[S] private (
   /** Takes a reading: the model flies to it under the commands in effect, and is corrected by it. A reading that is not
     * newer than the newest changes nothing.
     */
-  def seen(reading: Stamped[Kinematics], delays: OneWayDelays): Track[S] =
+  def seen(reading: Stamped[Kinematics], delays: OneWayDelays): VehicleForecast[S] =
     if reading.validAt <= newest.validAt then this
     else
       val flown          = advancedTo(reading.validAt, delays, reading.receivedAt)
       val (past, needed) = commands.splitAt(inEffect(reading.validAt, delays, reading.receivedAt))
       copy(
         state = model.corrected(flown, reading.value, reading.validAt.since(newest.validAt)),
-        readings = (readings :+ reading).takeRight(Track.ReadingLimit),
+        readings = (readings :+ reading).takeRight(VehicleForecast.ReadingLimit),
         before = past.lastOption.orElse(before),
         commands = needed
       )
@@ -47,14 +47,14 @@ final case class Track[S] private (
   /** Takes the first reading by a simulator that has started again with an earlier clock: where the vehicle is does not
     * follow from where it was, and what was predicted before is never read.
     */
-  def startedAgain(reading: Stamped[Kinematics]): Track[S] =
+  def startedAgain(reading: Stamped[Kinematics]): VehicleForecast[S] =
     copy(state = model.start(reading.value), readings = Vector(reading))
 
-  def sent(command: Commanded): Track[S] =
-    copy(commands = (commands :+ command).takeRight(Track.CommandLimit))
+  def sent(command: Commanded): VehicleForecast[S] =
+    copy(commands = (commands :+ command).takeRight(VehicleForecast.CommandLimit))
 
   /** The vehicle answered that a command was replaced: so the one after it has arrived. */
-  def replaced(sequence: Long, answeredAt: Instant): Track[S] =
+  def replaced(sequence: Long, answeredAt: Instant): VehicleForecast[S] =
     commands.indexWhere(_.sequence > sequence) match
       case -1        => this
       case successor => copy(commands =
@@ -64,7 +64,7 @@ final case class Track[S] private (
   /** A call failed: unless its command is known to have arrived, or the vehicle already flies under it, it is taken for
     * lost.
     */
-  def failed(sequence: Long): Track[S] =
+  def failed(sequence: Long): VehicleForecast[S] =
     copy(commands =
       commands.take(1) ++ commands.drop(1).filterNot(command =>
         command.sequence == sequence && command.answeredAt.isEmpty
@@ -84,9 +84,9 @@ final case class Track[S] private (
       .zip(readings.drop(1))
       .find((before, after) =>
         before.validAt <= validAt && validAt <= after.validAt &&
-          after.validAt.since(before.validAt) <= Track.MaxGap
+          after.validAt.since(before.validAt) <= VehicleForecast.MaxGap
       )
-      .map(Track.between(_, _, validAt))
+      .map(VehicleForecast.between(_, _, validAt))
 
   /** What the vehicle flies through from the newest reading until an instant on the simulator's clock, by what is known
     * now; up to the reading itself where that is not before it.
@@ -135,7 +135,7 @@ final case class Track[S] private (
     */
   private def isPresumedLost(command: Commanded, delays: OneWayDelays, now: Instant): Boolean =
     command.answeredAt.isEmpty && command != commands.head &&
-      now.since(command.sentAt) > delays.roundTrip * 2 + Track.Grace
+      now.since(command.sentAt) > delays.roundTrip * 2 + VehicleForecast.Grace
 
   /** Index of the command in effect; 0 if there is none. */
   private def inEffect(validAt: Instant, delays: OneWayDelays, now: Instant): Int =
@@ -143,7 +143,7 @@ final case class Track[S] private (
       commands.indexOf(command)
     )
 
-object Track:
+object VehicleForecast:
   /** Readings remembered, to hold predictions against. */
   val ReadingLimit = 8
 
@@ -159,8 +159,8 @@ object Track:
   val MaxGap: Span = Span.ofMillis(300)
 
   /** The track of a vehicle seen for the first time; until it is commanded it holds its place. */
-  def apply[S](model: VehicleModel[S], first: Stamped[Kinematics]): Track[S] =
-    new Track(
+  def apply[S](model: VehicleModel[S], first: Stamped[Kinematics]): VehicleForecast[S] =
+    new VehicleForecast(
       model,
       model.start(first.value),
       Vector(first),
