@@ -2,13 +2,16 @@ package rovers
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
+import skein.cli.SkeinApp
 import skein.flight.PortFlight
+import skein.forecast.Structure
 import skein.link.{MemoryNetwork, NetworkPlan, TcpTransport, Transport}
 import skein.loop.{LoopKind, LoopSettings, OwnLoop}
 import skein.policy.*
 import skein.record.{ClockKind, MemoryRecorder, Recorder}
 import skein.scenario.*
 import skein.units.*
+import skein.vehicle.PlantModel
 import skein.vtime.VirtualTime
 
 /** Drives from corner to corner; remembers which is the next. */
@@ -48,11 +51,11 @@ final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Sce
   override def measures: Vector[Measure] =
     Vector(distance.mean("last 10 s", Window.Last(10)), distance.least("closest"))
 
-/** What reading a recording of the rovers needs. */
-object Chase:
-  /** What a report of their recordings is told. */
-  given scenarios: Scenarios = Scenarios(ScenarioKind(Rovers()))
+/** All of Skein's commands, with what reading a recording of the rovers and fitting their plant needs. */
+object Program extends SkeinApp(ScenarioKind(Rovers())):
+  override def structures: Seq[Structure] = Seq(RoverPlant.structure)
 
+object Chase:
   def flight(loop: LoopKind | OwnLoop, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
     PortFlight(
       s"${loop.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
@@ -61,7 +64,7 @@ object Chase:
       duration,
       clockKind,
       clock,
-      LoopSettings.every(Span.ofMillis(100)),
+      LoopSettings.every(Span.ofMillis(100)).copy(model = _ => PlantModel(RoverPlant())),
       simulator = "rovers"
     )
 

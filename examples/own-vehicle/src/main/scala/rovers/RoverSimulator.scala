@@ -24,10 +24,11 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
 ):
   import RoverSimulator.*
   import system.dispatcher
-  private var steps                         = 0L
-  private var (north, east, heading, speed) = (northM, eastM, 0.0, 0.0)
-  private var (goalNorth, goalEast)         = (0.0, 0.0)
-  private var driving                       = Promise[Boolean]()
+  private val plant                 = RoverPlant()
+  private var steps                 = 0L
+  private var state                 = Driving(northM, eastM, 0, 0)
+  private var (goalNorth, goalEast) = (0.0, 0.0)
+  private var driving               = Promise[Boolean]()
 
   /** @return where it listens */
   def listen(transport: Transport): Future[Address] =
@@ -44,6 +45,7 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
     catchUp()
     words match
       case List(number, "read") =>
+        val Driving(north, east, heading, speed) = state
         Future.successful(s"$number at ${(Step * steps).toNanos} $north $east $heading $speed")
       case List(number, "stop") =>
         replace(0, 0)
@@ -66,26 +68,15 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
     driving = Promise()
     driving
 
-  /** Turns towards where it shall go, and drives the slower the more it has to turn. */
   private def catchUp(): Unit =
     while Step * (steps + 1) <= clock.now().since(start) do
-      val goal  = StrictMath.hypot(goalNorth, goalEast)
-      val error = if goal < 0.01 then 0.0
-      else Math.IEEEremainder(StrictMath.atan2(goalEast, goalNorth) - heading, 2 * Math.PI)
-      val dt = Step.toSeconds
-      heading += (3 * error).max(-MostRadPerS).min(MostRadPerS) * dt
-      speed += (goal.min(MostMps) * StrictMath.cos(error).max(0) - speed) * dt / LagS
-      north += speed * StrictMath.cos(heading) * dt
-      east += speed * StrictMath.sin(heading) * dt
+      state = plant.step(state, goalNorth, goalEast, plant.stepS)
       steps += 1
 
 object RoverSimulator:
-  val LongestLine         = 128
-  val MostAtOnce          = 8
-  val MostMps             = 3.0
-  private val MostRadPerS = 1.5
-  private val LagS        = 0.4
-  private val Step        = Span.ofMillis(10)
+  val LongestLine  = 128
+  val MostAtOnce   = 8
+  private val Step = Span.ofSeconds(RoverPlant().stepS)
 
   private object Number:
     def unapply(text: String): Option[Double] = text.toDoubleOption.filter(_.isFinite)

@@ -1,8 +1,10 @@
 package rovers
 
+import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
+import skein.forward.PlantResponse
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
 import skein.loop.{LoopKind, OwnLoop, Replay}
 import skein.measure.FlightSummary
@@ -10,12 +12,22 @@ import skein.policy.Action
 import skein.port.VehicleError
 import skein.record.Recording
 import skein.report.Report
+import skein.scenario.Scenarios
+import skein.settings.{ModelFile, PredictionModel, VehicleChoice}
 import skein.units.*
+import skein.vehicle.PlantModel
 import skein.vtime.VirtualTime
 
 class RoverSimulation extends munit.FunSuite:
-  import Chase.scenarios
-  private val loops = Seq[LoopKind | OwnLoop](LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, turns)
+  import Program.scenarios
+  private val loops =
+    Seq[LoopKind | OwnLoop](
+      LoopKind.Sequential,
+      LoopKind.Futures,
+      LoopKind.Stream,
+      LoopKind.Predictive,
+      turns
+    )
 
   private def distances(recording: Recording): Seq[(Double, Double)] =
     FlightSummary.of(recording).result.get.curves.head._2.points
@@ -45,6 +57,23 @@ class RoverSimulation extends munit.FunSuite:
     val report = Report.write(set, folder).fold(fail(_), identity)
     val page   = Files.readString(report.page)
     for id <- Seq("stream-rovers-virtual", "turns-rovers-virtual") do assert(page.contains(id), id)
+
+  test("identify finds the robots' plant from their drives, and writes a file that this program reads back"):
+    val folder = Files.createTempDirectory("rovers")
+    val file   = folder.resolve("drive.duckdb")
+    assert(Chase.virtual(LoopKind.Stream, Span.ofSeconds(60), seed = 1).writeTo(file).isRight)
+    assertEquals(Program.run(Seq("identify", file.toString, "--structure", "rover")), 0)
+    val path  = folder.resolve("model.conf").toString
+    val model = ConfigFactory.parseFile(java.io.File(path)).getConfig("skein.model.rover")
+    for (name, value) <- Seq("turn-per-s" -> 3.0, "most-rad-per-s" -> 1.5, "lag-s" -> 0.4) do
+      val (least, most) = (model.getDouble(s"$name.least"), model.getDouble(s"$name.most"))
+      assert(least <= value && value <= most && most - least < 0.2 * value, s"$name: $least to $most")
+    val read = ModelFile.read(path).map(_.plant).fold(fail(_), identity)
+    assertEquals(PredictionModel.parse(path).map(_.at(0)), Right(PlantModel(read)))
+    assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(read)))
+    // Skein's own program does not know the structure, and says which it knows.
+    val said = ModelFile.read(path)(using Scenarios.ours).left.getOrElse("")
+    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), came 'rover'"), said)
 
   private def inVirtualTime[A](body: ActorSystem ?=> (MemoryNetwork, Clock) => Future[A]): A =
     VirtualTime
