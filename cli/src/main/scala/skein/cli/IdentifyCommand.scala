@@ -59,7 +59,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
         s"--horizon: expected 200ms or more, came ${options.horizon}"
       recordings <- read(files)
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
-      fits       <- fit(flights, (Structure.ours :+ use).distinct, horizon.toSeconds)
+      fits       <- fit(flights, use, horizon.toSeconds)
       shown    = Shown(options.json.value)
       sensor   = sensorOf(recordings)
       sections = tables(fits, flights, use) ++ sensor.map(sensorTable)
@@ -103,16 +103,17 @@ final class IdentifyCommand(using scenarios: Scenarios)
 
   private def fit(
       flights: Vector[TimeHistory],
-      structures: Vector[Structure],
+      use: Structure,
       horizonS: Double
   ): Either[String, Vector[Fit]] =
-    val reflown = flights.map(HorizonErrors.reflown(_))
+    val structures = (Structure.ours :+ use).distinct
+    val reflown    =
+      if Structure.ours.contains(use) then flights.map(HorizonErrors.reflown(_)) else Vector.empty
     Expect.each(structures.zipWithIndex): (structure, index) =>
       for found <- Identification.of(flights, structure, horizonS)
       yield
         Console.err.println(s"fitted ${structure.label}: ${index + 1} of ${structures.size}")
-        val asQuadrotor = if Structure.ours.contains(structure) then reflown else Vector.empty
-        Fit(found, HorizonErrors.of(found.plant, asQuadrotor), HorizonErrors.of(found.plant, flights))
+        Fit(found, HorizonErrors.of(found.plant, reflown), HorizonErrors.of(found.plant, flights))
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =
@@ -168,13 +169,13 @@ final class IdentifyCommand(using scenarios: Scenarios)
       Section(
         f"${flights.size} flights of one vehicle, $seconds%.0f s, ${first.predictions} predicted readings; ± is the 95 %% interval over ${first.blocks} blocks",
         table = Some(TextTable(("<structure" +: names) ++ Vector("rms m/s", "rms m"), parameters))
-      ),
+      )
+    ) ++ Option.when(fits.exists(_.againstQuadrotor.nonEmpty))(
       Section(
         "Off the full quadrotor under the same commands, half and 95 % of the predictions at most",
         table = Some(horizons(fits, _.againstQuadrotor))
-      ),
-      Section("Off the readings", table = Some(horizons(fits, _.againstReadings)))
-    )
+      )
+    ) :+ Section("Off the readings", table = Some(horizons(fits, _.againstReadings)))
 
   private def interval(fitted: Fitted): String =
     val half = f"${fitted.value}%.4f ± ${(fitted.most - fitted.least) / 2}%.4f"

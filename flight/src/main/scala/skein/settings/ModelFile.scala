@@ -152,7 +152,7 @@ object ModelFile:
 /** A fitted structure and how far it is off over the horizons.
   *
   * @param againstQuadrotor
-  *   against the built-in quadrotor under the same commands; only Skein's structures are
+  *   against the built-in quadrotor under the same commands, where a structure of Skein's is to be flown by
   * @param againstReadings
   *   against the recordings themselves
   */
