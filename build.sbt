@@ -371,3 +371,4 @@ lazy val ownVehicle = project
   .in(file("examples/own-vehicle"))
   .dependsOn(cli)
   .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+  .settings(Compile / run / mainClass := Some("rovers.driveRovers"))

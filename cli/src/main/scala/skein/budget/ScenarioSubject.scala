@@ -6,7 +6,7 @@ import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective, WeightedSum}
-import skein.scenario.{Measure, Scenario, Tracks}
+import skein.scenario.{Measure, Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
@@ -32,7 +32,7 @@ final case class ScenarioQuestion(
     * @return
     *   or what was expected, what came, and in which option
     */
-  def subject(plantIsTold: Boolean): Either[String, BudgetSubject] =
+  def subject(plantIsTold: Boolean)(using Scenarios): Either[String, BudgetSubject] =
     WholeFlights.plane(scenario, conditions.durationS) match
       case Left(reason) if plantIsTold =>
         Left(

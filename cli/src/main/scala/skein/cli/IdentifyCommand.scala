@@ -2,6 +2,7 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{Flag, Leftover, ParserForClass, arg}
+import skein.forecast.Structure
 import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.{FlownVehicles, RecordedSeeing}
@@ -18,7 +19,8 @@ final case class IdentifyOptions(
     @arg(doc = "a vehicle to fit to; can be repeated; without it, all")
     vehicle: Seq[String],
     @arg(doc =
-      "structure of the model that the file selects: lag, turn, drag or drag-and-turn; all are fitted"
+      "structure of the model that the file selects: lag, turn, drag, drag-and-turn, or one of your program's own; " +
+        "Skein's are fitted beside it"
     )
     structure: String = Structure.Drag.label,
     @arg(doc = "how far each reading is predicted for the fit")
@@ -32,10 +34,10 @@ final case class IdentifyOptions(
 )
 
 /** `./skein identify`: fits models of vehicles and of a sensor to recordings. */
-final class IdentifyCommand(using Scenarios)
+final class IdentifyCommand(using scenarios: Scenarios)
     extends OptionsCommand[IdentifyOptions](
       "identify",
-      "fits a reduced model of the vehicles to recordings, and one of their recognition, for forward simulation and prediction",
+      "fits models of the vehicles to recordings, and one of their recognition, for forward simulation and prediction",
       ParserForClass[IdentifyOptions]
     ):
 
@@ -51,16 +53,16 @@ final class IdentifyCommand(using Scenarios)
       )
       out <-
         OutFolder.made("--out", options.out.getOrElse(OutFolder.of(Path.of(files.head))))
-      use     <- Structure.parse(options.structure).left.map("--structure: " + _)
+      use     <- scenarios.structure(options.structure).left.map("--structure: " + _)
       horizon <- Span.parse(options.horizon).left.map("--horizon: " + _)
       _       <- Expect.that(horizon.toSeconds >= 0.2):
         s"--horizon: expected 200ms or more, came ${options.horizon}"
       recordings <- read(files)
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
-      fits       <- fit(flights, horizon.toSeconds)
+      fits       <- fit(flights, use, horizon.toSeconds)
       shown    = Shown(options.json.value)
       sensor   = sensorOf(recordings)
-      sections = tables(fits, flights) ++ sensor.map(sensorTable)
+      sections = tables(fits, flights, use) ++ sensor.map(sensorTable)
       _        = shown.say(clocks(recordings))
       _        = shown.tables(sections, Section.text(sections))
       from     = ModelFile.Provenance(
@@ -78,14 +80,17 @@ final class IdentifyCommand(using Scenarios)
         sensor.map(SensorFile.render(_, files.zip(recordings).map(described)))
       )
     yield shown.say(
-      s"\nwritten: ${paths.mkString(", ")}\nfly by it: ./skein fly --loop predictive --predictor ${out.resolve("model.conf")}${elsewhere(flights)}" +
+      s"\nwritten: ${paths.mkString(", ")}\n${flyBy(use, out.resolve("model.conf"), flights)}" +
         sensor.fold("")(_ => s"\nsee by it: ./skein budget --eye ${out.resolve("sensor.conf")}")
     )
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
     Expect.each(files)(file => RecordingReader.read(Path.of(file)).left.map(_.message))
 
-  private def chosen(flights: Vector[Flown], vehicles: Seq[String]): Either[String, Vector[Flown]] =
+  private def chosen(
+      flights: Vector[TimeHistory],
+      vehicles: Seq[String]
+  ): Either[String, Vector[TimeHistory]] =
     val wanted = if vehicles.isEmpty then flights
     else flights.filter(flown => vehicles.exists(name => flown.name.endsWith(s", $name")))
     Either.cond(
@@ -96,15 +101,19 @@ final class IdentifyCommand(using Scenarios)
         s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, came ${vehicles.mkString(", ")}"
     )
 
-  private def fit(flights: Vector[Flown], horizonS: Double): Either[String, Vector[Fit]] =
-    val reflown = flights.map(HorizonErrors.reflown(_))
-    Expect.each(Structure.values): structure =>
+  private def fit(
+      flights: Vector[TimeHistory],
+      use: Structure,
+      horizonS: Double
+  ): Either[String, Vector[Fit]] =
+    val structures = (Structure.ours :+ use).distinct
+    val reflown    =
+      if Structure.ours.contains(use) then flights.map(HorizonErrors.reflown(_)) else Vector.empty
+    Expect.each(structures.zipWithIndex): (structure, index) =>
       for found <- Identification.of(flights, structure, horizonS)
       yield
-        Console.err.println(
-          s"fitted ${structure.label}: ${structure.ordinal + 1} of ${Structure.values.length}"
-        )
-        Fit(found, HorizonErrors.of(found.model, reflown), HorizonErrors.of(found.model, flights))
+        Console.err.println(s"fitted ${structure.label}: ${index + 1} of ${structures.size}")
+        Fit(found, HorizonErrors.of(found.plant, reflown), HorizonErrors.of(found.plant, flights))
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =
@@ -129,12 +138,18 @@ final class IdentifyCommand(using Scenarios)
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
     byClock.map((clock, flown) => s"${flown.size} on the $clock clock").mkString("recordings: ", ", ", "")
 
-  private def altitude(flights: Vector[Flown]): Option[Double] =
+  private def altitude(flights: Vector[TimeHistory]): Option[Double] =
     val all = flights.map(-_.downM)
     Option.when(all.max - all.min < 0.5)(all.sum / all.size)
 
+  /** How to use the file, by this program where it alone knows the structure. */
+  private def flyBy(use: Structure, file: Path, flights: Vector[TimeHistory]): String =
+    if Structure.ours.contains(use) then
+      s"fly by it: ./skein fly --loop predictive --predictor $file${elsewhere(flights)}"
+    else s"fly by it, with this program: fly --loop predictive --predictor $file, search --plant $file"
+
   /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
-  private def elsewhere(flights: Vector[Flown]): String =
+  private def elsewhere(flights: Vector[TimeHistory]): String =
     altitude(flights).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
       s" --altitude ${(metres * 10).round / 10.0}"
     )
@@ -142,8 +157,8 @@ final class IdentifyCommand(using Scenarios)
   private def version(recordings: Vector[Recording]): String =
     recordings.map(_.flight.version).distinct.mkString(", ")
 
-  private def tables(fits: Vector[Fit], flights: Vector[Flown]): Vector[Section] =
-    val names      = Structure.DragAndTurn.parameters
+  private def tables(fits: Vector[Fit], flights: Vector[TimeHistory], use: Structure): Vector[Section] =
+    val names      = (Structure.DragAndTurn.names ++ use.names).distinct
     val parameters = fits.map: fit =>
       val found = fit.identification
       found.structure.label +: names.map(name => found.parameters.find(_.name == name).fold("")(interval)) ++:
@@ -154,13 +169,13 @@ final class IdentifyCommand(using Scenarios)
       Section(
         f"${flights.size} flights of one vehicle, $seconds%.0f s, ${first.predictions} predicted readings; ± is the 95 %% interval over ${first.blocks} blocks",
         table = Some(TextTable(("<structure" +: names) ++ Vector("rms m/s", "rms m"), parameters))
-      ),
+      )
+    ) ++ Option.when(fits.exists(_.againstQuadrotor.nonEmpty))(
       Section(
         "Off the full quadrotor under the same commands, half and 95 % of the predictions at most",
         table = Some(horizons(fits, _.againstQuadrotor))
-      ),
-      Section("Off the readings", table = Some(horizons(fits, _.againstReadings)))
-    )
+      )
+    ) :+ Section("Off the readings", table = Some(horizons(fits, _.againstReadings)))
 
   private def interval(fitted: Fitted): String =
     val half = f"${fitted.value}%.4f ± ${(fitted.most - fitted.least) / 2}%.4f"
@@ -196,10 +211,10 @@ final class IdentifyCommand(using Scenarios)
       out: Path,
       model: String,
       fit: Fit,
-      flights: Vector[Flown],
+      flights: Vector[TimeHistory],
       sensor: Option[String]
   ): Either[String, Vector[Path]] =
-    val drawing     = ResponseFigure(fit.identification.model, flights.take(MostPanels))
+    val drawing     = ResponseFigure(fit.identification.plant, flights.take(MostPanels))
     val description = "Measured and modelled velocity over time, and residuals"
     OutFolder.write(
       out,

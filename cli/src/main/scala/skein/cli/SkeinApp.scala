@@ -4,6 +4,7 @@ import java.io.{FileDescriptor, FileOutputStream, IOException, OutputStream, Pri
 import java.nio.file.InvalidPathException
 import java.util.Locale
 import org.slf4j.LoggerFactory
+import skein.forecast.Structure
 import skein.policy.PolicyFamily
 import skein.scenario.{ScenarioKind, Scenarios}
 
@@ -26,7 +27,13 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     */
   def policyFamilies: Seq[PolicyFamily] = Nil
 
-  final given scenarios: Scenarios = Scenarios(kinds.toVector, policyFamilies.toVector)
+  /** Structures of plants of your own: `identify` fits them, and `--plant FILE` and `--predictor FILE` know them. It is
+    * asked for as [[policyFamilies]] is.
+    */
+  def structures: Seq[Structure] = Nil
+
+  final given scenarios: Scenarios =
+    Scenarios(kinds.toVector, policyFamilies.toVector, structures.toVector)
 
   private def program = getClass.getName.stripSuffix("$")
 

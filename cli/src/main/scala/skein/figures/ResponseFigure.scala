@@ -1,8 +1,8 @@
 package skein.figures
 
-import skein.identify.Flown
+import skein.identify.TimeHistory
 import skein.plot.*
-import skein.vehicle.{ReducedFlight, ReducedModel}
+import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** How a fitted model follows what was measured: per vehicle the velocity north and east, measured as dots and modelled as
   * a line, and below what remains. The model flies from the first reading to the last, told nothing but the commands.
@@ -15,11 +15,11 @@ object ResponseFigure:
   private val north = Colour(0x0072b2)
   private val east  = Colour(0xd55e00)
 
-  def apply(model: ReducedModel, flights: Vector[Flown]): Drawing =
+  def apply(model: ObservedPlant[?], flights: Vector[TimeHistory]): Drawing =
     val panels = flights.filter(_.samples.sizeIs > 1).map(panel(model, _))
     Drawing.stacked(Drawing.grid(panels, columns = 2), legend)
 
-  private def panel(model: ReducedModel, flown: Flown): Drawing =
+  private def panel(model: ObservedPlant[?], flown: TimeHistory): Drawing =
     val modelled = flight(model, flown)
     val samples  = flown.samples
     val time   = PlotAxis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
@@ -63,14 +63,14 @@ object ResponseFigure:
     values.map((at, value) => Mark.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
 
   /** The modelled velocity at every sample. */
-  private def flight(model: ReducedModel, flown: Flown): Vector[(Double, Double)] =
+  private def flight[S](model: ObservedPlant[S], flown: TimeHistory): Vector[(Double, Double)] =
     val start    = flown.samples.head
     val modelled = Vector.newBuilder[(Double, Double)]
     modelled += ((start.vx, start.vy))
-    val flight = ReducedFlight(model)
-    flown.predict(flight, model.deadTimeS, 0, Double.PositiveInfinity)(_ =>
-      modelled += ((flight.vx, flight.vy))
-    )
+    val flight = PlantFlight(model)
+    flown.predict(flight, model.corrected(model.initial, start.reading), 0, Double.PositiveInfinity): _ =>
+      val predicted = flight.reading
+      modelled += ((predicted.northMps, predicted.eastMps))
     modelled.result()
 
   private def legend: Drawing =

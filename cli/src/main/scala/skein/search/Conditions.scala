@@ -4,7 +4,7 @@ import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.scenario.PaperDuel
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.{Expect, Span}
@@ -40,7 +40,7 @@ final case class Conditions(
     yield kind
 
   /** @return or what was expected and came */
-  def resolved: Either[String, Conditions.Resolved] =
+  def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
       kind    <- checked
       vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)

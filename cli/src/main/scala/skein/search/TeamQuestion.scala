@@ -107,7 +107,9 @@ final case class TeamQuestion(
     * @param all
     *   the scenario as it is, first, and with the bounds of what is searched
     */
-  private def engine(by: TeamObjective, all: Vector[Scenario]): Either[String, TeamEngine] =
+  private def engine(by: TeamObjective, all: Vector[Scenario])(using
+      Scenarios
+  ): Either[String, TeamEngine] =
     val refused = all.map(WholeFlights.plane(_, conditions.durationS)).collectFirst { case Left(why) => why }
     val moved   = Option.when(all.exists(altitudesM(_) != altitudesM(all.head))):
       "what is searched changes how high they fly, and a model of a vehicle holds at its altitude"

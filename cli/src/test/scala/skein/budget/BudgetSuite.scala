@@ -1,5 +1,6 @@
 package skein.budget
 
+import skein.scenario.Scenarios
 import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
 import skein.plot.Mark
 import skein.policy.{PolicyFamily, Role}
@@ -9,7 +10,8 @@ import skein.settings.PolicyFile
 import skein.testing.Optimised
 
 class BudgetSuite extends munit.FunSuite, Optimised:
-  private val paper = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
+  private given Scenarios = Scenarios.ours
+  private val paper       = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
 
   private val axes = BudgetAxes.of(200, 5, 60, 3)
 

@@ -7,7 +7,8 @@ import skein.testing.Optimised
 import skein.units.*
 
 class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
-  private val surround = Surround(vehicles = 4)
+  private given Scenarios = Scenarios.ours
+  private val surround    = Surround(vehicles = 4)
 
   private def question(scenario: Scenario, objective: Option[String], conditions: Conditions, threads: Int) =
     ScenarioQuestion.of(scenario, objective, conditions, seed = 1, threads)

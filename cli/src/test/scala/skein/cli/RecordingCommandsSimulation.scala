@@ -6,7 +6,7 @@ import scala.util.Using
 import skein.docs.Documentation
 import skein.flight.VirtualFlights
 import skein.forward.Reduced
-import skein.identify.Structure
+import skein.forecast.Structure
 import skein.loop.LoopKind
 import skein.mcap.file.McapFile
 import skein.record.{FlightTopics, MemoryRecorder, Recording, ImagingSensor}
@@ -103,13 +103,16 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       val file  = ModelFile.read(folder.resolve("model.conf").toString).fold(fail(_), identity)
       val named = ReducedModel.AirSim
       assertEquals(file.use, Structure.Drag)
-      assertEqualsDouble(file.model.gain, named.gain, 0.1, file.toString)
-      assertEqualsDouble(file.model.lagS, named.lagS, 0.1 * named.lagS, file.toString)
-      assertEqualsDouble(file.model.deadTimeS, named.deadTimeS, 0.04, file.toString)
+      val model = file.plant match
+        case model: ReducedModel => model
+        case other               => fail(s"expected a reduced model, came $other")
+      assertEqualsDouble(model.gain, named.gain, 0.1, file.toString)
+      assertEqualsDouble(model.lagS, named.lagS, 0.1 * named.lagS, file.toString)
+      assertEqualsDouble(model.deadTimeS, named.deadTimeS, 0.04, file.toString)
       assertEqualsDouble(file.reduced.get.lagS, Reduced.AirSim.lagS, 0.1 * Reduced.AirSim.lagS, file.toString)
       val flags = ConfigFactory.parseString(s"skein.fly.predictor = \"${folder.resolve("model.conf")}\"")
       val read  = FlySettings.read(flags.withFallback(ConfigFactory.load()).resolve())
-      assertEquals(read.map(_.predictor), Right(PredictionModel.Fitted(file.model, file.altitudeM)))
+      assertEquals(read.map(_.predictor), Right(PredictionModel.Fitted(model, file.altitudeM)))
       assertEquals(file.altitudeM, Some(20.0))
 
   recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>

@@ -10,7 +10,7 @@ import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
 import skein.testing.TemporaryFolders
 import skein.units.Span
-import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{ReducedModel, PlantModel, VehicleModel}
 
 /** AirSim's vehicles lag the more the higher they fly: models hold at one altitude. */
 class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
@@ -45,7 +45,7 @@ class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
 
   test("vehicles are carried forward by the reduced model of the altitude at which they fly"):
     def reduced(altitudeM: Double): Set[VehicleModel[?]] =
-      Set(ReducedVehicleModel(ReducedModel.airSimAt(altitudeM)))
+      Set(PlantModel(ReducedModel.airSimAt(altitudeM)))
     assertEquals(models("skein.fly.predictor = drag"), reduced(20))
     assertEquals(ReducedModel.airSimAt(20), ReducedModel.AirSim)
     assertEquals(models("skein.fly { predictor = drag, duel.altitude-m = 7 }"), reduced(7))

@@ -1,25 +1,46 @@
 package skein.scenario
 
+import skein.forecast.Structure
 import skein.policy.PolicyFamily
 
-/** The kinds of scenarios, and the families of policies, that a program knows by name; needed wherever settings or
+/** The kinds of scenarios, the families of policies, and the structures of plants, that a program knows by name; needed wherever settings or
   * recordings are read.
   *
   * @param kinds
   *   the first is flown where none is named
   * @param families
   *   of policies, besides Skein's
+  * @param ownStructures
+  *   of plants, besides Skein's
   */
-final case class Scenarios(kinds: Vector[ScenarioKind[?]], families: Vector[PolicyFamily] = Vector.empty):
+final case class Scenarios(
+    kinds: Vector[ScenarioKind[?]],
+    families: Vector[PolicyFamily] = Vector.empty,
+    ownStructures: Vector[Structure] = Vector.empty
+):
   require(kinds.nonEmpty, "at least one kind of scenario is needed")
   require(names.distinct.size == names.size, s"every kind needs a name of its own: ${names.mkString(", ")}")
 
   PolicyFamily.mistake(families).foreach(why => throw IllegalArgumentException(why))
 
+  /** Skein's first. */
+  val structures: Vector[Structure] = Structure.ours ++ ownStructures
+  private val labels                = structures.map(_.label)
+  require(
+    labels.distinct.size == labels.size,
+    s"every structure needs a label of its own: ${labels.mkString(", ")}"
+  )
+
   def names: Vector[String] = kinds.map(_.name)
 
   /** @return or what was expected and came */
   def family(name: String): Either[String, PolicyFamily] = PolicyFamily.parse(name, families)
+
+  /** @return or what was expected and came */
+  def structure(label: String): Either[String, Structure] =
+    structures
+      .find(_.label == label)
+      .toRight(s"expected a structure (${labels.mkString(", ")}), came '$label'")
 
   /** The default scenario of a program without the paper's game, of whose two sides commands ask otherwise. */
   def firstWithoutGame: Option[String] = Option.when(!kinds.exists(_.standard.isPapersGame))(names.head)

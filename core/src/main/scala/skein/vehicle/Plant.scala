@@ -31,5 +31,17 @@ trait Plant[S]:
   /** From a command's arrival until the vehicle follows it, s. */
   def deadTimeS: Double = 0
 
+/** A plant whose state can be set right by a reading, so that flights of it can be predicted from what was read: by
+  * `skein identify` and by the loop `predictive` ([[PlantModel]]). Its motion does not depend on where it is.
+  */
+trait ObservedPlant[S] extends Plant[S]:
+
+  /** The state with what is read of it replaced; what a reading does not tell (a steering angle, an integrator) stays.
+    *
+    * @param seen
+    *   north and east from any origin
+    */
+  def corrected(state: S, seen: PlaneReading): S
+
 /** Horizontal position, m, and velocity, m/s, as they are read of a vehicle. */
 final case class PlaneReading(northM: Double, eastM: Double, northMps: Double, eastMps: Double)

@@ -29,15 +29,16 @@ final case class ReducedModel(
     override val deadTimeS: Double,
     turnLagS: Double,
     dragPerM: Double
-) extends Plant[PlaneReading]:
+) extends ObservedPlant[PlaneReading]:
   require(lagS > 0 && turnLagS > 0, s"both lags must be positive, came $lagS s and $turnLagS s")
   require(deadTimeS >= 0 && dragPerM >= 0, s"negative: dead time $deadTimeS s or drag $dragPerM /m")
 
   private val turns = turnLagS != lagS
 
-  def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
-  def read(state: PlaneReading): PlaneReading = state
-  def stepS: Double                           = ReducedModel.PieceS
+  def initial: PlaneReading                                            = PlaneReading(0, 0, 0, 0)
+  def read(state: PlaneReading): PlaneReading                          = state
+  def corrected(state: PlaneReading, seen: PlaneReading): PlaneReading = seen
+  def stepS: Double                                                    = ReducedModel.PieceS
 
   /** Within a piece of the flight, from its begin. */
   def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
@@ -96,49 +97,3 @@ object ReducedModel:
 
   /** The altitude of the flights that [[AirSim]] was identified from, m. */
   val IdentifiedAtM = 20.0
-
-/** One vehicle that flies by a [[ReducedModel]], from one event to the next. Mutable. How its time is cut into calls of
-  * [[advance]] does not change the flight, but for rounding.
-  */
-final class ReducedFlight(model: ReducedModel):
-  private var wantedVx, wantedVy = 0.0
-  private var pieceAtS           = 0.0
-  private var piece, now         = model.initial
-
-  def x: Double  = now.northM
-  def y: Double  = now.eastM
-  def vx: Double = now.northMps
-  def vy: Double = now.eastMps
-
-  /** Places it; the command given here acts from the start. */
-  def start(
-      atS: Double,
-      x: Double,
-      y: Double,
-      vx: Double,
-      vy: Double,
-      wantedVx: Double = 0,
-      wantedVy: Double = 0
-  ): Unit =
-    now = PlaneReading(x, y, vx, vy)
-    this.wantedVx = wantedVx; this.wantedVy = wantedVy
-    beginPiece(atS)
-
-  /** A command, m/s, that acts from now on: dead time is the caller's. */
-  def act(atS: Double, vx: Double, vy: Double): Unit =
-    advance(atS)
-    wantedVx = vx; wantedVy = vy
-    beginPiece(atS)
-
-  /** Flies until this time, s; never earlier than the call before. */
-  def advance(untilS: Double): Unit =
-    while untilS > pieceAtS + ReducedModel.PieceS do
-      fly(ReducedModel.PieceS)
-      beginPiece(pieceAtS + ReducedModel.PieceS)
-    fly(untilS - pieceAtS)
-
-  private def beginPiece(atS: Double): Unit =
-    pieceAtS = atS
-    piece = now
-
-  private def fly(spanS: Double): Unit = now = model.step(piece, wantedVx, wantedVy, spanS)

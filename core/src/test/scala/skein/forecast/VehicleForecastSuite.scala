@@ -23,7 +23,7 @@ class VehicleForecastSuite extends munit.FunSuite:
   private val delays = OneWayDelays.of(reading(0, at(0)))
 
   /** A vehicle that obeys within a microsecond, so that what it flies under can be read off where it is. */
-  private val obedient = ReducedVehicleModel(ReducedModel.lag(gain = 1, lagS = 1e-6, deadTimeS = 0))
+  private val obedient = PlantModel(ReducedModel.lag(gain = 1, lagS = 1e-6, deadTimeS = 0))
 
   private def command(sequence: Long, north: Double, sentMs: Double) =
     Commanded(sequence, Setpoint.velocityZ(north, 0, -20), controller(sentMs))

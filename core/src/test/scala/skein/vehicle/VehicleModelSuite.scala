@@ -51,7 +51,7 @@ class VehicleModelSuite extends munit.FunSuite:
     assertEquals(model.kinematics(before), was)
 
   test("the reduced model has covered 1 − 1/e of the way to its final speed after its lag"):
-    val model = ReducedVehicleModel(ReducedModel.lag(gain = 0.9, lagS = 2, deadTimeS = 0))
+    val model = PlantModel(ReducedModel.lag(gain = 0.9, lagS = 2, deadTimeS = 0))
     val after = model.kinematics(
       model.advanced(
         model.start(seen(start, Vector3.Zero)),

@@ -66,12 +66,15 @@ final case class EnvironmentSettings(
     else (evaderRateRadPerS, if evaderRateRadPerS > 0 then 0 else math.Pi)
 
   /** @return or what was expected and came */
-  private[environment] def resolved: Either[String, Resolved] = resolvedAgainst(None)
+  private[environment] def resolved: Either[String, Resolved] =
+    resolvedAgainst(None)(using Scenarios.ours)
 
   /** @param told
     *   the opponent; without one, as it is named
     */
-  private[environment] def resolvedAgainst(told: Option[PolicyFile]): Either[String, Resolved] =
+  private[environment] def resolvedAgainst(told: Option[PolicyFile])(using
+      Scenarios
+  ): Either[String, Resolved] =
     for
       roles <- roles
       _     <- Expect.that(objective.isEmpty):
@@ -101,7 +104,7 @@ final case class EnvironmentSettings(
   private[environment] def flown(
       atM: Double,
       otherwise: String
-  ): Either[String, (LoopTiming, Delays, VehicleChoice)] =
+  )(using Scenarios): Either[String, (LoopTiming, Delays, VehicleChoice)] =
     for
       kind    <- LoopKind.parse(loop).left.map("loop: " + _)
       _       <- within("period_ms", periodMs, 1, 10_000)

@@ -2,13 +2,17 @@ package rovers
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
+import skein.cli.SkeinApp
 import skein.flight.PortFlight
-import skein.link.{MemoryNetwork, NetworkPlan, TcpTransport, Transport}
+import skein.forecast.Structure
+import skein.link.{LinkProfile, MemoryNetwork, NetworkPlan, TcpTransport, Transport}
 import skein.loop.{LoopKind, LoopSettings, OwnLoop}
 import skein.policy.*
 import skein.record.{ClockKind, MemoryRecorder, Recorder}
 import skein.scenario.*
+import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.PlantModel
 import skein.vtime.VirtualTime
 
 /** Drives from corner to corner; remembers which is the next. */
@@ -48,11 +52,12 @@ final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Sce
   override def measures: Vector[Measure] =
     Vector(distance.mean("last 10 s", Window.Last(10)), distance.least("closest"))
 
-/** What reading a recording of the rovers needs. */
-object Chase:
-  /** What a report of their recordings is told. */
-  given scenarios: Scenarios = Scenarios(ScenarioKind(Rovers()))
+/** All of Skein's commands, which know the scenario and the structure of the robots' plant. */
+object Program extends SkeinApp(ScenarioKind(Rovers())):
+  override def structures: Seq[Structure] = Seq(RoverPlant.structure)
 
+/** Drives, live and in virtual time. */
+object Chase:
   def flight(loop: LoopKind | OwnLoop, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
     PortFlight(
       s"${loop.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
@@ -61,19 +66,26 @@ object Chase:
       duration,
       clockKind,
       clock,
-      LoopSettings.every(Span.ofMillis(100)),
+      LoopSettings.every(Span.ofMillis(100)).copy(model = _ => PlantModel(RoverPlant())),
       simulator = "rovers"
     )
 
-  /** Over a transport: simulated robots listen, the loop connects. */
-  private def drive(flight: PortFlight, transport: Transport, recorder: Recorder)(using system: ActorSystem) =
+  /** Simulated robots listen at a host, the loop connects. */
+  private def drive(
+      flight: PortFlight,
+      robots: (Transport, String),
+      here: Transport,
+      recorder: Recorder
+  )(using
+      system: ActorSystem
+  ) =
     import system.dispatcher
     val start = flight.clock.now()
     for
       addresses <- Future.traverse(flight.scenario.agents): agent =>
         val at = agent.startPositionNed
-        RoverSimulator(at.x, at.y, flight.clock, start).listen(transport)
-      vehicles = addresses.map(Rover(transport, _, flight.clock))
+        RoverSimulator(at.x, at.y, flight.clock, start).listen(robots._1, robots._2)
+      vehicles = addresses.map(Rover(here, _, flight.clock))
       landed <- flight.start(vehicles, recorder).landed
     yield landed
 
@@ -83,15 +95,21 @@ object Chase:
   ) =
     import system.dispatcher
     val planned = flight(loop, duration, ClockKind.Real, Clock.system)
-    recorder(planned).flatMap(drive(planned, TcpTransport(), _))
+    recorder(planned).flatMap(drive(planned, (TcpTransport(), "127.0.0.1"), TcpTransport(), _))
 
-  /** The same in virtual time, in a moment. Equal seeds give equal recordings. */
-  def virtual(loop: LoopKind | OwnLoop, duration: Span, seed: Long): MemoryRecorder = VirtualTime
+  /** The same in virtual time, in a moment, over a link. Equal seeds give equal recordings. */
+  def virtual(
+      loop: LoopKind | OwnLoop,
+      duration: Span,
+      seed: Long,
+      link: LatencyProfile = LatencyProfile.none
+  ): MemoryRecorder = VirtualTime
     .run(seed): system =>
       given ActorSystem = system
       import system.dispatcher
       val clock    = Clock.ofNanos(VirtualTime.clock(system))
       val planned  = flight(loop, duration, ClockKind.Virtual, clock)
       val recorder = MemoryRecorder(planned.heading)
-      drive(planned, MemoryNetwork(NetworkPlan(), seed, clock).host("localhost"), recorder).map(_ => recorder)
+      val network  = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(link)), seed, clock)
+      drive(planned, (network.host("robots"), "robots"), network.host("control"), recorder).map(_ => recorder)
     .value

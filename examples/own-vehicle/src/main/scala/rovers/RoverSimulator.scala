@@ -7,6 +7,7 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.{Future, Promise}
 import skein.link.{Address, Transport}
 import skein.units.*
+import skein.vehicle.PlantFlight
 
 /** A simulated robot on wheels that listens on a port of its own. Lines of text, a number first that the answer repeats:
   *
@@ -24,32 +25,30 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
 ):
   import RoverSimulator.*
   import system.dispatcher
-  private var steps                         = 0L
-  private var (north, east, heading, speed) = (northM, eastM, 0.0, 0.0)
-  private var (goalNorth, goalEast)         = (0.0, 0.0)
-  private var driving                       = Promise[Boolean]()
+  private val flight  = PlantFlight(RoverPlant())
+  private var driving = Promise[Boolean]()
+  flight.start(0, Driving(northM, eastM, 0, 0))
 
-  /** @return where it listens */
-  def listen(transport: Transport): Future[Address] =
+  /** @return where it listens at this host */
+  def listen(transport: Transport, host: String = "127.0.0.1"): Future[Address] =
     val lines = Flow[ByteString]
       .via(Framing.delimiter(ByteString("\n"), LongestLine))
       .mapAsyncUnordered(MostAtOnce)(line => answer(line.utf8String.split(' ').toList))
       .map(line => ByteString(s"$line\n"))
-    transport.listen(Address(
-      "127.0.0.1",
-      0
-    )).to(Sink.foreach(_.flow.join(lines).run(): Unit)).run().map(_.address)
+    transport.listen(Address(host, 0)).to(Sink.foreach(_.flow.join(lines).run(): Unit)).run().map(_.address)
 
   private def answer(words: List[String]): Future[String] = synchronized:
-    catchUp()
+    val now = clock.now().since(start)
+    flight.advance(now.toSeconds)
     words match
       case List(number, "read") =>
-        Future.successful(s"$number at ${(Step * steps).toNanos} $north $east $heading $speed")
+        val Driving(north, east, heading, speed) = flight.state
+        Future.successful(s"$number at ${now.toNanos} $north $east $heading $speed")
       case List(number, "stop") =>
-        replace(0, 0)
+        replace(now, 0, 0)
         Future.successful(s"$number done true")
       case List(number, "drive", Number(north), Number(east), Number(seconds)) =>
-        val replaced = replace(north, east)
+        val replaced = replace(now, north, east)
         val over     =
           after(Span.ofSeconds(seconds).toDuration)(Future.successful(replaced.trySuccess(true): Unit))
         Future.firstCompletedOf(Seq(replaced.future, over.flatMap(_ => replaced.future))).map(done =>
@@ -59,33 +58,15 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
         Future.successful(s"$number no expected read, stop or drive, came '${rest.mkString(" ")}'")
       case Nil => Future.successful("0 no expected a number and a word, came nothing")
 
-  private def replace(north: Double, east: Double): Promise[Boolean] =
+  private def replace(now: Span, north: Double, east: Double): Promise[Boolean] =
     driving.trySuccess(false): Unit
-    goalNorth = north
-    goalEast = east
+    flight.act(now.toSeconds, north, east)
     driving = Promise()
     driving
 
-  /** Turns towards where it shall go, and drives the slower the more it has to turn. */
-  private def catchUp(): Unit =
-    while Step * (steps + 1) <= clock.now().since(start) do
-      val goal  = StrictMath.hypot(goalNorth, goalEast)
-      val error = if goal < 0.01 then 0.0
-      else Math.IEEEremainder(StrictMath.atan2(goalEast, goalNorth) - heading, 2 * Math.PI)
-      val dt = Step.toSeconds
-      heading += (3 * error).max(-MostRadPerS).min(MostRadPerS) * dt
-      speed += (goal.min(MostMps) * StrictMath.cos(error).max(0) - speed) * dt / LagS
-      north += speed * StrictMath.cos(heading) * dt
-      east += speed * StrictMath.sin(heading) * dt
-      steps += 1
-
 object RoverSimulator:
-  val LongestLine         = 128
-  val MostAtOnce          = 8
-  val MostMps             = 3.0
-  private val MostRadPerS = 1.5
-  private val LagS        = 0.4
-  private val Step        = Span.ofMillis(10)
+  val LongestLine = 128
+  val MostAtOnce  = 8
 
   private object Number:
     def unapply(text: String): Option[Double] = text.toDoubleOption.filter(_.isFinite)

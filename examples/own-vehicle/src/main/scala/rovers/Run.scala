@@ -12,7 +12,7 @@ import skein.units.*
 /** Drives for 30 s over TCP, and the same in virtual time; writes both recordings and a report of them. */
 @main def driveRovers(): Unit =
   given system: ActorSystem = ActorSystem("rovers")
-  import Chase.scenarios
+  import Program.scenarios
   import system.dispatcher
   val folder       = Files.createTempDirectory("rovers")
   val (live, twin) = (folder.resolve("live.duckdb"), folder.resolve("virtual.duckdb"))

@@ -1,8 +1,11 @@
 package rovers
 
-import java.nio.file.Files
+import com.typesafe.config.{Config, ConfigFactory}
+import java.nio.file.{Files, Path}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.duration.DurationInt
+import skein.forward.PlantResponse
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
 import skein.loop.{LoopKind, OwnLoop, Replay}
 import skein.measure.FlightSummary
@@ -10,12 +13,25 @@ import skein.policy.Action
 import skein.port.VehicleError
 import skein.record.Recording
 import skein.report.Report
+import skein.scenario.Scenarios
+import skein.settings.{ModelFile, PredictionModel, VehicleChoice}
+import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.PlantModel
 import skein.vtime.VirtualTime
 
 class RoverSimulation extends munit.FunSuite:
-  import Chase.scenarios
-  private val loops = Seq[LoopKind | OwnLoop](LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, turns)
+  import Program.scenarios
+  // Fits take seconds, and longer on a busy machine.
+  override val munitTimeout = 2.minutes
+  private val loops         =
+    Seq[LoopKind | OwnLoop](
+      LoopKind.Sequential,
+      LoopKind.Futures,
+      LoopKind.Stream,
+      LoopKind.Predictive,
+      turns
+    )
 
   private def distances(recording: Recording): Seq[(Double, Double)] =
     FlightSummary.of(recording).result.get.curves.head._2.points
@@ -46,6 +62,39 @@ class RoverSimulation extends munit.FunSuite:
     val report = Report.write(set, folder).fold(fail(_), identity)
     val page   = Files.readString(report.page)
     for id <- Seq("stream-rovers-virtual", "turns-rovers-virtual") do assert(page.contains(id), id)
+
+  /** What `identify` writes of a minute's drive. */
+  private def identified(seed: Long, link: LatencyProfile): Path =
+    val folder = Files.createTempDirectory("rovers")
+    val file   = folder.resolve("drive.duckdb")
+    assert(Chase.virtual(LoopKind.Stream, Span.ofSeconds(60), seed, link).writeTo(file).isRight)
+    assertEquals(Program.run(Seq("identify", file.toString, "--structure", "rover")), 0)
+    folder.resolve("model.conf")
+
+  test("identify finds the robots' parameters: within its intervals where the link has no delay"):
+    val model = modelOf(identified(seed = 1, LatencyProfile.none))
+    for (name, value) <- Seq("turn-per-s" -> 3.0, "most-rad-per-s" -> 1.5, "lag-s" -> 0.4) do
+      val (least, most) = (model.getDouble(s"$name.least"), model.getDouble(s"$name.most"))
+      // The file has six digits.
+      assert(least - 1e-5 <= value && value <= most + 1e-5, s"$name: $least to $most")
+      assertEqualsDouble(model.getDouble(s"$name.value"), value, 1e-3 * value, name)
+
+  test("and within 5 % where it has, since when a command arrived is an estimate then"):
+    for seed <- 1 to 3 do
+      val model = modelOf(identified(seed, LatencyProfile.direct))
+      for (name, value) <- Seq("turn-per-s" -> 3.0, "most-rad-per-s" -> 1.5, "lag-s" -> 0.4) do
+        assertEqualsDouble(model.getDouble(s"$name.value"), value, 0.05 * value, s"$name, seed $seed")
+
+  private def modelOf(file: Path): Config =
+    ConfigFactory.parseFile(file.toFile).getConfig("skein.model.rover")
+
+  test("a program reads back the models of its own structures; another says which structures it knows"):
+    val path = identified(1, LatencyProfile.none).toString
+    val read = ModelFile.read(path).map(_.plant).fold(fail(_), identity)
+    assertEquals(PredictionModel.parse(path).map(_.at(0)), Right(PlantModel(read)))
+    assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(read)))
+    val said = ModelFile.read(path)(using Scenarios.ours).left.getOrElse("")
+    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), came 'rover'"), said)
 
   private def inVirtualTime[A](body: ActorSystem ?=> (MemoryNetwork, Clock) => Future[A]): A =
     VirtualTime

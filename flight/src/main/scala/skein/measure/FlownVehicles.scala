@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.identify.{Arrival, Flown, Sample}
+import skein.identify.{ArrivedCommand, TimeHistory, Sample}
 import skein.record.*
 import skein.signal.OneWayDelays
 import skein.units.*
@@ -15,14 +15,14 @@ object FlownVehicles:
     * trip ([[skein.signal.OneWayDelays.arrivalGiven]]). Commands whose calls failed count only where such an answer shows
     * that they arrived.
     */
-  def of(recording: Recording): Vector[Flown] =
+  def of(recording: Recording): Vector[TimeHistory] =
     val start = recording.readings.map(_.state.validAt).minOption.getOrElse(Instant.Epoch)
     for
       vehicle <- recording.heading.vehicles.toVector
       commands = recording.commands.filter(_.vehicle == vehicle.name)
       if commands.nonEmpty
       arrivals = arrivalsOf(recording, vehicle.name, commands).map: (command, at) =>
-        Arrival(at.since(start).toSeconds, command.velocityNorth.value, command.velocityEast.value)
+        ArrivedCommand(at.since(start).toSeconds, command.velocityNorth.value, command.velocityEast.value)
       if arrivals.nonEmpty
     yield
       val samples = recording.readings
@@ -36,7 +36,7 @@ object FlownVehicles:
           Sample(state.validAt.since(start).toSeconds, x, y, vx, vy)
         // What it is told to do after its last command, hovering, is not recorded.
         .takeWhile(_.atS <= arrivals.last.atS)
-      Flown(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
+      TimeHistory(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
 
   /** Commands that arrived, and when, on the simulator's clock; none before one that was sent earlier. */
   private def arrivalsOf(

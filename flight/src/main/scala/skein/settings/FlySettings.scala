@@ -322,17 +322,23 @@ object FlySettings:
 
   private def planMistake(settings: FlySettings): Option[String] =
     val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
-    settings.multirotors
-      .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
-      .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
-      .map(lagS =>
-        "planning.step: plans need vehicles with a lag of at least " +
-          s"${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
-      )
+    def lags     = settings.multirotors.map(agent =>
+      settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS
+    )
+    settings.predictor match
+      case _ if !settings.loops.contains(LoopKind.Plan) => None
+      case PredictionModel.Own(structure, _)            =>
+        Some(
+          s"predictor: expected a reduced model with the loop plan, which plans by no other, came one of structure ${structure.label}"
+        )
+      case _ =>
+        lags.find(_ < shortest).map(lagS =>
+          s"planning.step: plans need vehicles with a lag of at least ${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
+        )
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 
-  private given ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
+  private given (using Scenarios): ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
 
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)

@@ -2,29 +2,33 @@ package skein.settings
 
 import com.typesafe.config.{Config, ConfigException}
 import skein.forward.Reduced
+import skein.forecast.Structure
 import skein.identify.*
+import skein.scenario.Scenarios
 import skein.units.Expect
-import skein.vehicle.ReducedModel
+import skein.vehicle.ObservedPlant
 
 /** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how well.
   *
   * @param use
   *   which of them to fly by
+  * @param models
+  *   the values of each one's parameters
   * @param altitudeM
-  *   at which was flown what it was fitted to; files of older versions do not say
+  *   at which was flown what it was fitted to, where its plant holds there alone, as AirSim's quadrotor does; files of
+  *   older versions do not say
   */
 final case class ModelFile(
     use: Structure,
-    models: Map[Structure, ReducedModel],
+    models: Map[Structure, Vector[Double]],
     altitudeM: Option[Double] = None
 ):
 
-  /** The model to predict and simulate by. */
-  def model: ReducedModel = models(use)
+  /** To predict and simulate by. */
+  val plant: ObservedPlant[?] = use.plant(models(use))
 
   /** The three-parameter model, for what flies no other. */
-  def reduced: Option[Reduced] =
-    models.get(Structure.Lag).map(lag => Reduced(lag.gain, lag.lagS, lag.deadTimeS))
+  def reduced: Option[Reduced] = models.get(Structure.Lag).map(lag => Reduced(lag(0), lag(1), lag(2)))
 
 object ModelFile:
   /** Within a metre, a lag of AirSim's changes by 0.1 s. */
@@ -61,20 +65,18 @@ object ModelFile:
         val bound = if parameter.atBound then "  # at its bound: not identified" else ""
         s"    ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, " +
           s"most = ${number(parameter.most)} }$bound"
-      val errors = fit.againstQuadrotor.map: error =>
-        s"    { horizon = ${number(error.horizonS)} s, " +
-          s"position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, " +
-          s"velocity-p50-mps = ${number(error.velocityP50Mps)}, velocity-p95-mps = ${number(error.velocityP95Mps)} }"
+      val errors = Vector(
+        "against-quadrotor" -> fit.againstQuadrotor,
+        "against-readings"  -> fit.againstReadings
+      ).collect { case (against, errors) if errors.nonEmpty => list(against, errors) }
       s"""  ${found.structure.label} {
          |${parameters.mkString("\n")}
          |    predictions = ${found.predictions}
          |    velocity-rms-mps = ${number(found.velocityRmsMps)}
          |    position-rms-m = ${number(found.positionRmsM)}
-         |    against-quadrotor = [
-         |${errors.map("  " + _).mkString("\n")}
-         |    ]
+         |${errors.mkString("\n")}
          |  }""".stripMargin
-    s"""# A reduced model of how horizontal velocity follows its command, fitted by `skein identify`.
+    s"""# A model of how horizontal velocity follows its command, fitted by `skein identify`.
        |# least and most: 95 % intervals by the sandwich estimator over blocks of ${number(
         Identification.BlockS
       )} s of flight.
@@ -98,39 +100,49 @@ object ModelFile:
        |}
        |""".stripMargin
 
+  private def list(name: String, errors: Vector[HorizonError]): String =
+    val lines = errors.map: error =>
+      s"      { horizon = ${number(error.horizonS)} s, " +
+        s"position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, " +
+        s"velocity-p50-mps = ${number(error.velocityP50Mps)}, velocity-p95-mps = ${number(error.velocityP95Mps)} }"
+    lines.mkString(s"    $name = [\n", "\n", "\n    ]")
+
   /** Reads a file.
     *
     * @return
     *   or what is wrong, with the line
     */
-  def read(path: String): Either[String, ModelFile] = TextFile.read(path).flatMap(parse(_, path))
+  def read(path: String)(using Scenarios): Either[String, ModelFile] =
+    TextFile.read(path).flatMap(parse(_, path))
 
-  private[skein] def parse(text: String, path: String): Either[String, ModelFile] =
+  private[skein] def parse(text: String, path: String)(using
+      scenarios: Scenarios
+  ): Either[String, ModelFile] =
     try
       for
         file <- HoconFile.parse(text, path)
         section = file.resolve().getConfig("skein.model")
-        use <- Structure.parse(section.getString("use")).left.map(wrong => s"$path: use: $wrong")
-        models = Structure.values.filter(found => section.hasPath(found.label)).map: structure =>
-          structure -> structure.model(values(section.getConfig(structure.label), structure))
+        use <- scenarios.structure(section.getString("use")).left.map(wrong => s"$path: use: $wrong")
+        models = scenarios.structures.filter(found => section.hasPath(found.label)).map: structure =>
+          structure -> values(section.getConfig(structure.label), structure)
         _ <- Expect.that(models.exists(_._1 == use)):
           s"$path: use = ${use.label}, but there is no section ${use.label}"
       yield ModelFile(
         use,
         models.toMap,
-        Option.when(section.hasPath("altitude-m"))(section.getDouble("altitude-m"))
+        Option.when(
+          section.hasPath("altitude-m") && Structure.ours.contains(use)
+        )(section.getDouble("altitude-m"))
       )
     catch
       case wrong: ConfigException          => Left(s"$path is no model file: ${wrong.getMessage}")
       case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
 
-  private def values(section: Config, structure: Structure): Array[Double] =
-    structure.parameters
-      .map: name =>
-        val value = section.getDouble(s"$name.value")
-        require(value.isFinite, s"$name: expected a finite number, came $value")
-        value
-      .toArray
+  private def values(section: Config, structure: Structure): Vector[Double] =
+    structure.names.map: name =>
+      val value = section.getDouble(s"$name.value")
+      require(value.isFinite, s"$name: expected a finite number, came $value")
+      value
 
   private def number(value: Double): String =
     BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
@@ -140,7 +152,7 @@ object ModelFile:
 /** A fitted structure and how far it is off over the horizons.
   *
   * @param againstQuadrotor
-  *   against the built-in quadrotor under the same commands
+  *   against the built-in quadrotor under the same commands, where a structure of Skein's is to be flown by
   * @param againstReadings
   *   against the recordings themselves
   */

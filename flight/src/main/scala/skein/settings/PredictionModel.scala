@@ -1,6 +1,8 @@
 package skein.settings
 
-import skein.identify.Structure
+import skein.forecast.Structure
+import skein.scenario.Scenarios
+import scala.util.Try
 import skein.vehicle.*
 
 /** By which model `predictive` carries the readings of a vehicle forward. */
@@ -15,6 +17,13 @@ enum PredictionModel:
     */
   case Fitted(model: ReducedModel, flownAtM: Option[Double] = None)
 
+  /** A plant of a program's own structure, identified from flights.
+    *
+    * @param values
+    *   of its parameters
+    */
+  case Own(structure: Structure, values: Vector[Double])
+
   /** Straight on, whatever was commanded. */
   case ConstantVelocity
 
@@ -23,10 +32,11 @@ enum PredictionModel:
 
   /** Of a vehicle that keeps an altitude. */
   def at(altitudeM: Double): VehicleModel[?] = this match
-    case Named(name)      => VehicleChoice.named(name, altitudeM).get.response.predictor
-    case Fitted(model, _) => ReducedVehicleModel(model)
-    case ConstantVelocity => skein.vehicle.ConstantVelocity
-    case ConstantTurn     => skein.vehicle.ConstantTurn
+    case Named(name)            => VehicleChoice.named(name, altitudeM).get.response.predictor
+    case Fitted(model, _)       => PlantModel(model)
+    case Own(structure, values) => PlantModel(structure.plant(values))
+    case ConstantVelocity       => skein.vehicle.ConstantVelocity
+    case ConstantTurn           => skein.vehicle.ConstantTurn
 
 object PredictionModel:
   val Quadrotor: PredictionModel = Named("quadrotor")
@@ -50,26 +60,26 @@ object PredictionModel:
       "or reduced:FILE for its model of three parameters"
 
   /** A name, or a model file of `skein identify`. */
-  def parse(text: String): Either[String, PredictionModel] =
+  def parse(text: String)(using Scenarios): Either[String, PredictionModel] =
     named.collectFirst { case (`text`, model) => model } match
       case Some(model) => Right(model)
       case None        =>
-        val (path, of) = text match
+        val model = text match
           case s"reduced:$path" =>
-            (
-              path,
-              (file: ModelFile) =>
-                file.models.get(Structure.Lag).toRight(s"$path has no model of three parameters")
-            )
-          case path => (path, (file: ModelFile) => Right(file.model))
-        (for
-          file  <- ModelFile.read(path)
-          model <- of(file)
-        yield Fitted(model, file.altitudeM)).left.map(reason => s"expected $forms: $reason")
+            for
+              file <- ModelFile.read(path)
+              lag  <- file.reduced.toRight(s"$path has no model of three parameters")
+            yield Fitted(lag.model, file.altitudeM)
+          case path => ModelFile.read(path).map(of)
+        model.left.map(reason => s"expected $forms: $reason")
+
+  private[skein] def of(file: ModelFile): PredictionModel = file.plant match
+    case model: ReducedModel => Fitted(model, file.altitudeM)
+    case _                   => Own(file.use, file.models(file.use))
 
   /** What is wrong with predicting vehicles of an altitude by it, if anything. */
   def mistake(model: PredictionModel, altitudeM: Double): Option[String] = model match
-    case Named(name)         => VehicleChoice.parse(name, altitudeM).left.toOption
+    case Named(name)         => VehicleChoice.named(name, altitudeM).flatMap(_.mistakeAt(altitudeM))
     case Fitted(_, flownAtM) => ModelFile.mistake(flownAtM, altitudeM)
     case _                   => None
 
@@ -77,15 +87,27 @@ object PredictionModel:
   def text(model: PredictionModel): String = model match
     case Fitted(model, _) =>
       Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")
-    case other => named.collectFirst { case (name, `other`) => name }.get
+    case Own(structure, values) => (structure.label +: values).mkString(" ")
+    case other                  => named.collectFirst { case (name, `other`) => name }.get
 
-  def recorded(text: String): Option[PredictionModel] =
+  private[settings] def recordedForms(using scenarios: Scenarios): String =
+    val own = scenarios.ownStructures.map(_.label)
+    s"a model's name or five numbers${
+        if own.isEmpty then "" else own.mkString(", or values behind ", " or ", "")
+      }"
+
+  def recorded(text: String)(using scenarios: Scenarios): Option[PredictionModel] =
     named.collectFirst { case (`text`, model) => model }.orElse:
-      text.split(' ').map(_.toDoubleOption) match
-        case Array(Some(gain), Some(lag), Some(deadTime), Some(turnLag), Some(drag)) =>
-          scala.util.Try(Fitted(ReducedModel(gain, lag, deadTime, turnLag, drag))).toOption
-        case _ => None
+      val words   = text.split(' ').toVector
+      val own     = scenarios.ownStructures.find(_.label == words.head)
+      val numbers = (if own.isDefined then words.tail else words).flatMap(_.toDoubleOption)
+      val model   = own match
+        case Some(structure) => Try { structure.plant(numbers): Unit; Own(structure, numbers) }
+        case None            => Try:
+            val Vector(gain, lag, deadTime, turnLag, drag) = numbers: @unchecked
+            Fitted(ReducedModel(gain, lag, deadTime, turnLag, drag))
+      model.toOption
 
   /** As recordings of older versions keep it, whose `reduced` has drag. */
-  def recordedAsModel(text: String): Option[PredictionModel] =
+  def recordedAsModel(text: String)(using Scenarios): Option[PredictionModel] =
     if text == "reduced" then Some(AirSimDrag) else recorded(text)

@@ -101,8 +101,8 @@ object RecordedPlan:
     for
       loop     <- LoopKind.parse(flight.loop)
       link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
-      now      <- optional(Predictor, "a model's name or five numbers")(PredictionModel.recorded)
-      older    <- optional(Model, "a model's name or five numbers")(PredictionModel.recordedAsModel)
+      now      <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
+      older    <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)

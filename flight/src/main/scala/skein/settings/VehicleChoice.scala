@@ -10,7 +10,8 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
-import skein.identify.Structure
+import skein.forecast.Structure
+import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
 import skein.vehicle.{DrivenCar, ReducedModel}
@@ -26,6 +27,11 @@ final case class VehicleChoice(name: String, description: String, response: Velo
   def fliesInSteps: Boolean = response match
     case _: (SteppedResponse | QuadrotorResponse) => true
     case _                                        => false
+
+  /** What is wrong with flying it at an altitude, m, if anything. */
+  private[settings] def mistakeAt(altitudeM: Double): Option[String] =
+    Option.when(response == Reduced.AirSim && altitudeM != ReducedModel.IdentifiedAtM):
+      s"expected drag, quadrotor or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
 
 object VehicleChoice:
 
@@ -81,15 +87,11 @@ object VehicleChoice:
     * @return
     *   or what was expected
     */
-  def parse(text: String, altitudeM: Double): Either[String, VehicleChoice] = named(text, altitudeM) match
-    case Some(known) =>
-      Either.cond(
-        known != reduced || altitudeM == ReducedModel.IdentifiedAtM,
-        known,
-        s"expected drag, quadrotor or a model file at $altitudeM m " +
-          s"altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
-      )
-    case None =>
+  def parse(text: String, altitudeM: Double)(using
+      Scenarios
+  ): Either[String, VehicleChoice] = named(text, altitudeM) match
+    case Some(known) => known.mistakeAt(altitudeM).toLeft(known)
+    case None        =>
       text match
         case s"mujoco:$path" =>
           MujocoModel.read(Path.of(path)).map(model =>
@@ -105,9 +107,13 @@ object VehicleChoice:
           yield
             if file.use == Structure.Lag && file.reduced.isDefined then
               VehicleChoice(text, described(file.reduced.get, path), file.reduced.get)
-            else VehicleChoice(text, s"reduced model ${file.use.label} of $path", ReducedResponse(file.model))
+            else
+              file.plant match
+                case model: ReducedModel =>
+                  VehicleChoice(text, s"reduced model ${file.use.label} of $path", ReducedResponse(model))
+                case plant => VehicleChoice(text, s"model ${file.use.label} of $path", PlantResponse(plant))
 
-  private def read(path: String, altitudeM: Double): Either[String, ModelFile] =
+  private def read(path: String, altitudeM: Double)(using Scenarios): Either[String, ModelFile] =
     if Files.isRegularFile(Path.of(path)) then
       for
         file <- ModelFile.read(path)

@@ -35,11 +35,11 @@ import skein.vehicle.*
       identified.copy(lagS = factor * identified.lagS, turnLagS = factor * identified.turnLagS)
     def gain(factor: Double) = identified.copy(gain = factor * identified.gain)
     Seq(
-      "reduced"             -> ReducedVehicleModel(identified),
-      "reduced, lag +20 %"  -> ReducedVehicleModel(lag(1.2)),
-      "reduced, lag -20 %"  -> ReducedVehicleModel(lag(0.8)),
-      "reduced, gain +20 %" -> ReducedVehicleModel(gain(1.2)),
-      "reduced, gain -20 %" -> ReducedVehicleModel(gain(0.8)),
+      "reduced"             -> PlantModel(identified),
+      "reduced, lag +20 %"  -> PlantModel(lag(1.2)),
+      "reduced, lag -20 %"  -> PlantModel(lag(0.8)),
+      "reduced, gain +20 %" -> PlantModel(gain(1.2)),
+      "reduced, gain -20 %" -> PlantModel(gain(0.8)),
       "constant velocity"   -> ConstantVelocity,
       "constant turn"       -> ConstantTurn
     )

@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.identify.Arrival
+import skein.identify.ArrivedCommand
 import skein.record.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -49,7 +49,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
     FlownVehicles.of(Recording(heading(loop), readings("Red") ++ readings("Blue") ++ records))
 
   private def arrivals(records: Record*): Seq[(Double, Double)] =
-    flown("stream", records*).flatMap(_.arrivals).map { case Arrival(at, x, y) =>
+    flown("stream", records*).flatMap(_.arrivals).map { case ArrivedCommand(at, x, y) =>
       assertEquals(y, -x)
       (math.round(at * 1e6) / 1e3, x)
     }

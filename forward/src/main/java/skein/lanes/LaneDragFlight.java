@@ -11,13 +11,13 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.VectorMask;
 import skein.simd.LaneMath;
-import skein.vehicle.ReducedFlight;
+import skein.vehicle.PlantFlight;
 import skein.vehicle.ReducedModel;
 
 /**
  * Flights with lags along and across their commands and with quadratic drag, exactly integrated
  * piece by piece; all worlds' pieces begin and end together. The scalar reference is {@link
- * ReducedFlight}; the formulas stand there.
+ * PlantFlight} of a {@link ReducedModel}; the formulas stand there.
  *
  * <p>{@link ReducedModel#step} compiled as any other {@code Plant} does the same; written out, whatever
  * stands still during a piece is computed once: 182 million agent-steps a second instead of 80.

@@ -1,9 +1,9 @@
 package skein.lanes;
 
 import skein.vehicle.ReducedModel;
-import skein.vehicle.ReducedVehicleModel;
+import skein.vehicle.PlantModel;
 
-/** Predicts with lags and drag, piece by piece. The scalar reference is {@link ReducedVehicleModel}. */
+/** Predicts with lags and drag, piece by piece. The scalar reference is {@link PlantModel}. */
 final class PredictedDragVehicles extends PredictedVehicles {
   private final LaneDragFlight flight;
 

@@ -5,12 +5,12 @@ import static skein.simd.LaneMath.SPECIES;
 import static skein.simd.LaneMath.constant;
 
 import jdk.incubator.vector.FloatVector;
-import skein.vehicle.ReducedVehicleModel;
+import skein.vehicle.PlantModel;
 
 /**
  * Predicts by a first-order lag, which is linear: a prediction is the reading's position, its
  * velocity times a number of the timetable, and each command on the way times one of its own. The
- * scalar reference is {@link ReducedVehicleModel} without drag.
+ * scalar reference is {@link PlantModel} without drag.
  */
 final class PredictedLagVehicles extends PredictedVehicles {
   private final float speed;

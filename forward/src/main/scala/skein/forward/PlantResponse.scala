@@ -1,30 +1,32 @@
 package skein.forward
 
 import skein.signal.Kinematics
-import skein.vehicle.{ConstantVelocity, Plant, VehicleModel}
+import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
-/** Forward simulation by a [[skein.vehicle.Plant]]. */
+/** Forward simulation by a [[skein.vehicle.Plant]]. Where that is an [[skein.vehicle.ObservedPlant]], the loop
+  * `predictive` predicts by it, else straight on.
+  */
 final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")
   require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, came ${plant.deadTimeS} s")
 
   def create(): Vehicle = PlantVehicle(plant)
 
-  override def predictor: VehicleModel[?] = ConstantVelocity
+  override def predictor: VehicleModel[?] = plant match
+    case observed: ObservedPlant[?] => PlantModel(observed)
+    case _                          => ConstantVelocity
 
 private[skein] final class PlantVehicle[S](plant: Plant[S]) extends Vehicle:
   private val coming               = DeadTime(plant.deadTimeS)
-  private var state                = plant.initial // when the present step began
-  private var reading              = plant.read(state)
-  private var stepAtS, nowS        = 0.0
-  private var wantedX, wantedY     = 0.0
+  private val flight               = PlantFlight(plant)
+  private var reading              = flight.reading
+  private var nowS                 = 0.0
   private var startX, startY, down = 0.0
   private var isCommanded          = false
 
   def start(x: Double, y: Double, z: Double): Unit =
     startX = x; startY = y; down = z
-    state = plant.initial
-    reading = plant.read(state)
+    reading = plant.read(plant.initial)
     nowS = 0; isCommanded = false
     coming.clear()
 
@@ -32,17 +34,12 @@ private[skein] final class PlantVehicle[S](plant: Plant[S]) extends Vehicle:
 
   def advance(timeS: Double): Unit =
     coming.until(timeS): (atS, vx, vy) =>
-      state = flown(atS)
-      stepAtS = atS; wantedX = vx; wantedY = vy; isCommanded = true
-    reading = plant.read(flown(timeS))
-    nowS = timeS
-
-  private def flown(untilS: Double): S =
+      if isCommanded then flight.act(atS, vx, vy) else flight.start(atS, plant.initial, vx, vy)
+      isCommanded = true
     if isCommanded then
-      while untilS > stepAtS + plant.stepS do
-        state = plant.step(state, wantedX, wantedY, plant.stepS)
-        stepAtS += plant.stepS
-    if isCommanded && untilS > stepAtS then plant.step(state, wantedX, wantedY, untilS - stepAtS) else state
+      flight.advance(timeS)
+      reading = flight.reading
+    nowS = timeS
 
   def x: Double  = startX + reading.northM
   def y: Double  = startY + reading.eastM

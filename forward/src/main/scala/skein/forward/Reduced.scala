@@ -1,7 +1,7 @@
 package skein.forward
 
 import skein.signal.Kinematics
-import skein.vehicle.{FirstOrderLag, ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
 
 /** A first-order model of the response to commanded velocity: v' = (gain · command(t − deadTime) − v) / lag.
   *
@@ -17,7 +17,7 @@ final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends 
 
   override def predictor: VehicleModel[?] =
     // A model needs a lag above 0; within a nanosecond nothing happens.
-    ReducedVehicleModel(ReducedModel.lag(gain, lagS.max(1e-9), deadTimeS))
+    PlantModel(ReducedModel.lag(gain, lagS.max(1e-9), deadTimeS))
 
 object Reduced:
   /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m, as `./skein identify` fits it to live flights of

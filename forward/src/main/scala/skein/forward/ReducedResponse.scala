@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{ReducedModel, PlantModel, VehicleModel}
 
 /** Forward simulation by an identified [[skein.vehicle.ReducedModel]], exact between the times at which commands begin
   * to act.
@@ -8,4 +8,4 @@ import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
 final case class ReducedResponse(model: ReducedModel) extends VelocityResponse:
   def create(): Vehicle = PlantVehicle(model)
 
-  override def predictor: VehicleModel[?] = ReducedVehicleModel(model)
+  override def predictor: VehicleModel[?] = PlantModel(model)

@@ -35,15 +35,16 @@ object HorizonErrors:
   /** Of a model's predictions from a sample every half second, against the samples nearest to the horizons; horizons that
     * no flight is long enough for are left out.
     */
-  def of(model: ReducedModel, flights: Vector[Flown]): Vector[HorizonError] =
-    val flight = ReducedFlight(model)
+  def of[S](plant: ObservedPlant[S], flights: Vector[TimeHistory]): Vector[HorizonError] =
+    val flight = PlantFlight(plant)
+    val states = flights.map(_.states(plant))
     for
       horizonS <- HorizonsS
       errors =
         for
-          flown    <- flights
-          from     <- flown.starts(Identification.StartEveryS, horizonS)
-          position <- atHorizon(model, flight, flown, from, horizonS)
+          (flown, states) <- flights.zip(states)
+          from            <- flown.starts(Identification.StartEveryS, horizonS)
+          position        <- atHorizon(flight, states(from), flown, from, horizonS)
         yield position
       if errors.nonEmpty
     yield
@@ -60,7 +61,7 @@ object HorizonErrors:
   /** What the full quadrotor does when it is told the same at the same times, from hovering at the first sample: the truth
     * that a reduced model stands for. Samples each 0.1 s, at the nearest whole step.
     */
-  def reflown(flown: Flown, quadrotor: Quadrotor = Quadrotor.AirSim): Flown =
+  def reflown(flown: TimeHistory, quadrotor: Quadrotor = Quadrotor.AirSim): TimeHistory =
     if flown.samples.isEmpty then flown
     else
       val first              = flown.samples.head
@@ -85,10 +86,10 @@ object HorizonErrors:
   private val SampleEveryS = 0.1
 
   /** Errors of position and velocity at the sample nearest to the horizon. */
-  private def atHorizon(
-      model: ReducedModel,
-      flight: ReducedFlight,
-      flown: Flown,
+  private def atHorizon[S](
+      flight: PlantFlight[S],
+      state: S,
+      flown: TimeHistory,
       from: Int,
       horizonS: Double
   ): Option[(Double, Double)] =
@@ -99,10 +100,11 @@ object HorizonErrors:
       .map: index =>
         val sample = flown.samples(index)
         // The tenth of a microsecond includes the nearest sample whatever the rounding.
-        flown.predict(flight, model.deadTimeS, from, sample.atS - flown.samples(from).atS + 1e-7)(_ => ())
+        flown.predict(flight, state, from, sample.atS - flown.samples(from).atS + 1e-7)(_ => ())
+        val predicted = flight.reading
         (
-          StrictMath.hypot(flight.x - sample.x, flight.y - sample.y),
-          StrictMath.hypot(flight.vx - sample.vx, flight.vy - sample.vy)
+          StrictMath.hypot(predicted.northM - sample.x, predicted.eastM - sample.y),
+          StrictMath.hypot(predicted.northMps - sample.vx, predicted.eastMps - sample.vy)
         )
 
   private def quantile(sorted: Vector[Double], p: Double): Double =

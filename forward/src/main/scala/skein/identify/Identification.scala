@@ -1,7 +1,8 @@
 package skein.identify
 
+import skein.forecast.Structure
 import skein.units.Decimals.fixed
-import skein.vehicle.{ReducedFlight, ReducedModel}
+import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** A fitted parameter. The interval covers the truth with 95 % probability.
   *
@@ -10,7 +11,7 @@ import skein.vehicle.{ReducedFlight, ReducedModel}
   */
 final case class Fitted(name: String, value: Double, least: Double, most: Double, atBound: Boolean)
 
-/** A model fitted to flights.
+/** A plant fitted to flights.
   *
   * @param predictions
   *   samples that were predicted, each from some earlier one
@@ -22,15 +23,16 @@ final case class Fitted(name: String, value: Double, least: Double, most: Double
 final case class Identification(
     structure: Structure,
     parameters: Vector[Fitted],
-    model: ReducedModel,
+    plant: ObservedPlant[?],
     predictions: Int,
     blocks: Int,
     velocityRmsMps: Double,
     positionRmsM: Double
 )
 
-/** Fits a [[skein.vehicle.ReducedModel]] to flights. From a sample every [[Identification.StartEveryS]] all samples within
-  * the horizon are predicted; the parameters minimise the sum of squared errors of velocity (m/s) and position (m).
+/** Fits the plants of a [[skein.forecast.Structure]] to flights. From a sample every [[Identification.StartEveryS]] all
+  * samples within the horizon are predicted; the parameters minimise the sum of squared errors of velocity (m/s) and
+  * position (m). What a sample does not tell of the plant's state is carried there from the samples before.
   *
   * Errors of one stretch of flight hang together, so that the intervals come from the Jacobian with the sandwich
   * estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika 73 (1986)): the first-order
@@ -46,7 +48,7 @@ object Identification:
     *   or what is lacking
     */
   def of(
-      flights: Vector[Flown],
+      flights: Vector[TimeHistory],
       structure: Structure,
       horizonS: Double = DefaultHorizonS
   ): Either[String, Identification] =
@@ -56,24 +58,24 @@ object Identification:
         from            <- flown.starts(StartEveryS, horizonS)
       yield Window(flown, from, horizonS, (number, (flown.samples(from).atS / BlockS).floor.toLong))
     val blocks = windows.map(_.block).distinct
-    if blocks.sizeIs < 2 * structure.parameters.size then
+    if blocks.sizeIs < 2 * structure.space.dimension then
       Left(
-        s"expected at least ${(2 * structure.parameters.size * BlockS).fixed(0)} s of flight to identify ${structure.label}, " +
+        s"expected at least ${(2 * structure.space.dimension * BlockS).fixed(0)} s of flight to identify ${structure.label}, " +
           s"came ${flights.map(spanS).sum.fixed(0)} s"
       )
     else if !flights.exists(_.arrivals.distinctBy(command => (command.vx, command.vy)).sizeIs > 1) then
       Left("expected flights with changing commands, came none")
-    else Right(fit(windows, blocks.size, structure))
+    else Right(fit(flights, windows, blocks.size, structure))
 
-  private def spanS(flown: Flown): Double =
+  private def spanS(flown: TimeHistory): Double =
     if flown.samples.isEmpty then 0 else flown.samples.last.atS - flown.samples.head.atS
 
   /** @param block
     *   flight and stretch: errors within one hang together
     */
-  private final case class Window(flown: Flown, from: Int, horizonS: Double, block: (Int, Long)):
+  private final case class Window(flown: TimeHistory, from: Int, horizonS: Double, block: (Int, Long)):
     val size: Int =
-      val until = flown.samples(from).atS + horizonS + Flown.Rounding
+      val until = flown.samples(from).atS + horizonS + TimeHistory.Rounding
       flown.samples.indexWhere(_.atS > until, from) match
         case -1    => flown.samples.size - from - 1
         case index => index - from - 1
@@ -81,40 +83,57 @@ object Identification:
   /** Per predicted sample: errors of vx, vy, x, y. */
   private val PerSample = 4
 
-  private def fit(windows: Vector[Window], blocks: Int, structure: Structure): Identification =
-    val samples                                         = windows.map(_.size).sum
-    def residuals(values: Array[Double]): Array[Double] =
-      val model  = structure.model(values)
-      val flight = ReducedFlight(model)
-      val errors = Array.ofDim[Double](PerSample * samples)
-      var at     = 0
-      for window <- windows do
-        window.flown.predict(flight, model.deadTimeS, window.from, window.horizonS): sample =>
-          val seen = window.flown.samples(sample)
-          errors(at) = flight.vx - seen.vx; errors(at + 1) = flight.vy - seen.vy
-          errors(at + 2) = flight.x - seen.x; errors(at + 3) = flight.y - seen.y
+  private def residuals[S](
+      plant: ObservedPlant[S],
+      flights: Vector[TimeHistory],
+      windows: Vector[Window],
+      samples: Int
+  ): Array[Double] =
+    val flight = PlantFlight(plant)
+    val states = flights.map(_.states(plant))
+    val errors = Array.ofDim[Double](PerSample * samples)
+    var at     = 0
+    for window <- windows do
+      window.flown.predict(flight, states(window.block._1)(window.from), window.from, window.horizonS):
+        sample =>
+          val seen      = window.flown.samples(sample)
+          val predicted = flight.reading
+          errors(at) = predicted.northMps - seen.vx; errors(at + 1) = predicted.eastMps - seen.vy
+          errors(at + 2) = predicted.northM - seen.x; errors(at + 3) = predicted.eastM - seen.y
           at += PerSample
-      errors
+    errors
 
-    val solution  = LeastSquares.solve(structure.start, structure.least, structure.most)(residuals)
+  private def fit(
+      flights: Vector[TimeHistory],
+      windows: Vector[Window],
+      blocks: Int,
+      structure: Structure
+  ): Identification =
+    val axes     = structure.space.axes
+    val samples  = windows.map(_.size).sum
+    val solution = LeastSquares.solve(
+      axes.map(_.default).toArray,
+      axes.map(_.least).toArray,
+      axes.map(_.most).toArray
+    )(values => residuals(structure.plant(values.toVector), flights, windows, samples))
     val deviation = standardErrors(solution, windows, blocks)
     val quantile  = studentQuantile(blocks - 1)
-    val fitted    = structure.parameters.indices.toVector.map: i =>
-      val value         = solution.parameters(i)
-      val (least, most) = Structure.bounds(structure.parameters(i))
+    val fitted    = axes.zipWithIndex.map: (axis, i) =>
+      val value = solution.parameters(i)
       Fitted(
-        structure.parameters(i),
+        axis.name,
         value,
         value - quantile * deviation(i),
         value + quantile * deviation(i),
-        value <= least || value >= most
+        value <= axis.least || value >= axis.most
       )
     val squares                  = solution.residuals.map(error => error * error)
     def rms(offset: Int): Double =
       math.sqrt((0 until samples).map(k =>
         squares(k * PerSample + offset) + squares(k * PerSample + offset + 1)
       ).sum / (2 * samples))
-    Identification(structure, fitted, structure.model(solution.parameters), samples, blocks, rms(0), rms(2))
+    val plant = structure.plant(solution.parameters.toVector)
+    Identification(structure, fitted, plant, samples, blocks, rms(0), rms(2))
 
   /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹ with gᵦ = Jᵦᵀrᵦ summed over a block. */
   private def standardErrors(

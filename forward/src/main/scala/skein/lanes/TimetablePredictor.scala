@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.forward.Duelist
 import skein.units.Span
-import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
 
 /** A kind of model that carries readings forward by [[Timetable]]s. */
 private[skein] trait TimetablePredictor:
@@ -38,8 +38,9 @@ private[skein] object TimetablePredictor:
     *   or why this model does not predict by lanes
     */
   def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
-    case ReducedVehicleModel(lag) if lag.dragPerM == 0 && lag.turnLagS == lag.lagS => Right(LagPredictor(lag))
-    case ReducedVehicleModel(drag)                                                 =>
+    case PlantModel(lag: ReducedModel) if lag.dragPerM == 0 && lag.turnLagS == lag.lagS =>
+      Right(LagPredictor(lag))
+    case PlantModel(drag: ReducedModel) =>
       Either.cond(
         drag.lagS.min(drag.turnLagS) >= LeastLagS,
         DragPredictor(drag),
@@ -88,7 +89,7 @@ private final class DragPredictor(model: ReducedModel) extends TimetablePredicto
       pieces += 1
     Propagation.Part(part.decision, pieces, part.untilS - pieceS)
 
-/** Which command acts when, as [[ReducedVehicleModel]] takes it: each a dead time after it has come. A command that
+/** Which command acts when, as [[PlantModel]] takes it: each a dead time after it has come. A command that
   * repeats the one before is a new one here, and nothing there: with drag a piece more begins.
   *
   * @param propagation
@@ -126,7 +127,7 @@ private object ReducedPropagator:
   /** Under which decision's command the model flies from when until when, s from the reading. */
   final case class Flown(decision: Int, fromS: Double, untilS: Double)
 
-  /** What [[ReducedVehicleModel.Flying]] knows of commands, by their decisions.
+  /** What [[PlantModel.Flying]] knows of commands, by their decisions.
     *
     * @param coming
     *   and in how long each acts

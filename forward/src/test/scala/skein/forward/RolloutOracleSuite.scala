@@ -11,7 +11,7 @@ import skein.vehicle.*
 class RolloutOracleSuite extends munit.FunSuite:
   private val away: Policy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
   private val lag          = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0)
-  private val perfect      = LoopTiming.Predictive(predictor = ReducedVehicleModel(lag.model))
+  private val perfect      = LoopTiming.Predictive(predictor = PlantModel(lag.model))
   private val loops        =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream(), perfect)
 

@@ -1,5 +1,6 @@
 package skein.identify
 
+import skein.forecast.Structure
 import skein.forward.{
   DelayTable,
   Duel,
@@ -19,7 +20,7 @@ import skein.vehicle.ReducedModel
 class AirSimModelSuite extends munit.FunSuite:
 
   /** What both vehicles were told and did in an episode with the full quadrotor. */
-  private lazy val flights: Vector[Flown] =
+  private lazy val flights: Vector[TimeHistory] =
     val flown                    = Vector.newBuilder[TappedVehicle]
     val tapped: VelocityResponse = () =>
       val vehicle = TappedVehicle(VelocityResponses.quadrotor().create())
@@ -48,8 +49,10 @@ class AirSimModelSuite extends munit.FunSuite:
   test("identifying from the quadrotor's flights gives the named defaults again"):
     val named = Map(Structure.Lag -> Reduced.AirSim.model, Structure.Drag -> ReducedModel.AirSim)
     for (structure, model) <- named do
-      val found =
-        Identification.of(flights.map(HorizonErrors.reflown(_)), structure).fold(fail(_), identity).model
+      val identified = Identification.of(flights.map(HorizonErrors.reflown(_)), structure)
+      val found      = identified.map(_.plant).fold(fail(_), identity) match
+        case model: ReducedModel => model
+        case other               => fail(s"$structure: expected a reduced model, came $other")
       assertEqualsDouble(found.gain, model.gain, 0.03, s"$structure: $found")
       assertEqualsDouble(found.lagS, model.lagS, 0.1 * model.lagS, s"$structure: $found")
       assertEqualsDouble(found.deadTimeS, model.deadTimeS, 0.03, s"$structure: $found")
@@ -57,11 +60,11 @@ class AirSimModelSuite extends munit.FunSuite:
 
 /** Notes what a vehicle is told. */
 private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
-  private val arrivals              = Vector.newBuilder[Arrival]
+  private val arrivals              = Vector.newBuilder[ArrivedCommand]
   private val samples               = Vector.newBuilder[Sample]
   private var now, down, nextSightS = 0.0
 
-  def flown(name: String): Flown = Flown(name, samples.result(), arrivals.result(), down)
+  def flown(name: String): TimeHistory = TimeHistory(name, samples.result(), arrivals.result(), down)
 
   def start(x: Double, y: Double, z: Double): Unit =
     vehicle.start(x, y, z)
@@ -69,7 +72,7 @@ private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
 
   def command(vx: Double, vy: Double): Unit =
     vehicle.command(vx, vy)
-    arrivals += Arrival(now, vx, vy)
+    arrivals += ArrivedCommand(now, vx, vy)
 
   def advance(timeS: Double): Unit =
     vehicle.advance(timeS)

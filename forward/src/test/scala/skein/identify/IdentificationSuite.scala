@@ -1,7 +1,8 @@
 package skein.identify
 
+import skein.forecast.Structure
 import skein.signal.{NormalQuantile, SplitMix64}
-import skein.vehicle.{ReducedFlight, ReducedModel}
+import skein.vehicle.{PlantFlight, ReducedModel}
 
 class IdentificationSuite extends munit.FunSuite:
   private val truth =
@@ -14,15 +15,15 @@ class IdentificationSuite extends munit.FunSuite:
       noiseMps: Double,
       jitterS: Double = 0,
       spanS: Double = 60
-  ): Flown =
+  ): TimeHistory =
     val source   = SplitMix64(seed)
     def normal() = NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12))
     val arrivals = Vector.tabulate((spanS / 0.3).toInt): k =>
       val heading = 4 * source.nextDouble()
       val speed   = 3 + 8 * source.nextDouble()
-      Arrival(0.05 + 0.3 * k, speed * math.cos(heading), speed * math.sin(heading))
-    val flight = ReducedFlight(model)
-    flight.start(0, 0, 0, 0, 0)
+      ArrivedCommand(0.05 + 0.3 * k, speed * math.cos(heading), speed * math.sin(heading))
+    val flight = PlantFlight(model)
+    flight.start(0, model.initial)
     var next    = 0
     val samples = Vector.tabulate((spanS / 0.1).toInt): k =>
       val atS = 0.1 * k
@@ -32,16 +33,16 @@ class IdentificationSuite extends munit.FunSuite:
       flight.advance(atS)
       Sample(
         atS,
-        flight.x + noiseMps / 10 * normal(),
-        flight.y + noiseMps / 10 * normal(),
-        flight.vx + noiseMps * normal(),
-        flight.vy + noiseMps * normal()
+        flight.reading.northM + noiseMps / 10 * normal(),
+        flight.reading.eastM + noiseMps / 10 * normal(),
+        flight.reading.northMps + noiseMps * normal(),
+        flight.reading.eastMps + noiseMps * normal()
       )
     // What the identification is told of the arrivals is off by the links' jitter.
     val told = arrivals.map(arrival => arrival.copy(atS = arrival.atS + jitterS * normal()))
-    Flown(s"synthetic $seed", samples, told.sortBy(_.atS), -20)
+    TimeHistory(s"synthetic $seed", samples, told.sortBy(_.atS), -20)
 
-  private def identified(flights: Vector[Flown], structure: Structure): Identification =
+  private def identified(flights: Vector[TimeHistory], structure: Structure): Identification =
     Identification.of(flights, structure).fold(fail(_), identity)
 
   private def valuesOf(model: ReducedModel): Map[String, Double] = Map(
@@ -54,7 +55,7 @@ class IdentificationSuite extends munit.FunSuite:
 
   test("every structure finds its own parameters again from a flight without noise"):
     for
-      structure <- Structure.values
+      structure <- Structure.ours
       expected = structure match
         case Structure.Lag         => truth.copy(turnLagS = truth.lagS, dragPerM = 0)
         case Structure.Turn        => truth.copy(dragPerM = 0)

@@ -21,7 +21,7 @@ import skein.policy.*
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.Span
-import skein.vehicle.{ReducedModel, ReducedVehicleModel}
+import skein.vehicle.{ReducedModel, PlantModel}
 
 class DuelBatchSimulation extends munit.FunSuite:
   import DuelBatchSimulation.*
@@ -149,7 +149,7 @@ class DuelBatchSimulation extends munit.FunSuite:
         val near = numbers(all, world).zip(scalar(worlds, world, LoopTiming.Futures(), model, offAxis))
         assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
 
-  private val foreseen = LoopTiming.Predictive(predictor = ReducedVehicleModel(ReducedModel.AirSim))
+  private val foreseen = LoopTiming.Predictive(predictor = PlantModel(ReducedModel.AirSim))
 
   for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential(), foreseen) do
     test(s"quadrotors with delays of their own under $timing fly by lanes, close to the scalar engine"):

@@ -5,7 +5,7 @@ import skein.lanes.{DuelAgreement, PolicyLanes, UnseenPolicySuite}
 import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
 import skein.signal.SplitMix64
-import skein.vehicle.{ReducedFlight, ReducedModel}
+import skein.vehicle.{PlaneReading, PlantFlight, ReducedModel}
 
 class PlanKernelSuite extends munit.FunSuite:
   private val size                = CandidateBlock.Size
@@ -200,16 +200,16 @@ class PlanKernelSuite extends munit.FunSuite:
     val model     = ReducedModel.AirSim
     val manoeuvre = Manoeuvre(IArray.tabulate(steps)(0.05f * _), IArray.tabulate(steps)(4 + 0.2f * _))
     val flown     = ManoeuvreRollout(situation(Behaviour(track)), objective, dtS).fly(manoeuvre).track
-    val flight    = ReducedFlight(model)
-    flight.start(0, 1, 2, 6, 1)
+    val flight    = PlantFlight(model)
+    flight.start(0, PlaneReading(1, 2, 6, 1))
     var heading = 0.4
     for step <- 0 until steps do
       heading += manoeuvre.turnRates(step) * (if step == 0 then 0.13 else dtS)
       val speed = manoeuvre.speeds(step)
       flight.act(step * dtS, speed * math.cos(heading), speed * math.sin(heading))
       flight.advance((step + 1) * dtS)
-      assertEqualsDouble(flown.x(step), flight.x, 1e-9)
-      assertEqualsDouble(flown.y(step), flight.y, 1e-9)
+      assertEqualsDouble(flown.x(step), flight.reading.northM, 1e-9)
+      assertEqualsDouble(flown.y(step), flight.reading.eastM, 1e-9)
 
   test("normal draws have mean 0 and variance 1"):
     val drawn = (1 to 20000).map(Draws.normal(7, _).toDouble)

@@ -7,9 +7,9 @@ import skein.units.*
 class ReducedModelSuite extends munit.FunSuite:
   private val model = ReducedModel(gain = 0.95, lagS = 1.7, deadTimeS = 0.12, turnLagS = 2.4, dragPerM = 0.01)
 
-  private def moving(model: ReducedModel): ReducedFlight =
-    val flight = ReducedFlight(model)
-    flight.start(0, 1, 2, 3, -4, 6, 2)
+  private def moving(model: ReducedModel): PlantFlight[PlaneReading] =
+    val flight = PlantFlight(model)
+    flight.start(0, PlaneReading(1, 2, 3, -4), 6, 2)
     flight
 
   test("how a flight is cut into calls does not change it"):
@@ -20,10 +20,10 @@ class ReducedModelSuite extends munit.FunSuite:
     while now < 0.83 do
       now = (now + 0.03 * source.nextDouble()).min(0.83)
       cut.advance(now)
-    assertEqualsDouble(cut.x, whole.x, 1e-12)
-    assertEqualsDouble(cut.y, whole.y, 1e-12)
-    assertEqualsDouble(cut.vx, whole.vx, 1e-12)
-    assertEqualsDouble(cut.vy, whole.vy, 1e-12)
+    assertEqualsDouble(cut.reading.northM, whole.reading.northM, 1e-12)
+    assertEqualsDouble(cut.reading.eastM, whole.reading.eastM, 1e-12)
+    assertEqualsDouble(cut.reading.northMps, whole.reading.northMps, 1e-12)
+    assertEqualsDouble(cut.reading.eastMps, whole.reading.eastMps, 1e-12)
 
   test("a piece is the solution of its differential equation"):
     // Euler's method with a millionth of a second, within one piece and so one speed for the drag.
@@ -41,16 +41,20 @@ class ReducedModelSuite extends munit.FunSuite:
       vx += (pull * ex - cx / model.turnLagS - drag * (along * ex + cx)) * step
       vy += (pull * ey - cy / model.turnLagS - drag * (along * ey + cy)) * step
     flight.advance(span)
-    assertEqualsDouble(flight.x, x, 1e-5)
-    assertEqualsDouble(flight.y, y, 1e-5)
-    assertEqualsDouble(flight.vx, vx, 1e-5)
-    assertEqualsDouble(flight.vy, vy, 1e-5)
+    assertEqualsDouble(flight.reading.northM, x, 1e-5)
+    assertEqualsDouble(flight.reading.eastM, y, 1e-5)
+    assertEqualsDouble(flight.reading.northMps, vx, 1e-5)
+    assertEqualsDouble(flight.reading.eastMps, vy, 1e-5)
 
   test("drag settles where the pull balances c v²"):
     val flight = moving(model)
     flight.act(0, 10, 0)
     flight.advance(60)
-    assertEqualsDouble((0.95 * 10 - flight.vx) / 1.7, 0.01 * flight.vx * flight.vx, 1e-6)
+    assertEqualsDouble(
+      (0.95 * 10 - flight.reading.northMps) / 1.7,
+      0.01 * flight.reading.northMps * flight.reading.northMps,
+      1e-6
+    )
 
   test("without drag and with one lag it is the three-parameter model"):
     val reduced  = Reduced(0.9, 0.8, 0.05)
@@ -67,7 +71,7 @@ class ReducedModelSuite extends munit.FunSuite:
     assertEqualsDouble(vehicles(1).vy, vehicles(0).vy, 1e-9)
 
   test("as a predictor it holds a command back for the dead time, whatever the spans it is asked for"):
-    val predictor       = ReducedVehicleModel(model)
+    val predictor       = PlantModel(model)
     val seen            = Kinematics(Vector3(0, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
     val told            = Setpoint.velocityZ(10, 0, -20)
     def after(ms: Int*) = predictor.kinematics(ms.foldLeft(predictor.start(seen))((state, span) =>

@@ -1,42 +1,53 @@
 package skein.identify
 
-import skein.vehicle.ReducedFlight
+import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
 /** Where a vehicle was and how fast, horizontally: s, m, m/s. */
-final case class Sample(atS: Double, x: Double, y: Double, vx: Double, vy: Double)
+final case class Sample(atS: Double, x: Double, y: Double, vx: Double, vy: Double):
+  def reading: PlaneReading = PlaneReading(x, y, vx, vy)
 
 /** A commanded horizontal velocity and when it came to the vehicle: s, m/s. */
-final case class Arrival(atS: Double, vx: Double, vy: Double)
+final case class ArrivedCommand(atS: Double, vx: Double, vy: Double)
 
 /** One vehicle's flight: what it was told and what it did, on one clock, both in the order of their times.
   *
   * @param downM
   *   the altitude that its commands keep, NED
   */
-final case class Flown(name: String, samples: Vector[Sample], arrivals: Vector[Arrival], downM: Double):
+final case class TimeHistory(
+    name: String,
+    samples: Vector[Sample],
+    arrivals: Vector[ArrivedCommand],
+    downM: Double
+):
 
   private val times = arrivals.map(_.atS).toArray
 
+  /** A plant's state at each sample: carried on from the sample before, and corrected by what was read. */
+  def states[S](plant: ObservedPlant[S]): Vector[S] =
+    val flight = PlantFlight(plant)
+    val first  = samples.headOption.map(sample => plant.corrected(plant.initial, sample.reading))
+    first.toVector.flatMap: first =>
+      (1 until samples.size).scanLeft(first): (state, sample) =>
+        predict(flight, state, sample - 1, samples(sample).atS - samples(sample - 1).atS)(_ => ())
+        plant.corrected(flight.state, samples(sample).reading)
+
   /** Predicts from one sample over all later ones within a horizon.
     *
-    * @param flight
-    *   of a model with this dead time
+    * @param state
+    *   at that sample
     * @param each
     *   told of each later sample's index, when the flight is there
     */
-  def predict(
-      flight: ReducedFlight,
-      deadTimeS: Double,
-      from: Int,
-      horizonS: Double
-  )(each: Int => Unit): Unit =
-    val start = samples(from)
+  def predict[S](flight: PlantFlight[S], state: S, from: Int, horizonS: Double)(each: Int => Unit): Unit =
+    val deadTimeS = flight.plant.deadTimeS
+    val start     = samples(from)
     // The first command that does not act yet.
     var next     = firstAfter(start.atS - deadTimeS)
     val (ux, uy) = if next == 0 then (0.0, 0.0) else (arrivals(next - 1).vx, arrivals(next - 1).vy)
-    flight.start(start.atS, start.x, start.y, start.vx, start.vy, ux, uy)
+    flight.start(start.atS, state, ux, uy)
     var sample = from + 1
-    while sample < samples.size && samples(sample).atS <= start.atS + horizonS + Flown.Rounding do
+    while sample < samples.size && samples(sample).atS <= start.atS + horizonS + TimeHistory.Rounding do
       val atS = samples(sample).atS
       while next < arrivals.size && times(next) + deadTimeS <= atS do
         flight.act(times(next) + deadTimeS, arrivals(next).vx, arrivals(next).vy)
@@ -47,12 +58,12 @@ final case class Flown(name: String, samples: Vector[Sample], arrivals: Vector[A
 
   /** Indices of samples at least this far apart from each other, from each of which a whole horizon can be predicted. */
   def starts(everyS: Double, horizonS: Double): Vector[Int] =
-    val last = samples.lastOption.fold(0.0)(_.atS) - horizonS + Flown.Rounding
+    val last = samples.lastOption.fold(0.0)(_.atS) - horizonS + TimeHistory.Rounding
     samples.indices
       .foldLeft(Vector.empty[Int]): (chosen, index) =>
         val atS = samples(index).atS
         if atS <= last && chosen.lastOption.forall(before =>
-            atS >= samples(before).atS + everyS - Flown.Rounding
+            atS >= samples(before).atS + everyS - TimeHistory.Rounding
           )
         then chosen :+ index
         else chosen
@@ -73,5 +84,5 @@ final case class Flown(name: String, samples: Vector[Sample], arrivals: Vector[A
     while index < times.length && times(index) <= timeS do index += 1
     index
 
-object Flown:
+object TimeHistory:
   private[identify] val Rounding = 1e-9

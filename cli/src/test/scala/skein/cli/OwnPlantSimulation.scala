@@ -1,0 +1,79 @@
+package skein.cli
+
+import java.nio.file.{Files, Path}
+import skein.forecast.Structure
+import skein.policy.{Axis, SearchSpace}
+import skein.scenario.Scenarios
+import skein.testing.{Lengthy, Optimised, TemporaryFolders}
+import skein.vehicle.{ObservedPlant, PlaneReading}
+
+/** How fast a vehicle gains speed, which no reading tells. */
+final case class Leaning(seen: PlaneReading, northMps2: Double, eastMps2: Double)
+
+/** Leans before it gains speed. */
+final case class Leaner(gain: Double, lagS: Double, leanLagS: Double) extends ObservedPlant[Leaning]:
+  def initial: Leaning                                       = Leaning(PlaneReading(0, 0, 0, 0), 0, 0)
+  def stepS: Double                                          = 0.05
+  def read(state: Leaning): PlaneReading                     = state.seen
+  def corrected(state: Leaning, seen: PlaneReading): Leaning = state.copy(seen = seen)
+
+  def step(state: Leaning, northMps: Double, eastMps: Double, dtS: Double): Leaning =
+    import state.seen
+    val share = 1 - StrictMath.exp(-dtS / leanLagS)
+    val north = state.northMps2 + share * ((gain * northMps - seen.northMps) / lagS - state.northMps2)
+    val east  = state.eastMps2 + share * ((gain * eastMps - seen.eastMps) / lagS - state.eastMps2)
+    val next  = PlaneReading(
+      seen.northM + seen.northMps * dtS,
+      seen.eastM + seen.eastMps * dtS,
+      seen.northMps + north * dtS,
+      seen.eastMps + east * dtS
+    )
+    Leaning(next, north, east)
+
+/** A program with a structure of its own, as a user writes it. */
+object Leaners extends SkeinApp(Scenarios.ours.kinds*):
+  override def structures: Seq[Structure] = Seq(Structure(
+    "leaning",
+    SearchSpace(Vector(Axis("gain", 0.1, 2, 1), Axis("lag-s", 0.2, 10, 2), Axis("lean-lag-s", 0.02, 1, 0.1))),
+    values => Leaner(values(0), values(1), values(2))
+  ))
+
+class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
+  private def run(program: SkeinApp, words: String): (Int, String) =
+    val ran = Ran.of(program.run(words.split(' ').toSeq))
+    (ran.status, ran.said)
+
+  private def done(words: String): String =
+    val (status, said) = run(Leaners, words)
+    assertEquals(status, 0, said)
+    said
+
+  private def recording(folder: Path): Path =
+    Files.list(folder).filter(_.toString.endsWith("vpn.duckdb")).findFirst.get
+
+  folder.test(
+    "a plant of one's own is fitted to flights, flies searches, predicts in flight, and is replayed"
+  ): folder =>
+    val flight = "fly --clock virtual --link vpn --duration"
+    done(s"$flight 40s --loop stream --out $folder/flown"): Unit
+    val fitted = done(s"identify ${recording(folder.resolve("flown"))} --structure leaning --out $folder")
+    assert(fitted.contains("lean-lag-s") && !fitted.contains("Off the full quadrotor"), fitted)
+    val model = folder.resolve("model.conf")
+    assert(Files.readString(model).contains("use = leaning"))
+
+    val search = s"search --plant $model --candidates 4 --episodes 2 --fresh 4 --duration 12s --out $folder"
+    assert(done(s"$search/shared --loop stream").contains("SIMD"))
+    val foreseen = done(s"$search/foreseen --loop predictive")
+    assert(foreseen.contains("the lanes predict by reduced models"), foreseen)
+
+    done(s"$flight 8s --loop predictive --predictor $model --out $folder/foreseen"): Unit
+    val flown = recording(folder.resolve("foreseen"))
+    assert(done(s"replay $flown").contains("same"))
+
+    // Skein's own program does not know the structure: not in a file, and not in a recording.
+    val (status, said) = run(Main, s"search --plant $model --candidates 4")
+    assertEquals(status, 1)
+    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), came 'leaning'"), said)
+    val (again, why) = run(Main, s"replay $flown")
+    assertEquals(again, 1)
+    assert(why.contains("expected a model's name or five numbers, came 'leaning "), why)

@@ -1,0 +1,62 @@
+package skein.forecast
+
+import skein.policy.{Axis, SearchSpace}
+import skein.vehicle.{ObservedPlant, ReducedModel}
+
+/** Plants of one form that differ in named parameters: what `skein identify` fits to flights, and what a model file names.
+  *
+  * @param label
+  *   as on the command line and in model files, for example `drag`
+  * @param space
+  *   the free parameters: names with their units, bounds, and as defaults the guesses from which a fit begins; a fit that
+  *   ends at a bound says so
+  * @param make
+  *   a plant of one value per axis; a pure function
+  */
+final class Structure(val label: String, val space: SearchSpace, make: Vector[Double] => ObservedPlant[?]):
+  for name <- label +: names do
+    require(
+      name.matches("[A-Za-z][A-Za-z0-9-]*"),
+      s"structure $label: expected letters, digits and dashes as a name, came '$name'"
+    )
+
+  /** Of the parameters, in the order of a fit's values. */
+  def names: Vector[String] = space.axes.map(_.name)
+
+  def plant(values: Vector[Double]): ObservedPlant[?] =
+    require(
+      values.size == space.dimension,
+      s"structure $label: expected ${space.dimension} values, came ${values.size}"
+    )
+    make(values)
+
+  override def toString: String = label
+
+/** Those of a [[skein.vehicle.ReducedModel]]: a parameter that is not free says that its effect is absent. The bounds are
+  * wider than any multirotor.
+  */
+object Structure:
+  private val gain     = Axis("gain", 0.05, 5, 0.9)
+  private val lag      = Axis("lag-s", 0.02, 30, 1)
+  private val deadTime = Axis("dead-time-s", 0, 1, 0.05)
+  private val drag     = Axis("drag-per-m", 0, 1, 0.005)
+  private val turnLag  = Axis("turn-lag-s", 0.02, 30, 1)
+
+  private def reduced(label: String, more: Axis*)(make: Vector[Double] => ReducedModel): Structure =
+    Structure(label, SearchSpace(Vector(gain, lag, deadTime) ++ more), make)
+
+  /** A first-order lag with gain and dead time: what the SIMD kernels fly. */
+  val Lag: Structure = reduced("lag")(v => ReducedModel(v(0), v(1), v(2), v(1), 0))
+
+  /** Besides, the velocity across the command has a lag of its own. */
+  val Turn: Structure = reduced("turn", turnLag)(v => ReducedModel(v(0), v(1), v(2), v(3), 0))
+
+  /** Besides, quadratic drag; one lag in all directions. */
+  val Drag: Structure = reduced("drag", drag)(v => ReducedModel(v(0), v(1), v(2), v(1), v(3)))
+
+  /** Both. */
+  val DragAndTurn: Structure =
+    reduced("drag-and-turn", drag, turnLag)(v => ReducedModel(v(0), v(1), v(2), v(4), v(3)))
+
+  /** Skein's own, the simplest first. */
+  val ours: Vector[Structure] = Vector(Lag, Turn, Drag, DragAndTurn)

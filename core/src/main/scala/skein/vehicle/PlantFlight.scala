@@ -1,0 +1,40 @@
+package skein.vehicle
+
+/** One vehicle that flies by a [[Plant]], from one event to the next. Mutable. How its time is cut into calls of
+  * [[advance]] does not change the flight, but for rounding.
+  */
+final class PlantFlight[S](val plant: Plant[S]):
+  private var wantedNorthMps, wantedEastMps = 0.0
+  private var stepAtS                       = 0.0
+  private var from                          = plant.initial // when the present step began
+  private var now                           = from
+
+  def state: S              = now
+  def reading: PlaneReading = plant.read(now)
+
+  /** Places it; the command given here, m/s, acts from the start. */
+  def start(atS: Double, state: S, northMps: Double = 0, eastMps: Double = 0): Unit =
+    now = state
+    command(atS, northMps, eastMps)
+
+  /** A command, m/s, that acts from now on: dead time is the caller's. */
+  def act(atS: Double, northMps: Double, eastMps: Double): Unit =
+    advance(atS)
+    command(atS, northMps, eastMps)
+
+  /** Flies until this time, s; never earlier than the call before. */
+  def advance(untilS: Double): Unit =
+    while untilS > stepAtS + plant.stepS do
+      fly(plant.stepS)
+      beginStep(stepAtS + plant.stepS)
+    if untilS > stepAtS then fly(untilS - stepAtS)
+
+  private def command(atS: Double, northMps: Double, eastMps: Double): Unit =
+    wantedNorthMps = northMps; wantedEastMps = eastMps
+    beginStep(atS)
+
+  private def beginStep(atS: Double): Unit =
+    stepAtS = atS
+    from = now
+
+  private def fly(spanS: Double): Unit = now = plant.step(from, wantedNorthMps, wantedEastMps, spanS)

@@ -1,0 +1,73 @@
+package skein.vehicle
+
+import skein.signal.Kinematics
+import skein.units.*
+
+/** Predicts by a plant, horizontally; the altitude goes on as it was seen. Setpoints that are no velocities are taken as
+  * "stand still". Orientation stays as seen.
+  */
+final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[PlantModel.Flying[S]]:
+  import PlantModel.*
+
+  private val deadTime = Span.ofSeconds(plant.deadTimeS)
+
+  def start(seen: Kinematics): Flying[S] =
+    Flying(seen, plant.corrected(plant.initial, readingOf(seen)), Still, Still, Vector.empty)
+
+  def advanced(flying: Flying[S], setpoint: Setpoint, span: Span): Flying[S] =
+    val told         = velocityOf(setpoint)
+    val coming       = if told == flying.told then flying.coming else flying.coming :+ Coming(told, deadTime)
+    val (due, later) = coming.partition(_.in <= span)
+    val flight       = PlantFlight(plant)
+    flight.start(0, flying.state, flying.acting.x, flying.acting.y)
+    for command <- due do flight.act(command.in.toSeconds, command.velocityNed.x, command.velocityNed.y)
+    flight.advance(span.toSeconds)
+    val seen    = flying.now
+    val reading = flight.reading
+    val down    = seen.positionNed.z + seen.velocityNed.z * span.toSeconds
+    Flying(
+      seen.copy(
+        positionNed = Vector3(reading.northM, reading.eastM, down),
+        velocityNed = Vector3(reading.northMps, reading.eastMps, seen.velocityNed.z)
+      ),
+      flight.state,
+      due.lastOption.fold(flying.acting)(_.velocityNed),
+      told,
+      later.map(command => command.copy(in = command.in - span))
+    )
+
+  def corrected(flying: Flying[S], seen: Kinematics, sinceSeen: Span): Flying[S] =
+    flying.copy(now = seen, state = plant.corrected(flying.state, readingOf(seen)))
+
+  def kinematics(flying: Flying[S]): Kinematics = flying.now
+
+object PlantModel:
+
+  /** @param acting
+    *   the commanded velocity that acts, m/s
+    * @param told
+    *   the one that came last
+    * @param coming
+    *   what has come and does not act yet, the oldest first
+    */
+  final case class Flying[S] private[vehicle] (
+      now: Kinematics,
+      state: S,
+      acting: Vector3,
+      told: Vector3,
+      coming: Vector[Coming]
+  )
+
+  /** @param in
+    *   until it acts
+    */
+  final case class Coming private[vehicle] (velocityNed: Vector3, in: Span)
+
+  private val Still = Vector3.Zero
+
+  private def readingOf(seen: Kinematics): PlaneReading =
+    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+
+  private def velocityOf(setpoint: Setpoint): Vector3 =
+    if setpoint.horizontal == HorizontalMode.Velocity then Vector3(setpoint.first, setpoint.second, 0)
+    else Still

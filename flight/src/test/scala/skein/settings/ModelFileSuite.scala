@@ -1,0 +1,79 @@
+package skein.settings
+
+import java.nio.file.Files
+import skein.forecast.Structure
+import skein.forward.PlantResponse
+import skein.identify.{Fitted, HorizonError, Identification}
+import skein.policy.{Axis, SearchSpace}
+import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
+import skein.vehicle.*
+
+/** Reached at once, after a time: a plant of a user's own. */
+final case class Late(gain: Double, override val deadTimeS: Double) extends ObservedPlant[PlaneReading]:
+  def initial: PlaneReading                                            = PlaneReading(0, 0, 0, 0)
+  def stepS: Double                                                    = 0.1
+  def read(state: PlaneReading): PlaneReading                          = state
+  def corrected(state: PlaneReading, seen: PlaneReading): PlaneReading = seen
+  def step(from: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+    val (north, east) = (gain * northMps, gain * eastMps)
+    PlaneReading(from.northM + north * dtS, from.eastM + east * dtS, north, east)
+
+class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
+  private val late = Structure(
+    "late",
+    SearchSpace(Vector(Axis("gain", 0, 2), Axis("dead-time-s", 0, 1))),
+    values => Late(values(0), values(1))
+  )
+  private given scenarios: Scenarios = Scenarios(Scenarios.ours.kinds, ownStructures = Vector(late))
+
+  private def fit(structure: Structure, values: Double*): Fit =
+    val fitted =
+      structure.names.zip(values).map((name, value) => Fitted(name, value, value - 1, value + 1, false))
+    val found = Identification(structure, fitted, structure.plant(values.toVector), 100, 9, 0.1, 0.2)
+    Fit(found, Vector.empty, Vector(HorizonError(1, 50, 0.1, 0.2, 0.3, 0.4)))
+
+  private def text(use: Structure): String = ModelFile.render(
+    use,
+    Vector(fit(Structure.Lag, 0.9, 2, 0.1), fit(late, 0.75, 0.25)),
+    ModelFile.Provenance(Vector("one.duckdb"), Vector("Red"), 2, "1", altitudeM = Some(5))
+  )
+
+  test("a file of a structure of one's own is read back, for what flies and for what predicts"):
+    val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
+    val file = ModelFile.read(path).fold(fail(_), identity)
+    assertEquals(file.use, late)
+    assertEquals(file.plant, Late(0.75, 0.25))
+    assertEquals(file.reduced.map(_.gain), Some(0.9))
+    val predictor = PredictionModel.parse(path)
+    assertEquals(predictor, Right(PredictionModel.Own(late, Vector(0.75, 0.25))))
+    assertEquals(predictor.map(_.at(20)), Right(PlantModel(Late(0.75, 0.25))))
+    assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(Late(0.75, 0.25))))
+
+  test("only models of Skein's structures hold at the altitude of their flights alone"):
+    def altitude(use: Structure) = ModelFile.parse(text(use), "model.conf").map(_.altitudeM)
+    assertEquals(altitude(Structure.Lag), Right(Some(5.0)))
+    assertEquals(altitude(late), Right(None))
+
+  test("a recording keeps which structure predicted, by which values"):
+    val model = PredictionModel.Own(late, Vector(0.1 + 0.2, 0.25))
+    assertEquals(PredictionModel.recorded(PredictionModel.text(model)), Some(model))
+    assertEquals(PredictionModel.recorded(PredictionModel.text(model))(using Scenarios.ours), None)
+    assertEquals(PredictionModel.recorded("late 0.5"), None)
+
+  test("a program that does not know the structure says which it knows"):
+    val said = ModelFile.parse(text(late), "model.conf")(using Scenarios.ours)
+    assertEquals(
+      said.left.toOption,
+      Some("model.conf: use: expected a structure (lag, turn, drag, drag-and-turn), came 'late'")
+    )
+
+  test("plans are refused with a model of one's own structure, by which none is made"):
+    val path  = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
+    val flags = com.typesafe.config.ConfigFactory.parseString(
+      s"""skein.fly { loops = [plan], links = [none], predictor = "$path" }"""
+    )
+    val said = FlySettings.read(
+      flags.withFallback(com.typesafe.config.ConfigFactory.load())
+    ).left.getOrElse("accepted")
+    assert(said.contains("predictor: expected a reduced model with the loop plan"), said)
