@@ -6,14 +6,12 @@ import pureconfig.*
 import pureconfig.error.CannotConvert
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
-import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
 import skein.record.ImagingSensor
 import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.units.Decimals.fixed
 import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
@@ -287,7 +285,7 @@ object FlySettings:
         s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and vehicles of another role, came with '${settings.scenario.name}'"
       )
     ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
-    val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
+    val all = if mistakes.isEmpty then predictorMistake(settings).toSeq else mistakes
     Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
 
   /** `paused` waits with its simulator stopped. */
@@ -315,15 +313,6 @@ object FlySettings:
       .flatMap(agent => PredictionModel.mistake(settings.predictor, -agent.startPositionNed.z))
       .headOption
       .map("predictor: " + _)
-
-  private def planMistake(settings: FlySettings): Option[String] =
-    val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
-    settings.multirotors
-      .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
-      .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
-      .map(lagS =>
-        s"planning.step: plans need vehicles with a lag of at least ${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
-      )
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 

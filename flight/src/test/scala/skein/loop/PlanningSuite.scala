@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, Separation, Target}
+import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, SeparationCost, Target}
 import skein.policy.{
   AgentPolicy,
   Course,
@@ -34,11 +34,11 @@ class PlanningSuite extends munit.FunSuite:
     "vehicles that are neither planned nor the opponent are kept from where a separation is set, with a metre more"
   ):
     val apart = part(PlanSettings(separationM = 5))
-    assertEquals(apart.objective.separation, Separation(5, margin = 1))
+    assertEquals(apart.objective.separation, SeparationCost(5, margin = 1))
     assertEquals(apart.situation.others.size, 1) // the other pair's evader
     assert(PursuitPlanning(fleet, pursuer, PlanSettings(separationM = 5), 3).regardsTeam)
     val alone = part(PlanSettings())
-    assertEquals(alone.objective.separation, Separation(0, margin = 0))
+    assertEquals(alone.objective.separation, SeparationCost(0, margin = 0))
     assertEquals(alone.situation.others.size, 0)
     assert(!PursuitPlanning(fleet, pursuer, PlanSettings(), 3).regardsTeam)
 
@@ -47,13 +47,13 @@ class PlanningSuite extends munit.FunSuite:
   ):
     val settings = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
     val kept     = part(settings)
-    assertEquals(kept.objective.separation, Separation(8, margin = 1))
+    assertEquals(kept.objective.separation, SeparationCost(8, margin = 1))
     assertEquals(kept.situation.others.size, 2) // both evaders
     val least = PlanSettings(kept = Vector(skein.scenario.Kept.Apart(0.5)))
-    assertEquals(part(least).objective.separation, Separation(1.5, margin = 1))
+    assertEquals(part(least).objective.separation, SeparationCost(1.5, margin = 1))
     assertEquals(part(least).situation.others.size, 2)
     val little = PlanSettings(separationM = 0.5)
-    assertEquals(part(little).objective.separation, Separation(0.5, margin = 1))
+    assertEquals(part(little).objective.separation, SeparationCost(0.5, margin = 1))
     assert(PursuitPlanning(fleet, pursuer, little, 3).regardsTeam)
 
   /** What is decided in the place of a plan by a policy that turns so far from where it was told to head, 0.25 rad. */

@@ -31,15 +31,19 @@ object Manoeuvre:
   * @param speedSds
   *   m/s
   */
-final case class Search(
+final case class SamplingDistribution(
     turnMeans: IArray[Float],
     turnSds: IArray[Float],
     speedMeans: IArray[Float],
     speedSds: IArray[Float]
 ):
   /** With a share of its deviations. */
-  def narrowed(share: Float): Search =
-    copy(turnSds = turnSds.map(_ * share), speedSds = speedSds.map(_ * share))
+  def narrowed(share: Float): SamplingDistribution =
+    def narrow(sds: IArray[Float]) =
+      val less = Array.ofDim[Float](sds.length)
+      for step <- sds.indices do less(step) = sds(step) * share
+      IArray.unsafeFromArray(less)
+    copy(turnSds = narrow(turnSds), speedSds = narrow(speedSds))
 
 /** The best manoeuvre found so far, and where to look for better ones. Immutable.
   *
@@ -50,4 +54,10 @@ final case class Search(
   * @param candidates
   *   tried so far
   */
-final case class Plan(manoeuvre: Manoeuvre, cost: Float, search: Search, slices: Int, candidates: Long)
+final case class Plan(
+    manoeuvre: Manoeuvre,
+    cost: Float,
+    search: SamplingDistribution,
+    slices: Int,
+    candidates: Long
+)
