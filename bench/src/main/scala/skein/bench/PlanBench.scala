@@ -7,7 +7,7 @@ import skein.link.BackgroundThread
 import skein.loop.planning.{PlanSearch, ThreadedPlanWorkers}
 import skein.planning.*
 import skein.policy.PaperEvader
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 /** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of pursuer and
   * evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads are those of the `plan`
@@ -18,17 +18,18 @@ import skein.vehicle.ReducedModel
   * The witness is the cost of the best plan. Run: `./sbtw "bench/runMain skein.bench.PlanBench"`.
   */
 object PlanBench:
+  private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.AirSim, at)
+
   private val evader =
-    Target.Opponent(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, headingRad = 0, PaperEvader())
+    Target.Opponent(vehicle(PlaneReading(15, 3, 4, 0)), speed = 5, headingRad = 0, PaperEvader())
 
   def problem(behaviours: Int): PlanProblem =
     val settings  = PlannerSettings(blocksPerSlice = 4)
-    val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
+    val objective = PlanCost(CommandLimits.paperPursuer, cruiseSpeed = 10)
     val situation = Situation(
-      Motion(0, 0, 8, 0),
+      vehicle(PlaneReading(0, 0, 8, 0)),
       0,
       0.1,
-      ReducedModel.AirSim,
       Behaviours.around(evader, behaviours, stream = 1)
     )
     PlanProblem(settings, Vector(Part(objective, situation, stream = 1)))

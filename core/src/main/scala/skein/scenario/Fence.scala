@@ -22,12 +22,22 @@ enum Fence:
         val (alongN, alongE) = (n2 - n1, e2 - e1)
         val length           = alongN * alongN + alongE * alongE
         val share            =
-          if length == 0 then 0.0 else (((north - n1) * alongN + (east - e1) * alongE) / length).max(0).min(1)
+          if length == 0 then 0.0
+          else ((north - n1) * (alongN / length) + (east - e1) * (alongE / length)).max(0).min(1)
         nearest =
           nearest.min(StrictMath.hypot(north - n1 - share * alongN, east - e1 - share * alongE))
-        if (e1 > east) != (e2 > east) && north < alongN * (east - e1) / alongE + n1 then isInside = !isInside
+        if (e1 > east) != (e2 > east) && north < (east - e1) * (alongN / alongE) + n1 then
+          isInside = !isInside
         at += 1
       if isInside then -nearest else nearest
+
+  /** The same, counted from another place. Sides are cut off 1,000 km from there, so that floats hold their squares. */
+  def from(northM: Double, eastM: Double): Fence =
+    def within(value: Double) = value.max(-1e6).min(1e6)
+    this match
+      case Circle(north, east, radius) => Circle(within(north - northM), within(east - eastM), radius)
+      case Polygon(corners)            =>
+        Polygon(corners.map((north, east) => (within(north - northM), within(east - eastM))))
 
 object Fence:
   def rectangle(minNorthM: Double, maxNorthM: Double, minEastM: Double, maxEastM: Double): Fence =

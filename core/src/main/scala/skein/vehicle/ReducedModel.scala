@@ -43,28 +43,48 @@ final case class ReducedModel(
   /** Within a piece of the flight, from its begin. */
   def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
     import from.{eastMps as vy, northMps as vx}
-    val wanted = math.sqrt(wantedVx * wantedVx + wantedVy * wantedVy)
-    val speed  = math.sqrt(vx * vx + vy * vy)
-    // Told to stand still, all velocity dies away with the lag along.
-    val alongX             = if wanted > 0 then wantedVx / wanted else if speed > 0 then vx / speed else 1.0
-    val alongY             = if wanted > 0 then wantedVy / wanted else if speed > 0 then vy / speed else 0.0
-    val drag               = dragPerM * speed
-    val rateAlong          = 1 / lagS + drag
-    val rateCross          = 1 / turnLagS + drag
-    val goal               = gain * wanted / (lagS * rateAlong)
-    val along              = vx * alongX + vy * alongY
-    val excess             = along - goal
-    val (crossVx, crossVy) = (vx - along * alongX, vy - along * alongY)
-    val leftAlong          = StrictMath.exp(-rateAlong * spanS)
-    val leftCross          = if turns then StrictMath.exp(-rateCross * spanS) else leftAlong
-    val movedAlong         = goal * spanS + excess * (1 - leftAlong) / rateAlong
-    val movedCross         = (1 - leftCross) / rateCross
-    val reached            = goal + excess * leftAlong
+    val drag             = dragPerM * math.sqrt(vx * vx + vy * vy)
+    val rate             = 1 / lagS + drag
+    val perRate          = 1 / rate
+    val left             = StrictMath.exp(-rate * spanS)
+    val carriesS         = (1 - left) * perRate
+    val reached          = gain / lagS * perRate
+    val (goalVx, goalVy) = (wantedVx * reached, wantedVy * reached)
+    val (offVx, offVy)   = (vx - goalVx, vy - goalVy)
+    val alike            = PlaneReading(
+      from.northM + goalVx * spanS + offVx * carriesS,
+      from.eastM + goalVy * spanS + offVy * carriesS,
+      goalVx + offVx * left,
+      goalVy + offVy * left
+    )
+    if turns then across(alike, wantedVx, wantedVy, offVx, offVy, left, carriesS, drag, spanS) else alike
+
+  /** Of what the velocity is off, the part across the command dies away at its own rate. Told to stand still, all dies
+    * away with the lag along.
+    */
+  private def across(
+      alike: PlaneReading,
+      wantedVx: Double,
+      wantedVy: Double,
+      offVx: Double,
+      offVy: Double,
+      left: Double,
+      carriesS: Double,
+      drag: Double,
+      spanS: Double
+  ): PlaneReading =
+    val square     = wantedVx * wantedVx + wantedVy * wantedVy
+    val share      = (offVx * wantedVx + offVy * wantedVy) / square
+    val crossVx    = if square > 0 then offVx - share * wantedVx else 0
+    val crossVy    = if square > 0 then offVy - share * wantedVy else 0
+    val crossRate  = 1 / turnLagS + drag
+    val crossLeft  = StrictMath.exp(-crossRate * spanS)
+    val carryMoreS = (1 - crossLeft) / crossRate - carriesS
     PlaneReading(
-      from.northM + alongX * movedAlong + crossVx * movedCross,
-      from.eastM + alongY * movedAlong + crossVy * movedCross,
-      alongX * reached + crossVx * leftCross,
-      alongY * reached + crossVy * leftCross
+      alike.northM + crossVx * carryMoreS,
+      alike.eastM + crossVy * carryMoreS,
+      alike.northMps + crossVx * (crossLeft - left),
+      alike.eastMps + crossVy * (crossLeft - left)
     )
 
 object ReducedModel:

@@ -37,7 +37,7 @@ import skein.vehicle.ReducedModel
   *   of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds [[PlanSettings.SpeedDoubt]]; not in
   *   the text
   * @param response
-  *   of the vehicles to their commands; across the command it is taken to be as along it
+  *   of the vehicles to their commands
   */
 final case class PlanSettings(
     deadline: Span = Span.ofMillis(60),
@@ -86,8 +86,7 @@ final case class PlanSettings(
 
   /** [[response]] of a vehicle at this altitude; the one that AirSim's quadrotor has by default depends on it. */
   def responseAt(altitudeM: Double): ReducedModel =
-    if response == ReducedModel.AirSim then ReducedModel.airSimAt(altitudeM)
-    else response.copy(turnLagS = response.lagS)
+    if response == ReducedModel.AirSim then ReducedModel.airSimAt(altitudeM) else response
 
   def planner: PlannerSettings =
     PlannerSettings(
@@ -143,8 +142,8 @@ object PlanSettings:
   val SpeedDoubt = 0.1
 
   private val methods = Map(
-    CrossEntropy -> Method.CrossEntropy(elites = 48, smoothing = 0.2),
-    PathIntegral -> Method.PathIntegral(temperature = 0.1)
+    CrossEntropy -> PlanMethod.CrossEntropy(elites = 48, smoothing = 0.2),
+    PathIntegral -> PlanMethod.PathIntegral(temperature = 0.1)
   )
 
   /** Work for a tenth of a millisecond with lanes, for two without. */

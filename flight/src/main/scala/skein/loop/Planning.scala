@@ -5,7 +5,7 @@ import skein.policy.{Agent, Fleet}
 import skein.record.PlannedPath
 import skein.signal.Kinematics
 import skein.units.*
-import skein.vehicle.{ReducedModel, VehicleKind}
+import skein.vehicle.{PlaneReading, ReducedModel, VehicleKind}
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
 private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings):
@@ -60,7 +60,7 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
 
   /** Where the plan leads. */
   private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
-    val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).fly(manoeuvre).track
+    val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).track(manoeuvre)
     val steps = Vector.range(0, track.steps)
     PlannedPath(steps.map(track.x), steps.map(track.y), Span.ofSeconds(planner.dtS))
 
@@ -156,10 +156,10 @@ object Planning:
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
     memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
 
-  private[loop] def motion(seen: Kinematics): Motion =
-    Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+  private[loop] def motion(seen: Kinematics): PlaneReading =
+    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
-  private[loop] def straight(motion: Motion, planner: PlannerSettings): PredictedTrack =
+  private[loop] def straight(motion: PlaneReading, planner: PlannerSettings): PredictedTrack =
     PredictedTrack.straight(motion, planner.steps, planner.dtS)
 
   /** The vehicles of which nothing is planned, but for one. */

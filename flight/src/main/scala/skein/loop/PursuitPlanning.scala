@@ -21,7 +21,12 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
     settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
 
   private val objective = PlanCost(
-    Limits(speed * settings.slowestShare, speed, speed / settings.turningRadiusM, settings.turningRadiusM),
+    CommandLimits(
+      speed * settings.slowestShare,
+      speed,
+      speed / settings.turningRadiusM,
+      settings.turningRadiusM
+    ),
     carried = PursuitPlanning.Carried,
     closest = PursuitPlanning.Closest,
     capture = PursuitPlanning.Capture,
@@ -40,10 +45,9 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
       else if regardsTeam then Planning.unplanned(fleet, but = opponent)
       else Vector.empty
     val situation = Situation(
-      motion(view.kinematics(self)),
+      PredictedVehicle(response, motion(view.kinematics(self))),
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
-      response,
       Behaviours.around(target(opponent, view), settings.behaviours, stream),
       others.map(other => straight(motion(view.kinematics(other)), planner))
     )
@@ -54,7 +58,7 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
     OpponentModel.of(fleet.agents(opponent)) match
       case Right(policy) =>
         val speed = fleet.agents(opponent).speed.value
-        Target.Opponent(now, response, speed, view.headingRad(opponent, fleet), policy)
+        Target.Opponent(PredictedVehicle(response, now), speed, view.headingRad(opponent, fleet), policy)
       case Left(_) => Target.Along(straight(now, planner))
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1 || speed < agent.speed.value

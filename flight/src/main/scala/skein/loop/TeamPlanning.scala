@@ -20,7 +20,7 @@ private final class TeamPlanning(
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
   private val objective = PlanCost(
-    Limits(0, settings.speedMps(policy.mostMps), TeamPlanning.MostTurnRad / settings.planner.dtS),
+    CommandLimits(0, settings.speedMps(policy.mostMps), TeamPlanning.MostTurnRad / settings.planner.dtS),
     distance = 1,
     carried = 0.5,
     turning = 0.002,
@@ -37,7 +37,6 @@ private final class TeamPlanning(
 
   def pose(memory: Memory, view: TeamView, now: Instant): Part =
     val request = decider.request(memory, view, now)
-    val own     = motion(view.kinematics(self))
     val wanted  = Vector.tabulate(planner.steps)(step => policy.wanted(request, (step + 1) * planner.dtS))
     val others  =
       if minimumM == 0 then Vector.empty
@@ -47,10 +46,9 @@ private final class TeamPlanning(
         )
     val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))
     val alone = Situation(
-      own,
+      PredictedVehicle(response, motion(view.kinematics(self))),
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
-      response,
       Vector(Behaviour(Target.Along(along))),
       others
     )
@@ -63,7 +61,7 @@ private final class TeamPlanning(
     )
 
   /** After a longer pause the first turn is no sharper. */
-  private def turningAtOnce(sinceDecisionS: Double): Limits =
+  private def turningAtOnce(sinceDecisionS: Double): CommandLimits =
     val most =
       if sinceDecisionS > 0 then TeamPlanning.MostTurnRad / sinceDecisionS else Double.PositiveInfinity
     objective.limits.copy(maxTurnRate = objective.limits.maxTurnRate.min(most))
@@ -74,7 +72,11 @@ private final class TeamPlanning(
     StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
   /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better at it. */
-  private def suggested(request: TeamObservation, situation: Situation, limits: Limits): Vector[Manoeuvre] =
+  private def suggested(
+      request: TeamObservation,
+      situation: Situation,
+      limits: CommandLimits
+  ): Vector[Manoeuvre] =
     if policy.minimumM > 0 then Vector.empty
     else Vector(PolicyManoeuvre.of(policy, request, situation, limits, planner.steps, planner.dtS))
 
@@ -85,7 +87,7 @@ private final class TeamPlanning(
     PlannedMove(course.headingRad - memory.headingRad, settings.speedMps(course.speedMps), Vector.empty)
 
 private object TeamPlanning:
-  /** Of a multirotor that turns on the spot: as far as candidates can turn at once ([[skein.planning.Planner]]). What is
-    * less than its policy turns keeps a vehicle from turning back in time.
+  /** Of a multirotor that turns on the spot, in a step. What is less than its policy turns keeps a vehicle from turning
+    * back in time.
     */
   val MostTurnRad = 1.0

@@ -6,14 +6,12 @@ import pureconfig.*
 import pureconfig.error.CannotConvert
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
-import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
 import skein.record.ImagingSensor
 import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.units.Decimals.fixed
 import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
@@ -321,20 +319,13 @@ object FlySettings:
       .map("predictor: " + _)
 
   private def planMistake(settings: FlySettings): Option[String] =
-    val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
-    def lags     = settings.multirotors.map(agent =>
-      settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS
-    )
     settings.predictor match
-      case _ if !settings.loops.contains(LoopKind.Plan) => None
-      case PredictionModel.Own(structure, _)            =>
+      case PredictionModel.Own(structure, _) if settings.loops.contains(LoopKind.Plan) =>
         Some(
-          s"predictor: expected a reduced model with the loop plan, which plans by no other, came one of structure ${structure.label}"
+          "predictor: expected a reduced model with the loop plan, which plans by no other, " +
+            s"came one of structure ${structure.label}"
         )
-      case _ =>
-        lags.find(_ < shortest).map(lagS =>
-          s"planning.step: plans need vehicles with a lag of at least ${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
-        )
+      case _ => None
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 

@@ -124,4 +124,4 @@ class SettingsSuite extends munit.FunSuite:
     assertEquals(PlanSettings().geofences, Vector.empty)
     assertEquals(PlanSettings().responseAt(35), ReducedModel.airSimAt(35))
     val own = ReducedModel.AirSim.copy(lagS = 0.3)
-    assertEquals(PlanSettings(response = own).responseAt(35), own.copy(turnLagS = 0.3))
+    assertEquals(PlanSettings(response = own).responseAt(35), own)

@@ -26,7 +26,7 @@ public abstract class LaneFunction {
    * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An
    *     output must not lie where an input does.
    * @param offsets where in its array each begins
-   * @param parameters at their {@link #place places}
+   * @param parameters at their {@link #place places}; where all worlds have the same, one after the other
    * @param scratch of {@link #scratch()} numbers
    */
   public abstract void apply(float[][] arrays, int[] offsets, float[] parameters, float[] scratch);

@@ -6,7 +6,7 @@ import skein.formula.{Node, Op, Trace}
 import skein.simd.{LaneCompiler, LaneFunction}
 
 /** A compiled function, and which inputs of the expressions it was compiled from are its inputs. Expressions that are
-  * alike but for the numbers of their inputs share the code.
+  * alike but for the numbers of their inputs share the code. Parameters are the same in all worlds.
   *
   * @param inputs
   *   numbers in the expressions, in the order of the function's inputs
@@ -25,9 +25,6 @@ private[lanes] object BoundFunction:
   private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int])
   private val compiled = ConcurrentHashMap[Key, LaneFunction]()
 
-  /** @param outputs
-    *   of inputs and constants alone
-    */
   def of(outputs: Vector[Node]): BoundFunction =
     val trace  = Trace()
     val number = mutable.LinkedHashMap.empty[Int, Int]
@@ -35,7 +32,6 @@ private[lanes] object BoundFunction:
     for node <- Trace.needed(outputs) do
       made(node) = node.op match
         case Op.Input => trace.input(number.getOrElseUpdate(node.index, number.size))
-        case Op.Param => throw IllegalArgumentException("expected inputs, came a parameter")
         case _        => trace.again(node, node.args.map(made))
     val own      = outputs.map(made)
     val needed   = Trace.needed(own)
@@ -46,18 +42,37 @@ private[lanes] object BoundFunction:
   private def leafOf(node: Node): Long =
     if node.isConst then java.lang.Double.doubleToRawLongBits(node.value) else node.index.toLong
 
-/** Calls a [[BoundFunction]] on arrays that are put in the places of its inputs and outputs. Mutable. */
-private[lanes] final class LaneCall(bound: BoundFunction):
+/** Calls a [[BoundFunction]] on arrays that are put in the places of its inputs and outputs. Mutable.
+  *
+  * @param parameters
+  *   read at each call
+  */
+private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Float] = Array.emptyFloatArray):
   private val arrays  = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)
   private val offsets = Array.ofDim[Int](arrays.length)
+  private val starts  = Array.ofDim[Int](arrays.length)
+  private val strides = Array.ofDim[Int](arrays.length)
   private val scratch = Array.ofDim[Float](bound.function.scratch)
-  private val none    = Array.emptyFloatArray
 
   /** Where an input's numbers begin, by the function's number of it. */
-  def input(number: Int, array: Array[Float], offset: Int): Unit =
-    arrays(number) = array; offsets(number) = offset
+  def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
+    arrays(number) = array
+    offsets(number) = offset
+    starts(number) = offset
+    strides(number) = stride
 
-  def output(number: Int, array: Array[Float], offset: Int): Unit =
-    input(bound.inputs.length + number, array, offset)
+  def output(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
+    input(bound.inputs.length + number, array, offset, stride)
 
-  def apply(): Unit = bound.function.apply(arrays, offsets, none, scratch)
+  def apply(): Unit = bound.function.apply(arrays, offsets, parameters, scratch)
+
+  def rewind(): Unit = System.arraycopy(starts, 0, offsets, 0, offsets.length)
+
+  /** Afterwards everything begins its stride further on, or, at the end of an array, at its start. */
+  def next(): Unit =
+    apply()
+    var i = 0
+    while i < offsets.length do
+      val on = offsets(i) + strides(i)
+      offsets(i) = if strides(i) > 0 && on >= arrays(i).length then 0 else on
+      i += 1

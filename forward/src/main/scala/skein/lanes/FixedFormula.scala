@@ -1,49 +1,73 @@
 package skein.lanes
 
-import skein.formula.{Angles, Formula, Node, Trace}
+import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
   *
+  * @param alike
+  *   so many of the method's last inputs are the same in all worlds too
   * @param extra
   *   inputs behind the method's own
   * @param changed
   *   what is computed in the place of the method's outputs
   */
-private[lanes] final class FixedFormula(
+private[skein] final class FixedFormula(
     formula: Formula,
     of: AnyRef,
+    val alike: Int = 0,
     extra: Int = 0,
     changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs
 ):
-  import FixedFormula.First
-  private val inputs = formula.inputs.size + extra
+  private val own = formula.inputs.size - alike
 
-  /** What is computed of the inputs and of the object's own numbers; and these. */
-  val (bound, numbers) =
+  /** What is computed of the inputs and of [[parameters]]; and how the object's own numbers make those. */
+  private[lanes] val (bound, evaluation) =
     val trace  = Trace()
-    val angles =
-      Angles(formula.trace, trace, trace.input, _ => None, number => trace.input(First + number))
+    val angles = Angles(
+      formula.trace,
+      trace,
+      input => if input < own then trace.input(input) else trace.param(input - own),
+      _ => None,
+      number => trace.param(alike + number)
+    )
     val outputs = changed(trace, formula.outputs.map((_, node) => angles.convert(node)))
-    val values  = formula.evaluate(angles.derived, Array.emptyDoubleArray, formula.parametersOf(of))
-    (BoundFunction.of(outputs), values)
+    (BoundFunction.of(outputs), Evaluation(angles.derived))
+
+  /** Whether another object's method is this formula, with numbers of its own. */
+  def fits(other: AnyRef): Boolean = formula.fits(other)
+
+  /** Behind the inputs that are alike: what an object that [[fits]] is computed with. */
+  private[lanes] def parametersOf(other: AnyRef): Array[Double] =
+    Array.ofDim[Double](alike) ++ evaluation(Array.emptyDoubleArray, formula.parametersOf(other))
+
+  private[lanes] val parameters: Array[Double] = parametersOf(of)
 
   /** The inputs of [[bound]] for those of the method. */
-  def inputsOf(own: Array[Double]): Array[Double] =
-    bound.inputs.map(input => if input < First then own(input) else numbers(input - First))
+  private[lanes] def inputsOf(own: Array[Double]): Array[Double] = bound.inputs.map(own(_))
 
-  def call: FixedFormula.Call = FixedFormula.Call(bound, numbers, inputs)
+  /** For the object that it was compiled for. */
+  def call: FixedFormula.Call = FixedFormula.Call(this, parameters.map(_.toFloat), own, own + extra)
 
-private[lanes] object FixedFormula:
-  /** The first of the inputs that are the object's numbers. */
-  private val First = 1 << 20
+private[skein] object FixedFormula:
+  /** @param alike
+    *   so many of the method's last inputs are the same in all worlds
+    */
+  def of(target: AnyRef, method: String, alike: Int): FixedFormula =
+    FixedFormula(Formula.of(target, method).fold(throw _, identity), target, alike)
 
   /** Mutable. */
-  final class Call(bound: BoundFunction, numbers: Array[Double], inputs: Int):
-    private val call   = LaneCall(bound)
+  final class Call(formula: FixedFormula, parameters: Array[Float], own: Int, inputs: Int):
+    private val call   = LaneCall(formula.bound, parameters)
     private val places = Array.fill(inputs)(-1)
-    for (input, place) <- bound.inputs.zipWithIndex do
-      if input < First then places(input) = place
-      else call.input(place, Array.fill(TimetableVehicles.WORLDS)(numbers(input - First).toFloat), 0)
+    for (input, place) <- formula.bound.inputs.zipWithIndex do places(input) = place
+
+    /** From now on for another object, which [[FixedFormula.fits]]. */
+    def take(of: AnyRef): Unit =
+      val numbers = formula.parametersOf(of)
+      for i <- formula.alike until numbers.length do parameters(i) = numbers(i).toFloat
+
+    /** An input that is the same in all worlds. */
+    def everywhere(number: Int, value: Float): Unit = parameters(number - own) = value
 
     /** From where in an array on an input's numbers stand, one of each world. */
     def input(number: Int, array: Array[Float], from: Int): Unit =
@@ -58,8 +82,25 @@ private[lanes] object FixedFormula:
 
     def output(number: Int, array: Array[Float], from: Int): Unit = call.output(number, array, from)
 
+    /** An input of which each [[next]] call takes the next row, and after the last the first.
+      *
+      * @param apart
+      *   so many numbers
+      */
+    def rows(number: Int, array: Array[Float], from: Int, apart: Int): Unit =
+      if places(number) >= 0 then call.input(places(number), array, from, apart)
+
+    def outputRows(number: Int, array: Array[Float], from: Int, apart: Int): Unit =
+      call.output(number, array, from, apart)
+
     /** So many outputs, one after the other, from the first on. */
     def outputs(count: Int, array: Array[Float], from: Int): Unit =
       for i <- 0 until count do output(i, array, from + i * TimetableVehicles.WORLDS)
 
     def apply(): Unit = call()
+
+    /** Afterwards rows are the next ones. */
+    def next(): Unit = call.next()
+
+    /** Goes back to the first rows. */
+    def rewind(): Unit = call.rewind()

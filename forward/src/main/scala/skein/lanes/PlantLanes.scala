@@ -6,7 +6,7 @@ import skein.forward.Duelist
 import skein.vehicle.Plant
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
-private[lanes] final class PlantLanes private (val plant: Plant[?], stepping: Formula, reading: Formula):
+private[skein] final class PlantLanes private (val plant: Plant[?], stepping: Formula, reading: Formula):
   import PlantLanes.*
 
   /** How many numbers its state is. */
@@ -30,12 +30,12 @@ private[lanes] final class PlantLanes private (val plant: Plant[?], stepping: Fo
   val read: FixedFormula = FixedFormula(
     reading,
     plant,
-    2,
-    (trace, outputs) =>
+    extra = 2,
+    changed = (trace, outputs) =>
       outputs.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(count + i)) else node)
   )
 
-private[lanes] object PlantLanes:
+private[skein] object PlantLanes:
   def of(plant: Plant[?]): Either[String, PlantLanes] =
     for
       step <- Formula.of(plant, "step").left.map(refused)
@@ -47,7 +47,8 @@ private[lanes] object PlantLanes:
 
   private def refused(why: Untraceable) = s"the vehicle is no formula: ${why.getMessage}"
 
-  private def numbersOf(state: Any): Vector[Double] = state match
+  /** A state's numbers in their order. */
+  def numbersOf(state: Any): Vector[Double] = state match
     case number: Double   => Vector(number)
     case several: Product => several.productIterator.flatMap(numbersOf).toVector
     case _                => Vector.empty

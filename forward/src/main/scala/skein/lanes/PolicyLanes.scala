@@ -96,9 +96,11 @@ private[skein] final class PolicyLanes private (formula: Formula):
   lazy val functionWithoutEffort: LaneFunction =
     LaneCompiler.compile(inputs, course, LaneObservation.READ, parameters)
 
-  /** The same of differences, which [[inputs]] are then. */
-  lazy val functionOfDifferences: LaneFunction =
-    LaneCompiler.compile(inputs, course, parameters = parameters)
+  /** The same for worlds that all have one policy. */
+  lazy val functionOfOne: LaneFunction = LaneCompiler.compile(inputs, course, LaneObservation.READ)
+
+  /** How many numbers these compute. */
+  def courseOutputs: Int = course.size
 
   private val plain      = derived.forall(_.op == Op.Param)
   private val indices    = derived.iterator.map(_.index).toArray

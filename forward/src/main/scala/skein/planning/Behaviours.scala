@@ -17,10 +17,7 @@ object Behaviours:
     def variant(number: Int): Target  = target match
       case opponent: Target.Opponent =>
         opponent.copy(
-          motion = opponent.motion.copy(
-            x = opponent.motion.x + off(number, 0),
-            y = opponent.motion.y + off(number, 1)
-          ),
+          vehicle = opponent.vehicle.moved(off(number, 0), off(number, 1)),
           policy = opponent.policy.guessed(draw(1, number))
         )
       case along: Target.Along =>

@@ -25,7 +25,7 @@ private[planning] abstract class CandidateBlock(steps: Int):
     * @param stepsPerKnot
     *   so many steps share one random number
     */
-  def draw(keys: Array[Int], search: SamplingDistribution, stepsPerKnot: Int): Unit
+  def draw(keys: Array[Int], from: SamplingDistribution, limits: CommandLimits, stepsPerKnot: Int): Unit
 
   /** Flies all candidates. */
   def fly(): Unit

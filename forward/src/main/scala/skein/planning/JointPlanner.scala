@@ -18,7 +18,7 @@ object PlanProblem:
   * A plan is only given up for a better one, and coming too near costs more than all else. So plans that keep apart from
   * one another go on to do so when time passes and parts of them have been flown, even where a tick has no slice for
   * some vehicle; the next tick begins with that one. How well depends on how well the vehicles follow
-  * [[Situation.response]].
+  * [[Situation.own]].
   *
   * Equal problems, plans and numbers of slices give equal plans, to the last bit. Holds the memory for blocks of
   * candidates: one per thread.
@@ -72,8 +72,7 @@ final class JointPlanner:
     Iterator.iterate(warm)(improved(problem, _, search)).drop(slices).next()
 
   private def track(problem: PlanProblem, part: Part, plan: Plan): PredictedTrack =
-    val alone = part.situation.copy(behaviours = Vector.empty, others = Vector.empty)
-    ManoeuvreRollout(alone, part.objective, problem.settings.dtS).fly(plan.manoeuvre).track
+    ManoeuvreRollout(part.situation, part.objective, problem.settings.dtS).track(plan.manoeuvre)
 
 object JointPlanner:
   /** Kept, by their steps; of more, all are made anew. */

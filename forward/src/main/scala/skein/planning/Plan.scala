@@ -39,7 +39,11 @@ final case class SamplingDistribution(
 ):
   /** With a share of its deviations. */
   def narrowed(share: Float): SamplingDistribution =
-    copy(turnSds = turnSds.map(_ * share), speedSds = speedSds.map(_ * share))
+    def narrow(sds: IArray[Float]) =
+      val less = Array.ofDim[Float](sds.length)
+      for step <- sds.indices do less(step) = sds(step) * share
+      IArray.unsafeFromArray(less)
+    copy(turnSds = narrow(turnSds), speedSds = narrow(speedSds))
 
 /** The best manoeuvre found so far, and where to look for better ones. Immutable.
   *

@@ -1,6 +1,7 @@
 package skein.planning
 
 import skein.scenario.Fence
+import skein.vehicle.PlaneReading
 
 /** What a vehicle may be commanded.
   *
@@ -13,7 +14,12 @@ import skein.scenario.Fence
   * @param turningRadius
   *   m: the turn rate stays below speed / radius; 0 for a vehicle that turns on the spot
   */
-final case class Limits(minSpeed: Double, maxSpeed: Double, maxTurnRate: Double, turningRadius: Double = 0):
+final case class CommandLimits(
+    minSpeed: Double,
+    maxSpeed: Double,
+    maxTurnRate: Double,
+    turningRadius: Double = 0
+):
   require(
     0 <= minSpeed && minSpeed <= maxSpeed && maxTurnRate >= 0 && turningRadius >= 0,
     s"limits must not be negative, the least speed not above the greatest: $this"
@@ -24,9 +30,9 @@ final case class Limits(minSpeed: Double, maxSpeed: Double, maxTurnRate: Double,
 
   def turnRateAt(speed: Double): Double = math.min(maxTurnRate, speed * curvature)
 
-object Limits:
+object CommandLimits:
   /** The paper's pursuer: always 10 m/s, and a turning circle of 8 m, so 1.25 rad/s. */
-  val paperPursuer: Limits = Limits(10, 10, 1.25, 8)
+  val paperPursuer: CommandLimits = CommandLimits(10, 10, 1.25, 8)
 
 /** What is not left.
   *
@@ -36,6 +42,13 @@ object Limits:
 final case class Geofence(fence: Fence, marginM: Double = 0):
   /** How far a place is outside, m; negative inside. */
   def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
+
+  /** The costs so far, with what it costs to be at a place at the end of a step. */
+  private[planning] def added(cost: Double, x: Double, y: Double): Double =
+    cost + PlanCost.breach(beyond(x, y))
+
+  /** The same, counted from another origin. */
+  private[planning] def from(x: Double, y: Double): Geofence = copy(fence.from(x, y))
 
 /** How far vehicles stay apart.
   *
@@ -90,7 +103,7 @@ final case class SeparationCost(
   *   there does not hurry; above 0 only where nothing is captured
   */
 final case class PlanCost(
-    limits: Limits,
+    limits: CommandLimits,
     distance: Double = 1,
     closest: Double = 0,
     carried: Double = 1,
@@ -107,3 +120,120 @@ final case class PlanCost(
     softness == 0 || softness > 0 && capture == 0,
     s"expected no softness, or one above 0 m and no capture, came $softness m and a capture worth $capture"
   )
+
+  // Formulas: of doubles in ManoeuvreRollout, of a block's candidates in PlanKernel. They add to the costs so far.
+
+  /** What a step of a manoeuvre commands, and what it costs by itself: its effort.
+    *
+    * @param headingRad
+    *   commanded before
+    * @param turnRate
+    *   rad/s, for `turnS`
+    * @param speed
+    *   m/s
+    */
+  private[planning] def steered(
+      cost: Double,
+      headingRad: Double,
+      turnRate: Double,
+      speed: Double,
+      turnS: Double,
+      dtS: Double
+  ): Steered =
+    val heading       = headingRad + turnRate * turnS
+    val (cos, sin)    = (StrictMath.cos(heading), StrictMath.sin(heading))
+    val (aside, slow) = (turnRate * speed, speed - cruiseSpeed)
+    val effort        = aside * aside * (turning * dtS) + slow * slow * (speedChange * dtS)
+    Steered(cost + effort, heading, cos, sin, speed * cos, speed * sin)
+
+  /** What it costs to end a step so far from another vehicle.
+    *
+    * @param clearance
+    *   within which coming nearer costs, m
+    */
+  private[planning] def neared(
+      cost: Double,
+      x: Double,
+      y: Double,
+      otherX: Double,
+      otherY: Double,
+      clearance: Double,
+      dtS: Double
+  ): Double =
+    val distance = StrictMath.hypot(x - otherX, y - otherY)
+    val missing  = (clearance - distance).max(0)
+    cost + missing * missing * (separation.price * dtS) + PlanCost.breach(separation.minimum - distance)
+
+  /** The distances to the target so far, with that at the end of a step. */
+  private[planning] def approached(
+      so: Approach,
+      x: Double,
+      y: Double,
+      targetX: Double,
+      targetY: Double
+  ): Approach =
+    val distance = softened(targetX - x, targetY - y)
+    Approach(so.sum + distance, so.least.min(distance))
+
+  /** What these distances cost, where the horizon ends.
+    *
+    * @param carriesS
+    *   for so long its last velocity carries the vehicle on
+    * @param weight
+    *   of the behaviour
+    */
+  private[planning] def ended(
+      cost: Double,
+      came: Approach,
+      own: PlaneReading,
+      target: PlaneReading,
+      carriesS: Double,
+      targetCarriesS: Double,
+      weight: Double,
+      dtS: Double
+  ): Double =
+    val end = softened(
+      target.northM + target.northMps * targetCarriesS - own.northM - own.northMps * carriesS,
+      target.eastM + target.eastMps * targetCarriesS - own.eastM - own.eastMps * carriesS
+    )
+    val captured = if came.least < captureRadius then capture else 0
+    cost + (came.sum * (distance * dtS) + came.least * closest + end * carried - captured) * weight
+
+  private def softened(dx: Double, dy: Double): Double =
+    math.sqrt(dx * dx + (dy * dy + softness * softness))
+
+object PlanCost:
+  /** What one step costs that breaks a hard limit. */
+  val Breach = 1000.0
+
+  /** Within which hard limits count as broken already when candidates are priced, m: so that what floats find within
+    * them is so in doubles.
+    */
+  val Guard = 0.01
+
+  /** What a step costs that ends so far beyond a hard limit, m. */
+  private[planning] def breach(beyond: Double): Double =
+    if beyond + Guard > 0 then Breach * (1 + (beyond + Guard)) else 0
+
+/** @param cost
+  *   so far
+  * @param headingRad
+  *   commanded, with its cosine and sine
+  * @param northMps
+  *   the commanded velocity
+  */
+private[planning] final case class Steered(
+    cost: Double,
+    headingRad: Double,
+    cos: Double,
+    sin: Double,
+    northMps: Double,
+    eastMps: Double
+)
+
+/** Distances to a target at the ends of steps: their sum and the least of them, m. */
+private[planning] final case class Approach(sum: Double, least: Double)
+
+private[planning] object Approach:
+  /** Before the first step: farther than anything is. */
+  val none: Approach = Approach(0, 1e9)

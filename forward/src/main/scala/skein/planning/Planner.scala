@@ -1,12 +1,12 @@
 package skein.planning
 
-import skein.lanes.PolicyLanes
+import skein.lanes.{PlantLanes, PolicyLanes}
 import skein.policy.Policy
 import skein.simd.WorldRandom
-import skein.vehicle.ReducedModel
+import skein.vehicle.Plant
 
 /** How better manoeuvres are looked for. */
-enum Method:
+enum PlanMethod:
   /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the mean of all
     * candidates, each weighted by e^(−cost / temperature).
     */
@@ -38,7 +38,7 @@ enum Method:
 final case class PlannerSettings(
     steps: Int = 20,
     dtS: Double = 0.1,
-    method: Method = Method.CrossEntropy(elites = 48, smoothing = 0.2),
+    method: PlanMethod = PlanMethod.CrossEntropy(elites = 48, smoothing = 0.2),
     blocksPerSlice: Int = 16,
     stepsPerKnot: Int = 4,
     turnSd: Double = 0.8,
@@ -47,10 +47,10 @@ final case class PlannerSettings(
   require(steps > 0 && dtS > 0, s"the horizon must be positive, came $steps steps of $dtS s")
   require(blocksPerSlice > 0 && stepsPerKnot > 0, "blocks per slice and steps per knot must be positive")
   method match
-    case Method.CrossEntropy(elites, smoothing) =>
+    case PlanMethod.CrossEntropy(elites, smoothing) =>
       require(elites > 0, s"expected one elite at least, came $elites")
       require(smoothing >= 0 && smoothing < 1, s"expected smoothing from 0 to below 1, came $smoothing")
-    case Method.PathIntegral(temperature) =>
+    case PlanMethod.PathIntegral(temperature) =>
       require(temperature > 0, s"the temperature must be positive, came $temperature")
 
   def horizonS: Double     = steps * dtS
@@ -67,18 +67,14 @@ final class Planner private[planning] (
     block: CandidateBlock
 ):
   import settings.*
-  require(
-    objective.limits.maxTurnRate * dtS <= 1 + 1e-9,
-    s"expected at most 1 rad of turn in a step, came ${objective.limits.maxTurnRate * dtS}"
-  )
 
   private val size       = CandidateBlock.Size
   private val limits     = objective.limits
   private val cruise     = math.min(limits.maxSpeed, math.max(limits.minSpeed, objective.cruiseSpeed))
   private val keys       = Array.ofDim[Int](size)
   private val eliteCosts = method match
-    case Method.CrossEntropy(elites, _) => Array.ofDim[Float](elites)
-    case _                              => Array.emptyFloatArray
+    case PlanMethod.CrossEntropy(elites, _) => Array.ofDim[Float](elites)
+    case _                                  => Array.emptyFloatArray
   private val eliteTurns, eliteSpeeds = Array.ofDim[Float](eliteCosts.length * steps)
 
   /** Before anything was planned: straight on. */
@@ -108,7 +104,6 @@ final class Planner private[planning] (
     *   of random numbers: a plan improved with another stream meets other candidates
     */
   def improve(plan: Plan, situation: Situation, stream: Long): Plan =
-    Planner.checkPlannable(situation.response, dtS)
     block.situate(situation, objective, dtS)
     block.forget()
     java.util.Arrays.fill(eliteCosts, Float.PositiveInfinity)
@@ -118,7 +113,8 @@ final class Planner private[planning] (
     for number <- 0 until blocksPerSlice do
       for i <- 0 until size do
         keys(i) = WorldRandom.key(stream, plan.slices, number * size + i)
-      block.draw(keys, plan.search.narrowed(Planner.widths(number % Planner.widths.size)), stepsPerKnot)
+      val width = Planner.widths(number % Planner.widths.size)
+      block.draw(keys, plan.search.narrowed(width), limits, stepsPerKnot)
       if number == 0 then (known(plan) ++ situation.suggested).zipWithIndex.foreach(put)
       block.fly()
       if number == 0 then base = block.costs(0)
@@ -127,11 +123,11 @@ final class Planner private[planning] (
         bestCost = block.costs(least)
         best = manoeuvreAt(least)
       method match
-        case Method.PathIntegral(temperature) => block.weigh(base, temperature.toFloat)
-        case _: Method.CrossEntropy           => gatherElites()
+        case PlanMethod.PathIntegral(temperature) => block.weigh(base, temperature.toFloat)
+        case _: PlanMethod.CrossEntropy           => gatherElites()
     val search = method match
-      case _: Method.PathIntegral            => weightedSearch(plan.search)
-      case Method.CrossEntropy(_, smoothing) => eliteSearch(plan.search, smoothing.toFloat)
+      case _: PlanMethod.PathIntegral            => weightedSearch(plan.search)
+      case PlanMethod.CrossEntropy(_, smoothing) => eliteSearch(plan.search, smoothing.toFloat)
     Plan(best, bestCost, search, plan.slices + 1, plan.candidates + blocksPerSlice.toLong * size)
 
   /** Courses that are always tried: the search's mean, the best, and what a pilot would think of first. */
@@ -170,24 +166,27 @@ final class Planner private[planning] (
     Manoeuvre(column(block.turnRates), column(block.speeds))
 
   private def gatherElites(): Unit =
-    var worst = indexOfWorst
-    var i     = 0
+    val (costs, turnRates, speeds)        = (block.costs, block.turnRates, block.speeds)
+    val (elites, eliteTurns, eliteSpeeds) = (eliteCosts, this.eliteTurns, this.eliteSpeeds)
+    var worst                             = indexOfWorst
+    var i                                 = 0
     while i < size do
-      if block.costs(i) < eliteCosts(worst) then
-        eliteCosts(worst) = block.costs(i)
+      if costs(i) < elites(worst) then
+        elites(worst) = costs(i)
         var step = 0
         while step < steps do
-          eliteTurns(worst * steps + step) = block.turnRates(step * size + i)
-          eliteSpeeds(worst * steps + step) = block.speeds(step * size + i)
+          eliteTurns(step * elites.length + worst) = turnRates(step * size + i)
+          eliteSpeeds(step * elites.length + worst) = speeds(step * size + i)
           step += 1
         worst = indexOfWorst
       i += 1
 
   private def indexOfWorst: Int =
+    val costs = eliteCosts
     var worst = 0
     var i     = 1
-    while i < eliteCosts.length do
-      if eliteCosts(i) > eliteCosts(worst) then worst = i
+    while i < costs.length do
+      if costs(i) > costs(worst) then worst = i
       i += 1
     worst
 
@@ -195,9 +194,9 @@ final class Planner private[planning] (
     def moments(values: Array[Float], means: IArray[Float], sds: IArray[Float]) =
       val (newMeans, newSds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
       for step <- 0 until steps do
-        val mean     = meanOverElites(elite => values(elite * steps + step))
+        val mean     = meanOverElites(elite => values(step * eliteCosts.length + elite))
         val variance = meanOverElites: elite =>
-          val off = values(elite * steps + step) - mean
+          val off = values(step * eliteCosts.length + elite) - mean
           off * off
         newMeans(step) = kept * means(step) + (1 - kept) * mean.toFloat
         newSds(step) = kept * sds(step) + (1 - kept) * math.sqrt(variance).toFloat
@@ -237,20 +236,13 @@ object Planner:
   def apply(settings: PlannerSettings, objective: PlanCost): Planner =
     new Planner(settings, objective, CandidateBlocks(settings.steps))
 
-  private def checkPlannable(model: ReducedModel, dtS: Double): Unit = require(
-    model.turnLagS == model.lagS && model.lagS >= shortestLagS(dtS),
-    s"plans need a vehicle with equal lags of at least $ShortestLag steps of $dtS s, came $model"
-  )
-
-  /** Of a vehicle whose manoeuvres can be planned in such steps, s. */
-  def shortestLagS(dtS: Double): Double = ShortestLag * dtS
-
-  /** In steps: the kernel's series hold for less decay in a step. */
-  private val ShortestLag = 2.5
-
   /** Whether candidates are flown by lanes; otherwise a deadline meets some fifty times fewer of them. */
   def isFast: Boolean = CandidateBlocks.isFast
 
   /** Why nobody plans against an opponent of this policy: by lanes, it must be a formula. */
   def refusal(opponent: Policy): Option[String] =
     if isFast then PolicyLanes.of(opponent).left.toOption.map(_.getMessage) else None
+
+  /** The same of vehicles that move by this plant. */
+  def refusal(plant: Plant[?]): Option[String] =
+    if isFast then PlantLanes.of(plant).left.toOption else None

@@ -17,23 +17,24 @@ object PolicyManoeuvre:
       policy: TeamPolicy,
       observation: TeamObservation,
       situation: Situation,
-      limits: Limits,
+      limits: CommandLimits,
       steps: Int,
       dtS: Double
   ): Manoeuvre =
-    val flyer           = ManoeuvreRollout.Flyer(situation.own, situation.response, dtS)
-    val (turns, speeds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
-    var heading         = situation.headingRad
+    var own: PredictedVehicle[?]                   = situation.own
+    val (turns, speeds)                            = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
+    var heading                                    = situation.headingRad
     def ownIn(values: IArray[Double], own: Double) = values.updated(observation.self, own)
     for step <- 0 until steps do
       val aheadS = step * dtS
+      val at     = own.motion
       val turnS  = if step == 0 then situation.sinceDecisionS else dtS
       val course = policy.course(
         observation.copy(
-          northM = ownIn(later(observation.northM, observation.northMps, aheadS), flyer.x),
-          eastM = ownIn(later(observation.eastM, observation.eastMps, aheadS), flyer.y),
-          northMps = ownIn(observation.northMps, flyer.vx),
-          eastMps = ownIn(observation.eastMps, flyer.vy),
+          northM = ownIn(later(observation.northM, observation.northMps, aheadS), at.northM),
+          eastM = ownIn(later(observation.eastM, observation.eastMps, aheadS), at.eastM),
+          northMps = ownIn(observation.northMps, at.northMps),
+          eastMps = ownIn(observation.eastMps, at.eastMps),
           headingRad = heading,
           elapsedS = turnS
         )
@@ -45,7 +46,7 @@ object PolicyManoeuvre:
       turns(step) = rate.toFloat
       speeds(step) = speed.toFloat
       heading += rate * turnS
-      flyer.fly(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading))
+      own = own.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
   private def later(places: IArray[Double], velocities: IArray[Double], aheadS: Double): IArray[Double] =

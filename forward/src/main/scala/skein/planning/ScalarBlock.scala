@@ -7,26 +7,20 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(ste
   private val size = CandidateBlock.Size
 
   private var rollout: Option[ManoeuvreRollout] = None
-  private var limits: Option[Limits]            = None
 
   def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit =
     rollout = Some(ManoeuvreRollout(situation, objective, dtS))
-    limits = Some(objective.limits)
 
-  def draw(keys: Array[Int], search: SamplingDistribution, stepsPerKnot: Int): Unit =
-    for
-      bounds <- limits
-      i      <- 0 until size
-      step   <- 0 until steps
-    do
+  def draw(keys: Array[Int], from: SamplingDistribution, limits: CommandLimits, stepsPerKnot: Int): Unit =
+    for i <- 0 until size; step <- 0 until steps do
       val knot  = step / stepsPerKnot
       val speed = within(
-        Math.fma(Draws.normal(keys(i), 2 * knot + 1), search.speedSds(step), search.speedMeans(step)),
-        bounds.minSpeed.toFloat,
-        bounds.maxSpeed.toFloat
+        Math.fma(Draws.normal(keys(i), 2 * knot + 1), from.speedSds(step), from.speedMeans(step)),
+        limits.minSpeed.toFloat,
+        limits.maxSpeed.toFloat
       )
-      val limit = math.min(speed * bounds.curvature.toFloat, bounds.maxTurnRate.toFloat)
-      val turn  = Math.fma(Draws.normal(keys(i), 2 * knot), search.turnSds(step), search.turnMeans(step))
+      val limit = math.min(speed * limits.curvature.toFloat, limits.maxTurnRate.toFloat)
+      val turn  = Math.fma(Draws.normal(keys(i), 2 * knot), from.turnSds(step), from.turnMeans(step))
       turnRates(step * size + i) = within(turn, -limit, limit)
       speeds(step * size + i) = speed
 

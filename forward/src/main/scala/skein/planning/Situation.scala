@@ -1,10 +1,7 @@
 package skein.planning
 
 import skein.policy.Policy
-import skein.vehicle.ReducedModel
-
-/** Where a vehicle is and how it moves, horizontally: m and m/s, world NED. */
-final case class Motion(x: Double, y: Double, vx: Double, vy: Double)
+import skein.vehicle.PlaneReading
 
 /** Where somebody will be at the end of each step of the horizon, m, world NED: x north, y east. */
 final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
@@ -24,10 +21,10 @@ final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
 object PredictedTrack:
 
   /** Who goes on with the velocity that they have. */
-  def straight(from: Motion, steps: Int, dtS: Double): PredictedTrack =
+  def straight(from: PlaneReading, steps: Int, dtS: Double): PredictedTrack =
     PredictedTrack(
-      IArray.tabulate(steps)(step => from.x + from.vx * dtS * (step + 1)),
-      IArray.tabulate(steps)(step => from.y + from.vy * dtS * (step + 1))
+      IArray.tabulate(steps)(step => from.northM + from.northMps * dtS * (step + 1)),
+      IArray.tabulate(steps)(step => from.eastM + from.eastMps * dtS * (step + 1))
     )
 
   /** Who keeps the speed and goes on turning.
@@ -35,24 +32,29 @@ object PredictedTrack:
     * @param turnRateRadPerS
     *   from north towards east
     */
-  def turning(from: Motion, turnRateRadPerS: Double, steps: Int, dtS: Double): PredictedTrack =
+  def turning(from: PlaneReading, turnRateRadPerS: Double, steps: Int, dtS: Double): PredictedTrack =
     if math.abs(turnRateRadPerS) < 1e-6 then straight(from, steps, dtS)
     else
+      import from.{eastMps as vy, northMps as vx}
       val angles = IArray.tabulate(steps)(step => turnRateRadPerS * dtS * (step + 1))
       PredictedTrack(
         angles.map(a =>
-          from.x + (from.vx * StrictMath.sin(a) - from.vy * (1 - StrictMath.cos(a))) / turnRateRadPerS
+          from.northM + (vx * StrictMath.sin(a) - vy * (1 - StrictMath.cos(a))) / turnRateRadPerS
         ),
         angles.map(a =>
-          from.y + (from.vx * (1 - StrictMath.cos(a)) + from.vy * StrictMath.sin(a)) / turnRateRadPerS
+          from.eastM + (vx * (1 - StrictMath.cos(a)) + vy * StrictMath.sin(a)) / turnRateRadPerS
         )
       )
 
   def standing(x: Double, y: Double, steps: Int): PredictedTrack =
     PredictedTrack(IArray.fill(steps)(x), IArray.fill(steps)(y))
 
-/** What a vehicle is to come close to. */
-enum Target:
+/** What a vehicle is to come close to.
+  *
+  * @param carriesS
+  *   for so long its last velocity carries it on ([[PredictedVehicle.carriesS]]); absent: as long as the vehicle's own
+  */
+enum Target(val carriesS: Option[Double] = None):
   /** Somebody who decides at each step by a policy, upon where both are then, on readings of that moment, and with the
     * heading commanded to this vehicle before.
     *
@@ -61,10 +63,11 @@ enum Target:
     * @param headingRad
     *   commanded last to it
     */
-  case Opponent(motion: Motion, response: ReducedModel, speed: Double, headingRad: Double, policy: Policy)
+  case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: Policy)
+      extends Target(Some(vehicle.carriesS))
 
   /** Somebody or some place whose way does not depend on this vehicle. */
-  case Along(track: PredictedTrack)
+  case Along(track: PredictedTrack) extends Target()
 
 /** One way in which the target may behave, and how much it counts. */
 final case class Behaviour(target: Target, weight: Double = 1)
@@ -72,8 +75,6 @@ final case class Behaviour(target: Target, weight: Double = 1)
 /** What a plan is made upon: the joint state at the moment at which the planned command will act on the vehicle, its
   * dead time over.
   *
-  * @param response
-  *   of the vehicle; its lags must be equal, and its dead time has no effect here
   * @param headingRad
   *   commanded last to this vehicle
   * @param sinceDecisionS
@@ -86,10 +87,9 @@ final case class Behaviour(target: Target, weight: Double = 1)
   *   manoeuvres that every slice tries besides its own, at most 16
   */
 final case class Situation(
-    own: Motion,
+    own: PredictedVehicle[?],
     headingRad: Double,
     sinceDecisionS: Double,
-    response: ReducedModel,
     behaviours: Vector[Behaviour],
     others: Vector[PredictedTrack] = Vector.empty,
     suggested: Vector[Manoeuvre] = Vector.empty

@@ -25,7 +25,7 @@ object LaneCompiler:
     *   so many of the first inputs are differences of two arrays' numbers; what is taken away stands in the arrays behind
     *   those of the outputs
     * @param parameters
-    *   how many each world has
+    *   how many each world has; 0: all worlds have the same
     */
   def compile(inputs: Int, outputs: Vector[Node], differences: Int = 0, parameters: Int = 0): LaneFunction =
     val passes  = Passes.of(outputs)
@@ -110,6 +110,7 @@ private final class PassCompiler(
   private val intConstants   = mutable.HashMap.empty[Int, Int]
   private val pairs          = mutable.HashMap.empty[Node, (Int, Int)]
   private val arrays         = mutable.HashMap.empty[Int, (Int, Int)]
+  private val shared         = mutable.HashMap.empty[Int, Int] // by parameter
   private val world          = 4
   private var next           = 5
 
@@ -138,6 +139,7 @@ private final class PassCompiler(
             for array <- first.arrays.keys.toVector.sorted do arrays(array) = (fresh(), fresh())
             for bits <- first.floatConstants.keys.toVector.sorted do floatConstants(bits) = fresh()
             for value <- first.intConstants.keys.toVector.sorted do intConstants(value) = fresh()
+            for number <- first.shared.keys.toVector.sorted do shared(number) = fresh()
         ): Unit
     ): Unit
     for (array, (place, offset)) <- arrays.toVector.sortBy(_._1) do
@@ -152,6 +154,11 @@ private final class PassCompiler(
       code.getstatic(math, "INTS", species)
       code.loadConstant(value)
       code.invokestatic(int, "broadcast", MethodTypeDesc.of(int, species, ConstantDescs.CD_int))
+      code.astore(place)
+    for (number, place) <- shared do
+      code.getstatic(math, "SPECIES", species)
+      code.aload(2).loadConstant(number).faload()
+      code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
       code.astore(place)
     val (head, end) = (code.newLabel(), code.newLabel())
     code.iconst_0().istore(world)
@@ -192,11 +199,12 @@ private final class PassCompiler(
       case Op.Input =>
         val number = node.index
         if number < differences then two("sub", input(number), input(subtrahends + number)) else input(number)
-      case Op.Param => parameter(node.index)
-      case Op.Neg   => unary("neg", a)
-      case Op.Abs   => unary("abs", a)
-      case Op.Sqrt  => unary("sqrt", a)
-      case Op.Add   =>
+      case Op.Param =>
+        if parameters == 0 then shared.getOrElseUpdate(node.index, fresh()) else parameter(node.index)
+      case Op.Neg  => unary("neg", a)
+      case Op.Abs  => unary("abs", a)
+      case Op.Sqrt => unary("sqrt", a)
+      case Op.Add  =>
         Passes.factor(node) match
           case Some(product) if !slots.contains(product) =>
             val other = if node.args(0) == product then node.args(1) else node.args(0)

@@ -101,7 +101,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       // The number drawn is exact; beyond the probability of detection nothing is found.
       val drawn = scalar.found < camera.detection
       val near  =
-        if drawn then ErrorBound.of(shown, inputs, off, Array.emptyDoubleArray).undecided(shown)
+        if drawn then ErrorBound.of(shown, inputs, off, detected.parameters).undecided(shown)
         else Vector.empty
       Agreement.Departure(1, event.k, event.timeS, Vector(1.0 -> 1.0), near)
 

@@ -9,7 +9,7 @@ import skein.scenario.{Formation, OffRing, Reduction, Scenario, Surround}
 import skein.signal.LatencyDistribution
 import skein.simd.{LaneMath, WorldRandom}
 import skein.units.Span
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 /** What flies by lanes, in short: of each engine, plant, loop and policy a line with the checksum of all results' bits.
   * Machines with other vectors print the same lines, but for the first, which says how many lanes they have.
@@ -100,7 +100,7 @@ object LaneDigests:
   private def plan(target: Target): Bits =
     val settings  = PlannerSettings(steps = 20, blocksPerSlice = 2)
     val objective = PlanCost(
-      Limits(2, 10, 1.25, 6),
+      CommandLimits(2, 10, 1.25, 6),
       closest = 0.7,
       capture = 3,
       captureRadius = 4,
@@ -110,8 +110,8 @@ object LaneDigests:
     val problem = PlanProblem(
       settings,
       Vector.tabulate(3): self =>
-        val from = Motion(3.0 * self, -2.0 * self, 6, 1)
-        val seen = Situation(from, 0.2, 0.1, ReducedModel.AirSim, Vector(Behaviour(target)))
+        val from = PredictedVehicle(ReducedModel.AirSim, PlaneReading(3.0 * self, -2.0 * self, 6, 1))
+        val seen = Situation(from, 0.2, 0.1, Vector(Behaviour(target)))
         Part(objective, seen, stream = self)
     )
     val planner = JointPlanner()
@@ -152,8 +152,13 @@ object LaneDigests:
     do lines += s"$name, ${timing.productPrefix}, $plant: ${team(make, timing, model)}"
     for
       (name, target) <- Seq(
-        "opponent" -> Target.Opponent(Motion(9, 4, -2, 3), ReducedModel.AirSim, 5, 2.1, PaperEvader()),
-        "track"    -> Target.Along(PredictedTrack.turning(Motion(3, -5, 4, 1), 0.4, 20, 0.1))
+        "opponent" -> Target.Opponent(
+          PredictedVehicle(ReducedModel.AirSim, PlaneReading(9, 4, -2, 3)),
+          5,
+          2.1,
+          PaperEvader()
+        ),
+        "track" -> Target.Along(PredictedTrack.turning(PlaneReading(3, -5, 4, 1), 0.4, 20, 0.1))
       )
     do lines += s"plan, $name: ${plan(target)}"
     lines.toSeq

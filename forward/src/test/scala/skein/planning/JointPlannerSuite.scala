@@ -1,13 +1,12 @@
 package skein.planning
 
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 class JointPlannerSuite extends munit.FunSuite:
   private val settings  = PlannerSettings(steps = 30, blocksPerSlice = 1, stepsPerKnot = 3)
-  private val response  = ReducedModel.airSimAt(5)
   private val minimumM  = 2.0
   private val objective = PlanCost(
-    Limits(0, 10, 4),
+    CommandLimits(0, 10, 4),
     carried = 0.5,
     turning = 0.005,
     speedChange = 0.1,
@@ -15,14 +14,23 @@ class JointPlannerSuite extends munit.FunSuite:
     separation = SeparationCost(minimumM, margin = 0.8)
   )
 
+  private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.airSimAt(5), at)
+
   /** @param stepsFlown
     *   when it is planned for
     */
-  private def part(from: Motion, headingRad: Double, toX: Double, toY: Double, stepsFlown: Int, self: Int) =
+  private def part(
+      from: PlaneReading,
+      headingRad: Double,
+      toX: Double,
+      toY: Double,
+      stepsFlown: Int,
+      self: Int
+  ) =
     val goal = PredictedTrack.standing(toX, toY, settings.steps)
     Part(
       objective,
-      Situation(from, headingRad, settings.dtS, response, Vector(Behaviour(Target.Along(goal)))),
+      Situation(vehicle(from), headingRad, settings.dtS, Vector(Behaviour(Target.Along(goal)))),
       stream = 1_000L * stepsFlown + self
     )
 
@@ -31,9 +39,9 @@ class JointPlannerSuite extends munit.FunSuite:
   private def bearing(self: Int): Double = self * 2 * math.Pi / count
 
   /** Everybody on a circle, towards its middle; all want to the other side. */
-  private def start(self: Int): Motion =
+  private def start(self: Int): PlaneReading =
     val (cos, sin) = (math.cos(bearing(self)), math.sin(bearing(self)))
-    Motion(-25 * cos, -25 * sin, 8 * cos, 8 * sin)
+    PlaneReading(-25 * cos, -25 * sin, 8 * cos, 8 * sin)
 
   /** Flies all under their plans, which are made anew each step by so many slices, and tells the least separation and the
     * greatest distance to a goal at the end, m.
@@ -44,7 +52,7 @@ class JointPlannerSuite extends munit.FunSuite:
     val headings                          = Array.tabulate(count)(bearing)
     var last                              = Option.empty[JointPlan]
     var least                             = Double.PositiveInfinity
-    def goal(self: Int): (Double, Double) = (-start(self).x, -start(self).y)
+    def goal(self: Int): (Double, Double) = (-start(self).northM, -start(self).eastM)
     for flown <- 0 until seconds * 10 do
       val parts = Vector.tabulate(count)(self =>
         part(motions(self), headings(self), goal(self)._1, goal(self)._2, flown, self)
@@ -56,16 +64,15 @@ class JointPlannerSuite extends munit.FunSuite:
         val action =
           PlannedMove.of(found.plans(self), found.situation(self, parts(self)), objective, settings.dtS)
         headings(self) += action.turned
-        val flyer = ManoeuvreRollout.Flyer(motions(self), response, settings.dtS)
-        flyer.fly(action.speed * math.cos(headings(self)), action.speed * math.sin(headings(self)))
-        motions(self) = Motion(flyer.x, flyer.y, flyer.vx, flyer.vy)
+        val (north, east) = (action.speed * math.cos(headings(self)), action.speed * math.sin(headings(self)))
+        motions(self) = vehicle(motions(self)).flown(north, east, settings.dtS).motion
       for one <- 0 until count; other <- 0 until one do
-        least =
-          math.min(least, math.hypot(motions(one).x - motions(other).x, motions(one).y - motions(other).y))
+        val (a, b) = (motions(one), motions(other))
+        least = math.min(least, math.hypot(a.northM - b.northM, a.eastM - b.eastM))
     (
       least,
       (0 until count).map(self =>
-        math.hypot(motions(self).x - goal(self)._1, motions(self).y - goal(self)._2)
+        math.hypot(motions(self).northM - goal(self)._1, motions(self).eastM - goal(self)._2)
       ).max
     )
 

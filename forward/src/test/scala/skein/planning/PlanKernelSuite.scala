@@ -1,7 +1,7 @@
 package skein.planning
 
 import skein.formula.ErrorBound
-import skein.lanes.{DuelAgreement, PolicyLanes, UnseenPolicySuite}
+import skein.lanes.{Bicycle, DuelAgreement, PolicyLanes, Rolling, UnseenPolicySuite}
 import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
 import skein.signal.SplitMix64
@@ -12,12 +12,14 @@ class PlanKernelSuite extends munit.FunSuite:
   private val (steps, dtS, knots) = (24, 0.1, 3)
 
   private val evader = opponent(PaperEvader())
-  private val track  = new Target.Along(PredictedTrack.turning(Motion(3, -5, 4, 1), 0.4, steps, dtS))
+  private val track  = new Target.Along(PredictedTrack.turning(PlaneReading(3, -5, 4, 1), 0.4, steps, dtS))
+  private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.AirSim, at)
+
   private def opponent(policy: Policy): Target.Opponent =
-    new Target.Opponent(Motion(9, 4, -2, 3), ReducedModel.AirSim, 5, 2.1, policy)
+    new Target.Opponent(vehicle(PlaneReading(9, 4, -2, 3)), 5, 2.1, policy)
 
   private val objective = PlanCost(
-    Limits(4, 10, 1.25, 6),
+    CommandLimits(4, 10, 1.25, 6),
     closest = 0.7,
     capture = 3,
     captureRadius = 4,
@@ -33,17 +35,17 @@ class PlanKernelSuite extends munit.FunSuite:
   )
 
   private def situation(behaviours: Behaviour*): Situation =
-    Situation(Motion(1, 2, 6, 1), 0.4, 0.13, ReducedModel.AirSim, behaviours.toVector)
+    Situation(vehicle(PlaneReading(1, 2, 6, 1)), 0.4, 0.13, behaviours.toVector)
 
   private val others = Vector(
-    PredictedTrack.straight(Motion(6, 5, -1, 0.5), steps, dtS),
-    PredictedTrack.straight(Motion(-3, 2, 3, 0), steps, dtS)
+    PredictedTrack.straight(PlaneReading(6, 5, -1, 0.5), steps, dtS),
+    PredictedTrack.straight(PlaneReading(-3, 2, 3, 0), steps, dtS)
   )
 
   private def flown(block: CandidateBlock, situation: Situation, objective: PlanCost): CandidateBlock =
     val keys = SplitMix64(5)
     block.situate(situation, objective, dtS)
-    block.draw(Array.fill(size)(keys.nextLong().toInt), search, knots)
+    block.draw(Array.fill(size)(keys.nextLong().toInt), search, objective.limits, knots)
     block.fly()
     block
 
@@ -82,16 +84,16 @@ class PlanKernelSuite extends munit.FunSuite:
   private def jumps(situation: Situation, objective: PlanCost, manoeuvre: Manoeuvre): Seq[Jump] =
     def fly(objective: PlanCost) = ManoeuvreRollout(situation, objective, dtS).fly(manoeuvre)
     val track                    = fly(objective).track
-    val breach                   = ManoeuvreRollout.Breach * (1 + 2 * off)
+    val breach                   = PlanCost.Breach * (1 + 2 * off)
     val limits                   =
       for
         step         <- 0 until steps
         (what, near) <-
           objective.geofences.map: geofence =>
-            ("a fence", geofence.beyond(track.x(step), track.y(step)) + ManoeuvreRollout.Guard)
+            ("a fence", geofence.beyond(track.x(step), track.y(step)) + PlanCost.Guard)
           ++ situation.others.map: other =>
             val distance = math.hypot(track.x(step) - other.x(step), track.y(step) - other.y(step))
-            ("another vehicle", objective.separation.minimum + ManoeuvreRollout.Guard - distance)
+            ("another vehicle", objective.separation.minimum + PlanCost.Guard - distance)
         if near.abs < off
       yield Jump(s"$what, step $step", near, breach)
     val captured =
@@ -128,6 +130,22 @@ class PlanKernelSuite extends munit.FunSuite:
     test(s"kernel and scalar reference agree on a pursuit of an opponent by a policy never seen: $name"):
       assertAgree(situation(Behaviour(opponent(draw(SplitMix64(3))))), objective)
 
+  test("kernel and scalar reference agree on a vehicle by a plant never seen, and on an opponent by it"):
+    val bicycle = PredictedVehicle(Bicycle(1.2, 0.3, 4, 0.4), Rolling(3, -2, 0.4, 5, 0.1), 100, -50, 0.5)
+    assertAgree(situation(Behaviour(track)).copy(own = bicycle), objective)
+    assertAgree(situation(Behaviour(evader.copy(vehicle = bicycle.moved(-104, 55)))), objective)
+
+  test("kernel and scalar reference agree on models that turn slower than they speed up, and on short lags"):
+    for model <- Seq(ReducedModel(0.9, 0.8, 0, 1.4, 0.02), ReducedModel.lag(1, 0.05, 0)) do
+      val moving = PredictedVehicle(model, PlaneReading(1, 2, 6, 1))
+      assertAgree(situation(Behaviour(track)).copy(own = moving), objective)
+      assertAgree(situation(Behaviour(evader.copy(vehicle = moving.moved(8, 2)))), objective)
+
+  test("a step longer than the plant's is flown in pieces"):
+    val own    = vehicle(PlaneReading(1, 2, 6, 1))
+    val halves = own.flown(3, 4, 0.1).flown(3, 4, 0.1)
+    assertEquals(own.flown(3, 4, 0.2).motion, halves.motion)
+
   test("kernel and scalar reference agree on following a track"):
     assertAgree(situation(Behaviour(track)), objective)
 
@@ -135,7 +153,7 @@ class PlanKernelSuite extends munit.FunSuite:
     assertAgree(situation(Behaviour(track)), objective.copy(capture = 0, softness = 2))
 
   test("kernel and scalar reference agree on several behaviours, each by its weight"):
-    val closer = evader.copy(motion = Motion(4, 3, 1, 1))
+    val closer = evader.copy(vehicle = vehicle(PlaneReading(4, 3, 1, 1)))
     assertAgree(situation(Behaviour(evader, 0.5), Behaviour(track, 0.3), Behaviour(closer, 0.2)), objective)
 
   test("kernel and scalar reference agree on what it costs to come near others and to leave the geofence"):

@@ -2,18 +2,20 @@ package skein.planning
 
 import skein.scenario.Fence
 import skein.policy.PaperEvader
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 class PlannerSuite extends munit.FunSuite:
-  private val response  = ReducedModel.AirSim
-  private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
+  private def vehicle(north: Double, east: Double, northMps: Double, eastMps: Double) =
+    PredictedVehicle(ReducedModel.AirSim, PlaneReading(north, east, northMps, eastMps))
+
+  private val objective = PlanCost(CommandLimits.paperPursuer, cruiseSpeed = 10)
   private val evader    =
-    Target.Opponent(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, headingRad = 0, PaperEvader())
-  private val pursuit = Situation(Motion(0, 0, 8, 0), 0, 0.1, response, Vector(Behaviour(evader)))
+    Target.Opponent(vehicle(15, 3, 4, 0), speed = 5, headingRad = 0, PaperEvader())
+  private val pursuit = Situation(vehicle(0, 0, 8, 0), 0, 0.1, Vector(Behaviour(evader)))
 
   private val methods = Seq(
-    "path integral" -> Method.PathIntegral(temperature = 0.1),
-    "cross-entropy" -> Method.CrossEntropy(elites = 48, smoothing = 0.2)
+    "path integral" -> PlanMethod.PathIntegral(temperature = 0.1),
+    "cross-entropy" -> PlanMethod.CrossEntropy(elites = 48, smoothing = 0.2)
   )
 
   private def improved(planner: Planner, situation: Situation, slices: Int, stream: Long = 1): Plan =
@@ -58,22 +60,21 @@ class PlannerSuite extends munit.FunSuite:
     test(s"$name: a plan resumed after a tick starts the next search better than a new one"):
       val planner = Planner(settings, objective)
       val plan    = improved(planner, pursuit, 10)
-      val flown   = pursuit.copy(own = Motion(0.8, 0, 8, 0))
+      val flown   = pursuit.copy(own = vehicle(0.8, 0, 8, 0))
       val warm    = costs(planner.resumed(plan, 0.1).manoeuvre, flown, planner)
       assert(warm < costs(planner.start.manoeuvre, flown, planner))
 
   test("a plan keeps the turning circle and flies round what it must keep apart from"):
     val separation = SeparationCost(minimum = 2, margin = 1)
     val settings   = PlannerSettings(steps = 40)
-    val objective  = PlanCost(Limits(3, 6, 1, 4), cruiseSpeed = 6, separation = separation)
+    val objective  = PlanCost(CommandLimits(3, 6, 1, 4), cruiseSpeed = 6, separation = separation)
     val planner    = Planner(settings, objective)
     val goal       = PredictedTrack.standing(30, 0, settings.steps)
-    val crossing   = PredictedTrack.straight(Motion(12, -12, 0, 5), settings.steps, settings.dtS)
+    val crossing   = PredictedTrack.straight(PlaneReading(12, -12, 0, 5), settings.steps, settings.dtS)
     val situation  = Situation(
-      Motion(0, 0, 5, 0),
+      PredictedVehicle(ReducedModel.lag(0.95, 1, 0), PlaneReading(0, 0, 5, 0)),
       0,
       0.1,
-      ReducedModel.lag(0.95, 1, 0),
       Vector(Behaviour(Target.Along(goal))),
       Vector(crossing, PredictedTrack.standing(9, -3.5, settings.steps))
     )
@@ -92,7 +93,7 @@ class PlannerSuite extends munit.FunSuite:
     val planner   = Planner(settings, fenced)
     val outside   = PredictedTrack.standing(60, 0, settings.steps)
     val situation =
-      pursuit.copy(behaviours = Vector(Behaviour(Target.Along(outside))), own = Motion(0, 0, 4, 0))
+      pursuit.copy(behaviours = Vector(Behaviour(Target.Along(outside))), own = vehicle(0, 0, 4, 0))
     val plan = improved(planner, situation, 10)
     assertEquals(ManoeuvreRollout(situation, fenced, settings.dtS).fly(plan.manoeuvre).breaches, Vector.empty)
 

@@ -1,13 +1,14 @@
 package skein.planning
 
 import skein.policy.{Course, TeamPolicy, TeamObservation}
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 class PolicyManoeuvreSuite extends munit.FunSuite:
-  private val situation   = Situation(Motion(1, 2, 3, 0), 0, 0.1, ReducedModel.airSimAt(5), Vector.empty)
+  private val own         = PredictedVehicle(ReducedModel.airSimAt(5), PlaneReading(1, 2, 3, 0))
+  private val situation   = Situation(own, 0, 0.1, Vector.empty)
   private val observation =
     TeamObservation(0, IArray(1.0, 20.0), IArray(2.0, 0.0), IArray(3.0, 0.0), IArray(0.0, 5.0), 0, 0.1)
-  private val limits = Limits(0, 6, 4)
+  private val limits = CommandLimits(0, 6, 4)
 
   private def flown(policy: TeamPolicy): Manoeuvre =
     PolicyManoeuvre.of(policy, observation, situation, limits, steps = 30, dtS = 0.1)
@@ -25,7 +26,7 @@ class PolicyManoeuvreSuite extends munit.FunSuite:
       seen :+= at
       Course(0, 3)
     val manoeuvre = flown(policy)
-    val track     = ManoeuvreRollout(situation, PlanCost(limits), 0.1).fly(manoeuvre).track
+    val track     = ManoeuvreRollout(situation, PlanCost(limits), 0.1).track(manoeuvre)
     assertEquals(seen.size, 30)
     assertEqualsDouble(seen(10).northM(0), track.x(9), 1e-9)
     assertEqualsDouble(seen(10).eastM(0), track.y(9), 1e-9)

@@ -7,16 +7,21 @@ import skein.link.BackgroundThread
 import skein.planning.*
 import skein.testing.Optimised
 import skein.units.*
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 import skein.vtime.VirtualTime
 
 class PlanSuite extends munit.FunSuite, Optimised:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
-  private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
+  private val objective = PlanCost(CommandLimits.paperPursuer, cruiseSpeed = 10)
   private val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))
 
   private def situation(headingRad: Double): Situation =
-    Situation(Motion(0, 0, 5, 0), headingRad, 0.1, ReducedModel.AirSim, Vector(Behaviour(goal)))
+    Situation(
+      PredictedVehicle(ReducedModel.AirSim, PlaneReading(0, 0, 5, 0)),
+      headingRad,
+      0.1,
+      Vector(Behaviour(goal))
+    )
 
   /** Each answer's time in ms and first turn, with the heading as memory. */
   private def planned(workers: PlanWorkers, ticks: Int): Seq[(Long, PlanStage.Answer)] =

@@ -4,18 +4,20 @@ import scala.jdk.CollectionConverters.*
 import skein.link.BackgroundThread
 import skein.planning.*
 import skein.testing.Optimised
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 /** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is not. */
 class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
-  private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
+  private val objective = PlanCost(CommandLimits.paperPursuer, cruiseSpeed = 10)
+
+  private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.AirSim, at)
 
   private def problem(stream: Long): PlanProblem =
     val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))
-    val situation = Situation(Motion(0, 0, 5, 0), 0, 0.1, ReducedModel.AirSim, Vector(Behaviour(goal)))
+    val situation = Situation(vehicle(PlaneReading(0, 0, 5, 0)), 0, 0.1, Vector(Behaviour(goal)))
     // Two vehicles, of which one finds the other in its way.
-    val meeting = Motion(8, 8, -2, -2)
+    val meeting = vehicle(PlaneReading(8, 8, -2, -2))
     PlanProblem(
       settings,
       Vector(

@@ -1,0 +1,119 @@
+package skein.planning;
+
+import static jdk.incubator.vector.VectorOperators.LSHR;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import skein.simd.LaneMath;
+import skein.simd.LaneRandom;
+
+/**
+ * Draws a block's candidates by SIMD, and weighs them. {@link ScalarBlock} is the scalar reference.
+ */
+abstract class SampledBlock extends CandidateBlock {
+  private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
+
+  // The sum of the four bytes of a hash: nearly normal, with mean 510 and this deviation.
+  private static final float NORMAL_SCALE = Draws.Scale();
+  private static final int BYTES = 0x00ff00ff;
+  private static final int LOWER = 0xffff;
+
+  /** The bits of 2²³, whose lowest ones count up from there: an integer becomes a float by them. */
+  private static final int FLOAT_BITS = 0x4b000000;
+
+  private static final float FLOAT_BASE = 8388608f + 510f;
+
+  private static final int SIZE = CandidateBlock.Size();
+
+  private final int steps;
+  private final float[] weights = new float[SIZE];
+  private final int[] bits = new int[SIZE];
+  private final float[] turnNoise = new float[SIZE], speedNoise = new float[SIZE];
+
+  SampledBlock(int steps) {
+    super(steps);
+    this.steps = steps;
+  }
+
+  @Override
+  public void draw(int[] keys, SamplingDistribution from, CommandLimits limits, int stepsPerKnot) {
+    for (int step = 0, knot = 0; step < steps; step += stepsPerKnot, knot++) {
+      noise(keys, 2 * knot, turnNoise);
+      noise(keys, 2 * knot + 1, speedNoise);
+      int end = Math.min(steps, step + stepsPerKnot);
+      for (int each = step; each < end; each++) perturb(each, from, limits);
+    }
+  }
+
+  private void noise(int[] keys, int place, float[] into) {
+    LaneRandom.upperBits(keys, place, 0, bits, SIZE);
+    IntVector bytes = IntVector.broadcast(INTS, BYTES),
+        lower = IntVector.broadcast(INTS, LOWER),
+        floatBits = IntVector.broadcast(INTS, FLOAT_BITS);
+    FloatVector base = FloatVector.broadcast(SPECIES, FLOAT_BASE),
+        scale = FloatVector.broadcast(SPECIES, NORMAL_SCALE);
+    for (int i = 0; i < SIZE; i += LANES) {
+      IntVector drawn = IntVector.fromArray(INTS, bits, i);
+      IntVector pairs = drawn.and(bytes).add(drawn.lanewise(LSHR, 8).and(bytes));
+      IntVector sum = pairs.and(lower).add(pairs.lanewise(LSHR, 16));
+      sum.or(floatBits)
+          .reinterpretAsFloats()
+          .sub(base)
+          .mul(scale)
+          .intoArray(into, i);
+    }
+  }
+
+  private void perturb(int step, SamplingDistribution from, CommandLimits limits) {
+    float[] turnRates = turnRates(), speeds = speeds();
+    FloatVector slowest = FloatVector.broadcast(SPECIES, (float) limits.minSpeed());
+    FloatVector fastest = FloatVector.broadcast(SPECIES, (float) limits.maxSpeed());
+    FloatVector steepest = FloatVector.broadcast(SPECIES, (float) limits.maxTurnRate());
+    FloatVector curvature = FloatVector.broadcast(SPECIES, (float) limits.curvature());
+    FloatVector turnMean = FloatVector.broadcast(SPECIES, from.turnMeans()[step]);
+    FloatVector turnSd = FloatVector.broadcast(SPECIES, from.turnSds()[step]);
+    FloatVector speedMean = FloatVector.broadcast(SPECIES, from.speedMeans()[step]);
+    FloatVector speedSd = FloatVector.broadcast(SPECIES, from.speedSds()[step]);
+    for (int i = 0, at = step * SIZE; i < SIZE; i += LANES, at += LANES) {
+      FloatVector speed =
+          FloatVector.fromArray(SPECIES, speedNoise, i)
+              .fma(speedSd, speedMean)
+              .max(slowest)
+              .min(fastest);
+      FloatVector limit = speed.mul(curvature).min(steepest);
+      FloatVector turn = FloatVector.fromArray(SPECIES, turnNoise, i).fma(turnSd, turnMean);
+      turn.max(limit.neg()).min(limit).intoArray(turnRates, at);
+      speed.intoArray(speeds, at);
+    }
+  }
+
+  @Override
+  public void weigh(float base, float temperature) {
+    float[] turnRates = turnRates(), speeds = speeds(), costs = costs();
+    float[] turnSums = turnSums(), speedSums = speedSums(), weightSums = weightSums();
+    float coldness = -1 / temperature;
+    for (int i = 0; i < SIZE; i += LANES)
+      FloatVector.fromArray(SPECIES, costs, i)
+          .sub(base)
+          .mul(coldness)
+          .max(LEAST_EXPONENT)
+          .min(MOST_EXPONENT)
+          .intoArray(weights, i);
+    LaneMath.exp(weights, 0, SIZE);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector weight = FloatVector.fromArray(SPECIES, weights, i);
+      FloatVector.fromArray(SPECIES, weightSums, i).add(weight).intoArray(weightSums, i);
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        FloatVector.fromArray(SPECIES, turnRates, at)
+            .fma(weight, FloatVector.fromArray(SPECIES, turnSums, at))
+            .intoArray(turnSums, at);
+        FloatVector.fromArray(SPECIES, speeds, at)
+            .fma(weight, FloatVector.fromArray(SPECIES, speedSums, at))
+            .intoArray(speedSums, at);
+      }
+    }
+  }
+}

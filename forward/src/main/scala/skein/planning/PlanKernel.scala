@@ -1,0 +1,173 @@
+package skein.planning
+
+import java.util.Arrays
+import skein.lanes.FixedFormula
+
+/** Flies many candidate manoeuvres of one vehicle at once and says what each costs, by the same formulas as
+  * [[ManoeuvreRollout]], its scalar reference, compiled; `PlanKernelSuite` holds the two together. The vehicle's own way
+  * does not depend on what its opponent does, so it is flown once and every behaviour of the opponent is flown against
+  * it.
+  *
+  * Positions are counted from where the vehicle starts, so that floats resolve them. Results do not depend on the lane
+  * count. One instance per thread.
+  */
+private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps):
+  import PlanKernel.*
+
+  private var flown       = Option.empty[(Situation, PlanCost, Double)]
+  private var geofences   = Vector.empty[Geofence]
+  private val own, target = VehicleLanes(steps)
+  private var opponents   = Vector.empty[OpponentLanes]
+  private val cos, sin    = Array.ofDim[Float]((steps + 1) * Size) // headed before each step
+  private val north, east = Array.ofDim[Float](Size)
+  // Of these the present row and the next one.
+  private val heading, effort, sum, nearest = Array.ofDim[Float](2 * Size)
+  private val lastRow                       = steps % 2 * Size
+  private var cost, nextCost                = Array.ofDim[Float](Size)
+
+  private val steered = Compiled("steered", alike = 2): call =>
+    for (values, i) <- Seq(effort, heading).zipWithIndex do
+      call.rows(i, values, 0, Size)
+      call.outputRows(i, values, Size, Size)
+    call.rows(2, turnRates, 0, Size)
+    call.rows(3, speeds, 0, Size)
+    call.outputRows(2, cos, Size, Size)
+    call.outputRows(3, sin, Size, Size)
+    call.output(4, north, 0)
+    call.output(5, east, 0)
+  private val inside = Compiled("added", alike = 0): call =>
+    call.rows(1, own.x, Size, Size)
+    call.rows(2, own.y, Size, Size)
+  private val neared     = Compiled("neared", alike = 4)(_ => ())
+  private val approached = Compiled("approached", alike = 0): call =>
+    for (values, i) <- Seq(sum, nearest).zipWithIndex do
+      call.rows(i, values, 0, Size)
+      call.outputRows(i, values, Size, Size)
+    for (values, i) <- Seq(own.x, own.y, target.x, target.y).zipWithIndex do
+      call.rows(2 + i, values, Size, Size)
+  private val ended = Compiled("ended", alike = 4): call =>
+    for (values, i) <- Seq(sum, nearest).zipWithIndex do call.input(1 + i, values, lastRow)
+    for
+      (way, first) <- Seq(own -> 3, target -> 7);
+      (values, i)  <- Seq(way.x, way.y, way.vx, way.vy).zipWithIndex
+    do
+      call.input(first + i, values, steps * Size)
+
+  def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit =
+    flown = Some((situation, objective, dtS))
+    val origin = situation.own.motion
+    geofences = objective.geofences.map(_.from(origin.northM, origin.eastM))
+    val behaviours = situation.behaviours
+    opponents ++= Vector.fill(behaviours.size - opponents.size)(OpponentLanes(steps))
+    for case (Behaviour(opponent: Target.Opponent, _), i) <- behaviours.zipWithIndex do
+      opponents(i).take(opponent)
+
+  def fly(): Unit = for (situation, objective, dtS) <- flown do
+    val origin = situation.own.motion
+    own.take(situation.own, origin, dtS)
+    steer(situation, objective, dtS)
+    for geofence <- geofences do stayInside(geofence)
+    if situation.others.nonEmpty then keepApart(situation, objective, dtS)
+    for (Behaviour(to, weight), i) <- situation.behaviours.zipWithIndex do
+      to match
+        case _: Target.Opponent  => opponents(i).fly(own, cos, sin, origin, dtS, target)
+        case Target.Along(track) => target.follow(track, origin, dtS)
+      val carriesS = situation.own.carriesS
+      score(objective, carriesS, to.carriesS.getOrElse(carriesS), weight, dtS)
+    System.arraycopy(cost, 0, costs, 0, Size)
+
+  private def steer(situation: Situation, objective: PlanCost, dtS: Double): Unit =
+    val steer = steered.of(objective)
+    Arrays.fill(effort, 0, Size, 0f)
+    Arrays.fill(heading, 0, Size, situation.headingRad.toFloat)
+    Arrays.fill(cos, 0, Size, StrictMath.cos(situation.headingRad).toFloat)
+    Arrays.fill(sin, 0, Size, StrictMath.sin(situation.headingRad).toFloat)
+    steer.everywhere(4, situation.sinceDecisionS.toFloat)
+    steer.everywhere(5, dtS.toFloat)
+    var step = 0
+    while step < steps do
+      steer.next()
+      steer.everywhere(4, dtS.toFloat)
+      own.fly(north, east, 1)
+      step += 1
+    System.arraycopy(effort, lastRow, cost, 0, Size)
+
+  private def stayInside(geofence: Geofence): Unit =
+    val stay = inside.of(geofence)
+    var step = 0
+    while step < steps do
+      add(stay)
+      step += 1
+
+  private def keepApart(situation: Situation, objective: PlanCost, dtS: Double): Unit =
+    val origin = situation.own.motion
+    val keep   = neared.of(objective)
+    keep.everywhere(6, dtS.toFloat)
+    for step <- 0 until steps do
+      keep.input(1, own.x, (step + 1) * Size)
+      keep.input(2, own.y, (step + 1) * Size)
+      keep.everywhere(5, objective.separation.clearance((step + 1) * dtS).toFloat)
+      for other <- situation.others do
+        keep.everywhere(3, (other.x(step) - origin.northM).toFloat)
+        keep.everywhere(4, (other.y(step) - origin.eastM).toFloat)
+        add(keep)
+
+  /** What the distance to the target costs. */
+  private def score(
+      objective: PlanCost,
+      carriesS: Double,
+      targetCarriesS: Double,
+      weight: Double,
+      dtS: Double
+  ): Unit =
+    val approach = approached.of(objective)
+    Arrays.fill(sum, 0, Size, Approach.none.sum.toFloat)
+    Arrays.fill(nearest, 0, Size, Approach.none.least.toFloat)
+    var step = 0
+    while step < steps do
+      approach.next()
+      step += 1
+    val end = ended.of(objective)
+    end.everywhere(11, carriesS.toFloat)
+    end.everywhere(12, targetCarriesS.toFloat)
+    end.everywhere(13, weight.toFloat)
+    end.everywhere(14, dtS.toFloat)
+    add(end)
+
+  /** To the costs so far. */
+  private def add(formula: FixedFormula.Call): Unit =
+    formula.input(0, cost, 0)
+    formula.output(0, nextCost, 0)
+    formula.next()
+    val before = cost
+    cost = nextCost
+    nextCost = before
+
+private object PlanKernel:
+  private final val Size = CandidateBlock.Size
+
+  /** A method by lanes, for the object asked last.
+    *
+    * @param alike
+    *   so many of its last arguments are the same for all candidates
+    * @param bind
+    *   tells a call where its numbers are
+    */
+  private final class Compiled(method: String, alike: Int)(bind: FixedFormula.Call => Unit):
+    private var known = Option.empty[(formula: FixedFormula, call: FixedFormula.Call)]
+    private var last  = Option.empty[AnyRef]
+
+    /** At its first rows. */
+    def of(target: AnyRef): FixedFormula.Call =
+      if !last.exists(_ eq target) then
+        known match
+          case Some((formula, call)) if formula.fits(target) => call.take(target)
+          case _                                             =>
+            val formula = FixedFormula.of(target, method, alike)
+            val call    = formula.call
+            bind(call)
+            known = Some((formula, call))
+        last = Some(target)
+      val call = known.get.call
+      call.rewind()
+      call
