@@ -2,7 +2,9 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Every warning of javac is an error. That the vector module is incubating is known, and said at every start. */
+/** Every warning of javac is an error. That the vector module is incubating is known, and said at every
+  * start.
+  */
 object JavaLint extends AutoPlugin {
   override def requires: Plugins      = JvmPlugin
   override def trigger: PluginTrigger = allRequirements

@@ -2,8 +2,8 @@ import sbt.*
 
 /** What pages show as Scala becomes sources, so that whatever a page shows compiles.
   *
-  * Each block is an object of its own, which sees what earlier blocks of its page define and import. What a block takes for granted
-  * stands in a comment before it, which readers of the page do not see:
+  * Each block is an object of its own, which sees what earlier blocks of its page define and import. What a
+  * block takes for granted stands in a comment before it, which readers of the page do not see:
   *
   * {{{
   * <!-- scala
@@ -12,8 +12,9 @@ import sbt.*
   * -->
   * }}}
   *
-  * The block replaces the dots, at their indentation. What a page quotes from a source file, below `<!-- file PATH -->` or
-  * `<!-- lines of PATH -->`, is left out: it is compiled where it stands, and `DocumentationSuite` compares the two.
+  * The block replaces the dots, at their indentation. What a page quotes from a source file, below
+  * `<!-- file PATH -->` or `<!-- lines of PATH -->`, is left out: it is compiled where it stands, and
+  * `DocumentationSuite` compares the two.
   */
 object Snippets {
   private val Block = """(?s)(?:<!-- scala\n(.*?)\n-->\n+)?```scala\n(.*?)\n```""".r

@@ -2,8 +2,8 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Which suites share a JVM, how that compiles, what runs beside it, and which of them `test` leaves to `testAll`: as
-  * `skein.testing.Groups` marks them, or a module.
+/** Which suites share a JVM, how that compiles, what runs beside it, and which of them `test` leaves to
+  * `testAll`: as `skein.testing.Groups` marks them, or a module.
   */
 object TestGroups extends AutoPlugin {
 

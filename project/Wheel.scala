@@ -7,7 +7,9 @@ object Wheel {
   val testedWheel: TaskKey[Unit] =
     taskKey[Unit]("Builds what tests install: the wheel of now where one can be built, else why there is none")
 
-  /** Equal sources give equal bytes: the newest time that a ZIP archive may tell is that of its format's first day. */
+  /** Equal sources give equal bytes: the newest time that a ZIP archive may tell is that of its format's
+    * first day.
+    */
   private val firstDay = "315532800"
 
   /** Why no wheel can be built here, if none can: tests go without it then. */

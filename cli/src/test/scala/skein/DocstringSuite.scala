@@ -4,7 +4,8 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 
-/** Every public definition of the top level says what it is. A companion object may leave that to its class. */
+/** Every public definition of the top level says what it is. A companion object may leave that to its class.
+  */
 class DocstringSuite extends munit.FunSuite:
   private val definition =
     ("""(?:(?:final|sealed|non-sealed|abstract|case|open|opaque|inline|transparent|lazy|public) )*""" +

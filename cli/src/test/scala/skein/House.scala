@@ -4,9 +4,9 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.matching.Regex
 
-/** The house by names: which source file uses which other. It reads words, not trees: a file uses a definition of the top
-  * level if it says its name, and the name stands in its own package, is imported, or is said with its package. A local
-  * definition of the same name can make an arrow too many.
+/** The house by names: which source file uses which other. It reads words, not trees: a file uses a
+  * definition of the top level if it says its name, and the name stands in its own package, is imported, or
+  * is said with its package. A local definition of the same name can make an arrow too many.
   */
 final case class House(sources: Vector[House.Source]):
   import House.*
@@ -49,14 +49,10 @@ final case class House(sources: Vector[House.Source]):
 
 object House:
 
-  /** @param room
-    *   its package
-    * @param defined
-    *   names of the top level
-    * @param imports
-    *   of ours: package and name, or `*`
-    * @param qualified
-    *   said with their package
+  /** @param room its package
+    * @param defined names of the top level
+    * @param imports of ours: package and name, or `*`
+    * @param qualified said with their package
     */
   final case class Source(
       path: Path,

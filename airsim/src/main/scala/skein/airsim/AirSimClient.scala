@@ -8,11 +8,10 @@ import skein.units.*
 import upack.{Bool, Float64, Int32, Msg}
 import upickle.default.{Reader, writeMsg}
 
-/** Calls that concern a whole simulator: the built-in one, AirSim, Colosseum or Cosys-AirSim. Vehicles have their own,
-  * in [[Multirotor]].
+/** Calls that concern a whole simulator: the built-in one, AirSim, Colosseum or Cosys-AirSim. Vehicles have
+  * their own, in [[Multirotor]].
   *
-  * @param timeout
-  *   of every call that answers at once; those that take time by themselves have it on top
+  * @param timeout of every call that answers at once; those that take time by themselves have it on top
   */
 final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(5)):
   private given ExecutionContext = ExecutionContext.parasitic
@@ -34,13 +33,15 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
 
   def isPaused(): Future[Either[RpcError, Boolean]] = get("simIsPaused")
 
-  /** Runs physics for `span` and pauses; answers when that is done. The built-in simulator advances by exactly `span`
-    * and at once; AirSim measures it with the wall clock and overshoots by up to a step.
+  /** Runs physics for `span` and pauses; answers when that is done. The built-in simulator advances by
+    * exactly `span` and at once; AirSim measures it with the wall clock and overshoots by up to a step.
     */
   def continueFor(span: Span): Future[Either[RpcError, Unit]] =
     tell("simContinueForTime", Seq(Float64(span.toSeconds)), once.copy(timeout = timeout + span))
 
-  /** Runs a number of frames and pauses. A frame is a picture in AirSim, a physics step of 3 ms in the built-in one. */
+  /** Runs a number of frames and pauses. A frame is a picture in AirSim, a physics step of 3 ms in the
+    * built-in one.
+    */
   def continueForFrames(frames: Int): Future[Either[RpcError, Unit]] =
     tell("simContinueForFrames", Seq(Int32(frames)), once)
 
@@ -60,8 +61,7 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
       case Right(text) if text.trim.isEmpty => Right(WorldSettings.Default)
       case Right(text)                      => WorldSettings.parse(text).left.map(AirSimError.Settings(_))
 
-  /** @param windNed
-    *   velocity of the air, m/s
+  /** @param windNed velocity of the air, m/s
     */
   def setWind(windNed: Vector3): Future[Either[RpcError, Unit]] =
     tell("simSetWind", Seq(writeMsg(Vector3r(windNed))), whichever)

@@ -10,12 +10,11 @@ import skein.units.*
 
 /** A multirotor of AirSim as a loop sees it.
   *
-  * Answers that are missed are dealt with by its [[MoveQueue]]: control goes on 0.6 s and a round trip after a cancel was
-  * lost, and as long and another round trip after an answer was lost; where the sign of life or the cancel is lost too,
-  * after the timeout of that more.
+  * Answers that are missed are dealt with by its [[MoveQueue]]: control goes on 0.6 s and a round trip after
+  * a cancel was lost, and as long and another round trip after an answer was lost; where the sign of life or
+  * the cancel is lost too, after the timeout of that more.
   *
-  * @param onLost
-  *   told of every answer that was missed, and what became of it
+  * @param onLost told of every answer that was missed, and what became of it
   */
 final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem)
     extends VehiclePort:

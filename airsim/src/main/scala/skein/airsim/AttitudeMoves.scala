@@ -4,9 +4,9 @@ import scala.concurrent.Future
 import skein.rpc.RpcError
 import skein.units.*
 
-/** Moves that command attitude, rates or rotors instead of velocities or places. Angles are of the body FRD against
-  * the world NED (roll to the right, pitch up, yaw towards east), rates about the body's axes in rad/s, throttle and
-  * rotor controls from 0 to 1. Each flies for its duration.
+/** Moves that command attitude, rates or rotors instead of velocities or places. Angles are of the body FRD
+  * against the world NED (roll to the right, pitch up, yaw towards east), rates about the body's axes in
+  * rad/s, throttle and rotor controls from 0 to 1. Each flies for its duration.
   */
 trait AttitudeMoves:
 

@@ -8,7 +8,9 @@ import skein.units.*
 import skein.vehicle.CarControls
 import upickle.default.writeMsg
 
-/** One car of a simulator. Controls act at once and stand until the next; they are sent on one connection, in order. */
+/** One car of a simulator. Controls act at once and stand until the next; they are sent on one connection, in
+  * order.
+  */
 final class Car(
     client: AirSimClient,
     name: String,
@@ -38,8 +40,7 @@ final class Car(
 
   /** Without api control nothing happens.
     *
-    * @param gear
-    *   chosen by hand: −1 is reverse; without it, AirSim's gearbox chooses
+    * @param gear chosen by hand: −1 is reverse; without it, AirSim's gearbox chooses
     */
   def setControls(
       controls: CarControls,
@@ -67,10 +68,8 @@ object Car:
 
 /** A car's state.
   *
-  * @param speed
-  *   along its heading, negative backwards
-  * @param gear
-  *   −1 is reverse
+  * @param speed along its heading, negative backwards
+  * @param gear −1 is reverse
   */
 final case class CarStatus(
     kinematics: Kinematics,

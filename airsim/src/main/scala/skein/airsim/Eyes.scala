@@ -8,13 +8,12 @@ import skein.units.*
 import upack.{Bool, Msg, Str}
 import upickle.default.writeMsg
 
-/** Cameras and lidars of one vehicle. Images and scans come on connections of their own ([[Channel.Bulk]]), so nothing that
-  * flies the vehicle waits for them, and are stamped with their exposure. A question is refused while
-  * [[skein.rpc.RpcSettings.windowInAll]] of them are unanswered; `skein.flow.Frames` asks as often as wanted, keeps the
-  * newest and counts what it skips.
+/** Cameras and lidars of one vehicle. Images and scans come on connections of their own ([[Channel.Bulk]]),
+  * so nothing that flies the vehicle waits for them, and are stamped with their exposure. A question is
+  * refused while [[skein.rpc.RpcSettings.windowInAll]] of them are unanswered; `skein.flow.Frames` asks as
+  * often as wanted, keeps the newest and counts what it skips.
   *
-  * @param originNed
-  *   where the vehicle's own frame has its origin
+  * @param originNed where the vehicle's own frame has its origin
   */
 final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originNed: Vector3):
   private given ExecutionContext = ExecutionContext.parasitic
@@ -37,7 +36,8 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
   def image(shot: Shot): Future[Either[RpcError, Stamped[Image]]] =
     images(Seq(shot)).map(_.map(_.map(_.head)))
 
-  /** The newest scan of a lidar; an empty name means the first. Between two scans the older one comes again. */
+  /** The newest scan of a lidar; an empty name means the first. Between two scans the older one comes again.
+    */
   def scan(lidar: String = ""): Future[Either[RpcError, Stamped[Scan]]] =
     ask("getLidarData", Seq(Str(lidar), Str(vehicle)))(Images.readScan(_, originNed))
 

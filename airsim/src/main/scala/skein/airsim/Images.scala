@@ -29,8 +29,7 @@ enum Encoding:
 
 /** One image to be taken.
   *
-  * @param camera
-  *   its name; `0` is the front one
+  * @param camera its name; `0` is the front one
   */
 final case class Shot(camera: String, kind: ImageKind = ImageKind.Scene, encoding: Encoding = Encoding.Raw)
 
@@ -47,10 +46,8 @@ enum Pixels:
 
 /** An image.
   *
-  * @param positionNed
-  *   of the camera when it was taken, world, m
-  * @param orientation
-  *   from the camera's frame (front, right, down) to world NED
+  * @param positionNed of the camera when it was taken, world, m
+  * @param orientation from the camera's frame (front, right, down) to world NED
   */
 final case class Image(
     shot: Shot,
@@ -63,12 +60,10 @@ final case class Image(
 
 /** A lidar's scan.
   *
-  * @param points
-  *   x, y, z of each, m, in the frame that the lidar's settings name: its own, or the vehicle's start's
-  * @param segmentation
-  *   id of the object that each point is on; empty where the simulator does not send it
-  * @param positionNed
-  *   of the lidar, world, m
+  * @param points x, y, z of each, m, in the frame that the lidar's settings name: its own, or the vehicle's
+  *   start's
+  * @param segmentation id of the object that each point is on; empty where the simulator does not send it
+  * @param positionNed of the lidar, world, m
   */
 final case class Scan(
     points: Array[Float],
@@ -78,13 +73,11 @@ final case class Scan(
 ):
   def size: Int = points.length / 3
 
-  /** How far, in the plane, the nearest point is in each of so many equal sectors of the compass, clockwise from north, m;
-    * of points in the lidar's own frame.
+  /** How far, in the plane, the nearest point is in each of so many equal sectors of the compass, clockwise
+    * from north, m; of points in the lidar's own frame.
     *
-    * @param bandM
-    *   points more than this above or below do not count
-    * @param farM
-    *   the value of a sector without points
+    * @param bandM points more than this above or below do not count
+    * @param farM the value of a sector without points
     */
   def nearest(sectors: Int, bandM: Double, farM: Double): Array[Double] =
     import orientation.{w, x, y, z}
@@ -105,13 +98,13 @@ final case class Scan(
       at += 3
     found
 
-/** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones passed over,
-  * missing ones as if they were empty. What cannot be is told by [[MessageReader]]'s error.
+/** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones
+  * passed over, missing ones as if they were empty. What cannot be is told by [[MessageReader]]'s error.
   */
 private[airsim] object Images:
 
-  /** The answer to `simGetImages`, and when they were exposed; None for one that the simulator could not take, with what
-    * it says.
+  /** The answer to `simGetImages`, and when they were exposed; None for one that the simulator could not
+    * take, with what it says.
     */
   def read(
       in: MessageReader,
@@ -162,7 +155,9 @@ private[airsim] object Images:
       case "height"             => came.height = in.int()
     came
 
-  /** The answer to `getLidarData`, and when it was scanned. A cloud of one number is AirSim's way to send an empty one. */
+  /** The answer to `getLidarData`, and when it was scanned. A cloud of one number is AirSim's way to send an
+    * empty one.
+    */
   def readScan(in: MessageReader, originNed: Vector3): Either[String, (Scan, Instant)] =
     var points       = Array.emptyFloatArray
     var segmentation = Array.emptyIntArray

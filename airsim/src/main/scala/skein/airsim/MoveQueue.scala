@@ -8,21 +8,23 @@ import skein.units.*
 
 /** The moves of one vehicle that AirSim has not answered yet, and what is done where an answer is missed.
   *
-  * AirSim answers a move when the next one arrives, which cancels it. Two things go wrong with that, and look alike:
+  * AirSim answers a move when the next one arrives, which cancels it. Two things go wrong with that, and look
+  * alike:
   *   - The answer is lost on a connection that lives. The next move flies.
-  *   - The cancel is lost: it came while AirSim was about to begin the move. That one flies on to its end, and the next
-  *     waits behind it. One move more, sent on suspicion, would cancel the first and wait behind the second: from then on
-  *     each move would begin when the one after it comes, for the rest of the flight.
+  *   - The cancel is lost: it came while AirSim was about to begin the move. That one flies on to its end,
+  *     and the next waits behind it. One move more, sent on suspicion, would cancel the first and wait behind
+  *     the second: from then on each move would begin when the one after it comes, for the rest of the
+  *     flight.
   *
-  * So, when the answer to a replaced move is missed for [[MoveQueue.AnswerWithin]], the vehicle is asked for a sign of life
-  * behind the next move, on the same ordered connection. When that has come and the answer has not, the vehicle's task is
-  * cancelled once more, which adds no move to AirSim's queue: where a cancel was lost, the replaced move ends and the next
-  * begins; where the answer was lost, the next one ends, and the loop sends another. Only if [[MoveQueue.Settles]] after
-  * that nothing was heard of the replaced move, its answer is taken for lost and for what it must have been: false,
-  * replaced. Where the sign of life is lost too, all this begins again.
+  * So, when the answer to a replaced move is missed for [[MoveQueue.AnswerWithin]], the vehicle is asked for
+  * a sign of life behind the next move, on the same ordered connection. When that has come and the answer has
+  * not, the vehicle's task is cancelled once more, which adds no move to AirSim's queue: where a cancel was
+  * lost, the replaced move ends and the next begins; where the answer was lost, the next one ends, and the
+  * loop sends another. Only if [[MoveQueue.Settles]] after that nothing was heard of the replaced move, its
+  * answer is taken for lost and for what it must have been: false, replaced. Where the sign of life is lost
+  * too, all this begins again.
   *
-  * @param onLost
-  *   told of every answer that was missed, and what became of it
+  * @param onLost told of every answer that was missed, and what became of it
   */
 final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem):
   import MoveQueue.*
@@ -36,8 +38,7 @@ final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using syst
 
   /** Sends a move, which replaces the one before.
     *
-    * @param call
-    *   is told when its answer need not be waited for any longer
+    * @param call is told when its answer need not be waited for any longer
     */
   def send(call: Future[Unit] => Future[Either[RpcError, Boolean]]): Future[Either[RpcError, Boolean]] =
     val withdrawn = Promise[Unit]()

@@ -11,9 +11,9 @@ import upickle.default.writeMsg
 
 /** One multirotor of a simulator. Positions are world NED in m, velocities NED in m/s.
   *
-  * A move answers when it has ended: true if it was flown to its end, false if a newer one replaced it or its time was
-  * over. All moves of one vehicle share a connection, so that none overtakes another. AirSim holds a worker for each
-  * move until it ends: have at most one under way and the one that replaces it.
+  * A move answers when it has ended: true if it was flown to its end, false if a newer one replaced it or its
+  * time was over. All moves of one vehicle share a connection, so that none overtakes another. AirSim holds a
+  * worker for each move until it ends: have at most one under way and the one that replaces it.
   */
 final class Multirotor(
     client: AirSimClient,
@@ -40,8 +40,8 @@ final class Multirotor(
       RpcError.Malformed("getMultirotorState", "expected finite numbers in kinematics_estimated")
     ))
 
-  /** Lets the vehicle hover at a place above the ground, level and at rest, as if it had long done so; it must be under api
-    * control. The built-in simulator alone can do that.
+  /** Lets the vehicle hover at a place above the ground, level and at rest, as if it had long done so; it
+    * must be under api control. The built-in simulator alone can do that.
     */
   def hoverAt(pose: VehiclePose): Future[Either[RpcError, Unit]] = tell("skeinHoverAt", own(pose))
 
@@ -74,10 +74,8 @@ final class Multirotor(
 
   /** Flies with a velocity.
     *
-    * @param velocityNed
-    *   m/s
-    * @param withdrawn
-    *   when it completes, the answer is waited for no longer
+    * @param velocityNed m/s
+    * @param withdrawn when it completes, the answer is waited for no longer
     */
   def moveByVelocity(
       velocityNed: Vector3,
@@ -89,12 +87,9 @@ final class Multirotor(
 
   /** Flies with a horizontal velocity at an altitude: the paper's command.
     *
-    * @param velocityNed
-    *   m/s; its third component is ignored
-    * @param down
-    *   altitude goal, world NED
-    * @param withdrawn
-    *   when it completes, the answer is waited for no longer
+    * @param velocityNed m/s; its third component is ignored
+    * @param down altitude goal, world NED
+    * @param withdrawn when it completes, the answer is waited for no longer
     */
   def moveByVelocityZ(
       velocityNed: Vector3,
@@ -179,8 +174,7 @@ final class Multirotor(
   ): Future[Either[RpcError, Boolean]] =
     move("rotateToYaw", timeout, degrees(heading.value), seconds(timeout), degrees(margin.value))
 
-  /** @param radiansPerSecond
-    *   clockwise seen from above
+  /** @param radiansPerSecond clockwise seen from above
     */
   def rotateByYawRate(radiansPerSecond: Double, duration: Span): Future[Either[RpcError, Boolean]] =
     move("rotateByYawRate", duration, degrees(radiansPerSecond), seconds(duration))

@@ -11,29 +11,23 @@ final case class MultirotorStatus(kinematics: Kinematics, flying: Boolean)
 
 /** What a vehicle last touched.
   *
-  * @param at
-  *   on the simulator's clock
-  * @param positionNed
-  *   of the vehicle when it touched, world, m
-  * @param normalNed
-  *   of the surface
+  * @param at on the simulator's clock
+  * @param positionNed of the vehicle when it touched, world, m
+  * @param normalNed of the surface
   */
 final case class Collision(at: Instant, positionNed: Vector3, normalNed: Vector3, objectName: String)
 
-/** @param specificForceFrd
-  *   acceleration less gravity, m/s²
+/** @param specificForceFrd acceleration less gravity, m/s²
   */
 final case class ImuReading(orientation: Quaternion, angularVelocityFrd: Vector3, specificForceFrd: Vector3)
 
-/** @param velocityNed
-  *   m/s
-  * @param valid
-  *   false while the receiver starts, AirSim's for a second: then all else is zero, the time stamp too
+/** @param velocityNed m/s
+  * @param valid false while the receiver starts, AirSim's for a second: then all else is zero, the time stamp
+  *   too
   */
 final case class GpsReading(location: GeoLocation, velocityNed: Vector3, valid: Boolean)
 
-/** @param altitude
-  *   of the pressure in the standard atmosphere, above sea level
+/** @param altitude of the pressure in the standard atmosphere, above sea level
   */
 final case class BarometerReading(altitude: Metres, pressurePa: Double)
 

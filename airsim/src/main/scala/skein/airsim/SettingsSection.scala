@@ -13,8 +13,8 @@ enum SettingsError:
     case NotJson(reason)                   => s"not JSON: $reason"
     case Unexpected(path, expected, found) => s"$path: expected $expected, found $found"
 
-/** An object of a `settings.json`, and where it stands. What it lacks is read as said; at the first value that does not fit,
-  * all reading ends.
+/** An object of a `settings.json`, and where it stands. What it lacks is read as said; at the first value
+  * that does not fit, all reading ends.
   */
 final private[skein] class SettingsSection private (fields: Obj, path: String):
   import SettingsSection.*
@@ -80,8 +80,7 @@ private[skein] object SettingsSection:
 
   /** Where a text stopped to be JSON, and what is wrong there.
     *
-    * @param mistake
-    *   of `ujson`, which names the mistake in its cause, and before it the whole path to it
+    * @param mistake of `ujson`, which names the mistake in its cause, and before it the whole path to it
     */
   private def notJson(text: String, mistake: Throwable): SettingsError =
     Iterator.iterate(mistake)(_.getCause).takeWhile(_ != null).take(MostCauses).collectFirst {

@@ -10,10 +10,8 @@ import upickle.default.{Reader, writeMsg}
 
 /** One vehicle of a simulator, of whatever kind. Positions are world NED in m, velocities NED in m/s.
   *
-  * @param originNed
-  *   where the vehicle's own frame has its origin: its start
-  * @param connectionKey
-  *   vehicles with different keys are spread over the connections
+  * @param originNed where the vehicle's own frame has its origin: its start
+  * @param connectionKey vehicles with different keys are spread over the connections
   */
 abstract class VehicleClient private[airsim] (
     client: AirSimClient,
@@ -50,8 +48,8 @@ abstract class VehicleClient private[airsim] (
       VehiclePose(pose.position.toVector + originNed, pose.orientation.toQuaternion)
     ))
 
-  /** Puts the vehicle elsewhere. It keeps its velocity and its goal: one that holds a position flies back there, one that
-    * stood on the ground falls.
+  /** Puts the vehicle elsewhere. It keeps its velocity and its goal: one that holds a position flies back
+    * there, one that stood on the ground falls.
     */
   def setPose(pose: VehiclePose): Future[Either[RpcError, Unit]] =
     tell("simSetVehiclePose", own(pose), Bool(true))
@@ -99,11 +97,14 @@ abstract class VehicleClient private[airsim] (
 
   def isApiControlEnabled(): Future[Either[RpcError, Boolean]] = get("isApiControlEnabled")
 
-  /** Ends the move under way, with false. It travels behind every command sent before, on their connection. */
+  /** Ends the move under way, with false. It travels behind every command sent before, on their connection.
+    */
   def cancelLastTask(): Future[Either[RpcError, Unit]] =
     call[Msg]("cancelLastTask", Seq(), inOrder).map(_.map(_ => ()))
 
-  /** Answers when every command sent before has reached the simulator: it travels behind them, on their connection. */
+  /** Answers when every command sent before has reached the simulator: it travels behind them, on their
+    * connection.
+    */
   def reached(): Future[Either[RpcError, Unit]] =
     client.rpc.call("ping", Seq(), inOrder).map(_.map(_ => ()))
 
@@ -160,8 +161,7 @@ abstract class VehicleClient private[airsim] (
 
 private object VehicleClient:
 
-  /** @param make
-    *   of its origin and its connection's key
+  /** @param make of its origin and its connection's key
     */
   def named[A](
       client: AirSimClient,

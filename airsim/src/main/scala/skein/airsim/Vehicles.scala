@@ -20,8 +20,7 @@ object Vehicles:
 
   /** A vehicle as a loop sees it.
     *
-    * @param onLost
-    *   told of every answer that was missed, and what became of it
+    * @param onLost told of every answer that was missed, and what became of it
     */
   def port(vehicle: VehicleClient, onLost: String => Unit)(using ActorSystem): VehiclePort = vehicle match
     case multirotor: Multirotor => AirSimVehicle(multirotor, onLost)

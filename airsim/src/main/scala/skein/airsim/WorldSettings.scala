@@ -6,16 +6,12 @@ import ujson.Obj
 
 /** Where a vehicle starts, which is where its own frame has its origin.
   *
-  * @param startNed
-  *   world, m
-  * @param vehicleType
-  *   in any case of letters
-  * @param firstPerson
-  *   whether the view is its own (`IsFpvVehicle`), which makes it the one that is meant where a call names none
-  * @param armed
-  *   after the start and after a reset (`DefaultVehicleState`)
-  * @param sensors
-  *   that are switched on, by their names
+  * @param startNed world, m
+  * @param vehicleType in any case of letters
+  * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the one that is meant
+  *   where a call names none
+  * @param armed after the start and after a reset (`DefaultVehicleState`)
+  * @param sensors that are switched on, by their names
   */
 final case class VehicleSettings(
     name: String,
@@ -28,15 +24,13 @@ final case class VehicleSettings(
 ):
   def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
 
-/** What is read of an AirSim `settings.json`: vehicles with their sensors, origin, wind and clock speed. Everything else in it is passed
-  * over. `SimMode` says of what type vehicles are that name none; unlike AirSim's, a world may have vehicles of both.
+/** What is read of an AirSim `settings.json`: vehicles with their sensors, origin, wind and clock speed.
+  * Everything else in it is passed over. `SimMode` says of what type vehicles are that name none; unlike
+  * AirSim's, a world may have vehicles of both.
   *
-  * @param vehicles
-  *   in the file's order
-  * @param origin
-  *   of the world's NED frame
-  * @param text
-  *   the file as it came
+  * @param vehicles in the file's order
+  * @param origin of the world's NED frame
+  * @param text the file as it came
   */
 final case class WorldSettings(
     vehicles: Vector[VehicleSettings],
@@ -47,7 +41,9 @@ final case class WorldSettings(
 ):
   require(vehicles.nonEmpty, "a world needs a vehicle")
 
-  /** The one that is meant where a call names none: of those with `IsFpvVehicle` the last by name, else the first. */
+  /** The one that is meant where a call names none: of those with `IsFpvVehicle` the last by name, else the
+    * first.
+    */
   def defaultVehicle: VehicleSettings =
     vehicles.filter(_.firstPerson).maxByOption(_.name).getOrElse(vehicles.minBy(_.name))
 
@@ -156,8 +152,8 @@ object WorldSettings:
       sensors(fields.sections("Sensors"), unless)
     )
 
-  /** Those that are enabled, and of the kinds that none is listed of, those of `unless`. Kinds that are not known, which
-    * forks have, are passed over.
+  /** Those that are enabled, and of the kinds that none is listed of, those of `unless`. Kinds that are not
+    * known, which forks have, are passed over.
     */
   private def sensors(
       all: Vector[(String, SettingsSection)],

@@ -6,10 +6,8 @@ import upack.Msg
 
 /** A result with the times that age is computed from, on the client's clock.
   *
-  * @param sentAt
-  *   when the request was handed to the transport (the last time, if it was sent again)
-  * @param receivedAt
-  *   when the reply's last byte had come
+  * @param sentAt when the request was handed to the transport (the last time, if it was sent again)
+  * @param receivedAt when the reply's last byte had come
   */
 final case class TimedReply[+A](value: A, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): TimedReply[B] = copy(value = f(value))

@@ -4,17 +4,17 @@ import java.util.ArrayDeque
 import java.util.concurrent.atomic.{AtomicBoolean, LongAdder}
 import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 
-/** Calls that wait to be run: a line for each connection, from which calls are taken in rounds. Calls of one connection
-  * keep their order.
+/** Calls that wait to be run: a line for each connection, from which calls are taken in rounds. Calls of one
+  * connection keep their order.
   *
-  * A call that comes to an empty line goes before all that wait, as long as its line has had less than `share` in the
-  * round: so a client that asks now and then hardly waits for those that ask without a pause. Of a line in which calls
-  * wait `batch` are taken in a round, one after another: to wake a connection for an answer costs more than to run most
-  * calls, and so it is woken once for several. No call that is first in its line waits for more than `share` calls of
-  * every other connection.
+  * A call that comes to an empty line goes before all that wait, as long as its line has had less than
+  * `share` in the round: so a client that asks now and then hardly waits for those that ask without a pause.
+  * Of a line in which calls wait `batch` are taken in a round, one after another: to wake a connection for an
+  * answer costs more than to run most calls, and so it is woken once for several. No call that is first in
+  * its line waits for more than `share` calls of every other connection.
   *
-  * Any thread may put and forget, one takes. What waits is bounded by the server, which lets each connection have a
-  * limited number of calls unanswered.
+  * Any thread may put and forget, one takes. What waits is bounded by the server, which lets each connection
+  * have a limited number of calls unanswered.
   */
 final class CallLines[Call](share: Int = 16, batch: Int = 4):
   require(share >= batch && batch > 0, s"a batch, $batch, must be positive and within the share, $share")

@@ -23,12 +23,13 @@ private[rpc] trait ChannelInput:
   def withdraw(call: Call): Unit
   def close(): Future[Done]
 
-/** One channel with all its connections in a single stage, hence on one thread at a time: a call costs one hop to that
-  * thread, calls made meanwhile leave in one write, and every decision is [[ChannelState]]'s. The connections run fused
-  * inside this stage.
+/** One channel with all its connections in a single stage, hence on one thread at a time: a call costs one
+  * hop to that thread, calls made meanwhile leave in one write, and every decision is [[ChannelState]]'s. The
+  * connections run fused inside this stage.
   *
   *   - '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
-  *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
+  *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its
+  *     window.
   *   - '''Completes when''' closed through its [[ChannelInput]].
   *   - '''Cancels when''' never.
   */

@@ -20,15 +20,15 @@ private[rpc] trait ChannelEffects:
 
   def observe(event: RpcEvent): Unit
 
-/** The decisions of one channel: which call goes out on which connection and when, what an answer or a loss means for
-  * the calls in flight. Knows no socket, clock or thread: the owner passes the time and carries out the effects.
+/** The decisions of one channel: which call goes out on which connection and when, what an answer or a loss
+  * means for the calls in flight. Knows no socket, clock or thread: the owner passes the time and carries out
+  * the effects.
   *
-  * A call without a key goes to the open connection with the fewest calls in flight, in rotation among equals; a call
-  * with a key always to the same one. Calls that wait go out in the order they came. While a connection cannot be
-  * opened, calls that only it could carry fail at once.
+  * A call without a key goes to the open connection with the fewest calls in flight, in rotation among
+  * equals; a call with a key always to the same one. Calls that wait go out in the order they came. While a
+  * connection cannot be opened, calls that only it could carry fail at once.
   *
-  * @param uniform
-  *   random numbers in [0, 1), for the jitter of reconnecting
+  * @param uniform random numbers in [0, 1), for the jitter of reconnecting
   */
 private[rpc] final class ChannelState(
     channel: Channel,

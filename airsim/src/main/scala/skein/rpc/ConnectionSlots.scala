@@ -5,8 +5,9 @@ import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
 import skein.units.*
 
-/** Who has one of a server's limited places. When all are taken, the connection that has been silent for the longest
-  * time gives up its own, so that connections nobody uses do not lock others out. [[admit]] by one thread at a time.
+/** Who has one of a server's limited places. When all are taken, the connection that has been silent for the
+  * longest time gives up its own, so that connections nobody uses do not lock others out. [[admit]] by one
+  * thread at a time.
   */
 private[rpc] class ConnectionSlots(most: Int, silence: Span):
   private val guests = ConcurrentHashMap[Long, ConnectionSlots.Guest]()

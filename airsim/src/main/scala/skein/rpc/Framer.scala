@@ -4,17 +4,13 @@ import org.apache.pekko.util.ByteString
 
 /** Bounds on what one peer may make us hold for one message.
   *
-  * @param frameBytes
-  *   longest encoded message, bytes
-  * @param depth
-  *   deepest nesting of arrays and maps; the message's own array counts as one
-  * @param elements
-  *   most values in one message, counting every key, value and array element
-  * @param keys
-  *   most keys in one map. A peer can choose keys whose hashes are equal; then each key put into a map is compared with
-  *   all before it, so this bounds the comparisons a key costs
-  * @param maps
-  *   most maps in one message: even an empty one, a single byte, becomes an object of some 150 bytes
+  * @param frameBytes longest encoded message, bytes
+  * @param depth deepest nesting of arrays and maps; the message's own array counts as one
+  * @param elements most values in one message, counting every key, value and array element
+  * @param keys most keys in one map. A peer can choose keys whose hashes are equal; then each key put into a
+  *   map is compared with all before it, so this bounds the comparisons a key costs
+  * @param maps most maps in one message: even an empty one, a single byte, becomes an object of some 150
+  *   bytes
   */
 final case class FrameLimits(
     frameBytes: Int = 64 << 20,
@@ -36,15 +32,15 @@ enum Framed:
   /** All bytes offered so far are consumed; the next value is not complete. */
   case NeedsMore
 
-  /** The bytes are not MessagePack, or a limit is exceeded. The stream is out of step for good: every later call
-    * says the same.
+  /** The bytes are not MessagePack, or a limit is exceeded. The stream is out of step for good: every later
+    * call says the same.
     */
   case Malformed(reason: String)
 
-/** Cuts a byte stream into MessagePack values, over any segmentation. Each byte's header is looked at once: what is
-  * left to read is two numbers, the values outstanding at each open level and the payload bytes to skip, so nothing
-  * is ever parsed again. A value's bytes are copied once, when it is complete. Does no I/O; one instance per
-  * connection and direction, one thread at a time.
+/** Cuts a byte stream into MessagePack values, over any segmentation. Each byte's header is looked at once:
+  * what is left to read is two numbers, the values outstanding at each open level and the payload bytes to
+  * skip, so nothing is ever parsed again. A value's bytes are copied once, when it is complete. Does no I/O;
+  * one instance per connection and direction, one thread at a time.
   */
 final class Framer(limits: FrameLimits = FrameLimits()):
   import Framer.*
@@ -165,8 +161,8 @@ final class Framer(limits: FrameLimits = FrameLimits()):
 
   private def frameBytesSoFar: Long = earlierBytes.toLong + (position - frameStart)
 
-  /** Keeps what the segment holds of an incomplete value: large parts as they are, small ones gathered, so that a
-    * peer that sends single bytes does not make us hold an object for each.
+  /** Keeps what the segment holds of an incomplete value: large parts as they are, small ones gathered, so
+    * that a peer that sends single bytes does not make us hold an object for each.
     */
   private def keep(): Unit =
     val length = position - frameStart

@@ -2,17 +2,16 @@ package skein.rpc
 
 import java.util.concurrent.atomic.AtomicLong
 
-/** How much peers make us hold, over all connections of one server or client: bytes of memory (messages under way,
-  * messages decoded and not yet answered, answers not yet taken), or requests being handled; here all are called bytes.
+/** How much peers make us hold, over all connections of one server or client: bytes of memory (messages under
+  * way, messages decoded and not yet answered, answers not yet taken), or requests being handled; here all
+  * are called bytes.
   *
-  * Every connection may hold `each` bytes whatever the others do; what it holds beyond comes out of `common`, first
-  * come, first served. So a peer that asks little is never refused because of one that asks much, and the whole is at
-  * most `common` and `each` for every connection. Safe from any thread.
+  * Every connection may hold `each` bytes whatever the others do; what it holds beyond comes out of `common`,
+  * first come, first served. So a peer that asks little is never refused because of one that asks much, and
+  * the whole is at most `common` and `each` for every connection. Safe from any thread.
   *
-  * @param each
-  *   bytes that a connection may always hold
-  * @param common
-  *   bytes that all connections together may hold beyond that
+  * @param each bytes that a connection may always hold
+  * @param common bytes that all connections together may hold beyond that
   */
 private[rpc] final class Holdings(each: Long, common: Long):
   private val beyond = AtomicLong()
@@ -30,7 +29,9 @@ private[rpc] final class Holdings(each: Long, common: Long):
     private var held   = 0L
     private var forced = 0L // of what is beyond its own part: what was not granted
 
-    /** Holds so many bytes from now on, unless the common part has not that much left: then false, and as before. */
+    /** Holds so many bytes from now on, unless the common part has not that much left: then false, and as
+      * before.
+      */
     def resize(to: Long): Boolean =
       val change  = beyondOwn(to) - beyondOwn(held)
       val granted = change <= 0 || takeCommon(change)

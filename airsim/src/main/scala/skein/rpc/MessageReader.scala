@@ -20,12 +20,13 @@ final class Bytes(array: Array[Byte], offset: Int, val length: Int):
 object Bytes:
   val empty: Bytes = Bytes(Array.emptyByteArray, 0, 0)
 
-/** A MessagePack value as it came, at the end of the bytes of its message, to be read by a [[MessageReader]]. */
+/** A MessagePack value as it came, at the end of the bytes of its message, to be read by a [[MessageReader]].
+  */
 final class Received private[skein] (private[rpc] val bytes: Array[Byte], private[rpc] val from: Int):
   private[rpc] def toArray: Array[Byte] = java.util.Arrays.copyOfRange(bytes, from, bytes.length)
 
-/** Reads one MessagePack value from front to back, straight into what the caller wants: no tree of values is made, and
-  * binary is not copied. Numbers are read from whatever form they came in.
+/** Reads one MessagePack value from front to back, straight into what the caller wants: no tree of values is
+  * made, and binary is not copied. Numbers are read from whatever form they came in.
   */
 final class MessageReader private (bytes: Array[Byte], private var at: Int, end: Int):
   import MessageReader.Unexpected
@@ -44,8 +45,8 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
     case 0xdf                              => size(4, least = 2)
     case other                             => unexpected("a map", other)
 
-  /** The fields of a map, in whatever order they come. `read` says whether it knows a field and has read its value; others
-    * are skipped.
+  /** The fields of a map, in whatever order they come. `read` says whether it knows a field and has read its
+    * value; others are skipped.
     */
   def fields(read: PartialFunction[String, Unit]): Unit =
     for _ <- 0 until map() do
@@ -199,7 +200,9 @@ object MessageReader:
   /** What came is not what `read` asked for. */
   private[rpc] final case class Unexpected(what: String) extends RuntimeException(what, null, false, false)
 
-  /** What `read` makes of one value, or what it expected and what came. Binary that it gives out stands in these bytes. */
+  /** What `read` makes of one value, or what it expected and what came. Binary that it gives out stands in
+    * these bytes.
+    */
   def read[A](received: Received)(read: MessageReader => A): Either[String, A] =
     attempt(read(new MessageReader(received.bytes, received.from, received.bytes.length)))
 

@@ -5,9 +5,9 @@ import java.nio.charset.StandardCharsets.UTF_8
 import org.apache.pekko.util.ByteString
 import upack.{Arr, Binary, Ext, False, Float32, Float64, Int32, Int64, Msg, Null, Obj, Str, True, UInt64}
 
-/** Encodes messages one after another, to be sent in one write. Strings are `str`, integers take their shortest form.
-  * Binary values of 32 KiB and more are sent from the array they stand in, without a copy: it must not change
-  * afterwards. One thread at a time.
+/** Encodes messages one after another, to be sent in one write. Strings are `str`, integers take their
+  * shortest form. Binary values of 32 KiB and more are sent from the array they stand in, without a copy: it
+  * must not change afterwards. One thread at a time.
   */
 final class MessageWriter:
   import MessageWriter.*

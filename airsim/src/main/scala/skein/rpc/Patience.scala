@@ -2,7 +2,9 @@ package skein.rpc
 
 import skein.units.*
 
-/** How long one connection has kept its server waiting, told once every [[ServerLimits.Watch]]. Knows no clock. */
+/** How long one connection has kept its server waiting, told once every [[ServerLimits.Watch]]. Knows no
+  * clock.
+  */
 private[rpc] final class Patience(limits: ServerLimits):
   private var midway           = 0
   private var untaken          = 0
@@ -22,12 +24,9 @@ private[rpc] final class Patience(limits: ServerLimits):
 
   /** One watch has passed; the answer is why the connection is to be closed, if it is.
     *
-    * @param forMessage
-    *   the server waits for the rest of a message
-    * @param forTaking
-    *   replies wait to be taken
-    * @param forNothing
-    *   neither of these, and no request is being handled
+    * @param forMessage the server waits for the rest of a message
+    * @param forTaking replies wait to be taken
+    * @param forNothing neither of these, and no request is being handled
     */
   def watch(forMessage: Boolean, forTaking: Boolean, forNothing: Boolean): Option[(ServerLimit, String)] =
     midway = if forMessage then midway + 1 else 0

@@ -10,20 +10,18 @@ import skein.units.Clock
 import upack.{Arr, Msg, Null, Obj, Str}
 import upickle.default.Reader
 
-/** Calls a MessagePack-RPC server over a pool of connections and never blocks: every call is a future that ends
-  * exactly once, with a result or an [[RpcError]], at the latest when its timeout is over. Safe from any thread.
+/** Calls a MessagePack-RPC server over a pool of connections and never blocks: every call is a future that
+  * ends exactly once, with a result or an [[RpcError]], at the latest when its timeout is over. Safe from any
+  * thread.
   *
   * Timeouts and pauses are as exact as the actor system's scheduler: about 0.1 ms with
   * [[skein.link.PreciseScheduler]], 10 ms and more with Pekko's own. Messages leave fastest with
   * `pekko.stream.materializer.io.tcp.coalesce-writes = 0`, because they are gathered here already.
   *
-  * @param transport
-  *   where connections come from; it bounds the time that connecting may take
-  * @param seed
-  *   of the jitter in the pauses between attempts to connect
-  * @param observer
-  *   told of every event; called on the channels' threads, so it must be quick, safe to call from both at once, and
-  *   throw nothing
+  * @param transport where connections come from; it bounds the time that connecting may take
+  * @param seed of the jitter in the pauses between attempts to connect
+  * @param observer told of every event; called on the channels' threads, so it must be quick, safe to call
+  *   from both at once, and throw nothing
   */
 final class RpcClient(
     transport: Transport,
@@ -72,8 +70,9 @@ final class RpcClient(
           catch case NonFatal(e) => Left(RpcError.Malformed(method, s"not readable as MessagePack: $e"))
     ))
 
-  /** Calls `method` on [[Channel.Bulk]], for what is large, and reads its result straight from the bytes of its message. They
-    * are copied once, from the transport's segments; binary that `read` gives out is a part of them.
+  /** Calls `method` on [[Channel.Bulk]], for what is large, and reads its result straight from the bytes of
+    * its message. They are copied once, from the transport's segments; binary that `read` gives out is a part
+    * of them.
     */
   def callBulk[A](method: String, params: Seq[Msg], options: CallOptions = CallOptions())(
       read: MessageReader => A
@@ -157,8 +156,8 @@ final class RpcClient(
     RunnableGraph.fromGraph(stage).run()
 
 object RpcClient:
-  /** Where nil stands in an answer in the place of a part of what was read from it, as names with dots between; absent
-    * where it does not. A number's nil reads as 0, and so only the answer itself tells it.
+  /** Where nil stands in an answer in the place of a part of what was read from it, as names with dots
+    * between; absent where it does not. A number's nil reads as 0, and so only the answer itself tells it.
     */
   private def nilIn(answer: Msg, read: Any): Option[String] =
     def within(parts: Iterator[(String, Msg, Any)]) = parts

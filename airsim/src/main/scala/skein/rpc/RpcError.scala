@@ -7,13 +7,16 @@ import skein.units.Decimals.fixed
 /** Why a call has no result. Expected, so a value and never an exception. */
 enum RpcError:
 
-  /** No answer within the call's timeout. It may still run at the peer; a late answer is counted and dropped. */
+  /** No answer within the call's timeout. It may still run at the peer; a late answer is counted and dropped.
+    */
   case Timeout(method: String, after: Span)
 
   /** The peer answered with an error; `text` is its own. */
   case Refused(method: String, text: String)
 
-  /** The connection ended before the answer came. With `mayHaveRun` the request had left; without it, it had not. */
+  /** The connection ended before the answer came. With `mayHaveRun` the request had left; without it, it had
+    * not.
+    */
   case ConnectionLost(address: Address, mayHaveRun: Boolean, reason: String)
 
   /** What came is not what was expected: bytes that are no reply, or a result of another type. */

@@ -2,8 +2,8 @@ package skein.rpc
 
 import skein.units.*
 
-/** What happens to a client besides answers, for whoever records or watches it. Connections count from 0 in each
-  * channel.
+/** What happens to a client besides answers, for whoever records or watches it. Connections count from 0 in
+  * each channel.
   */
 enum RpcEvent:
   case Connected(channel: Channel, connection: Int)

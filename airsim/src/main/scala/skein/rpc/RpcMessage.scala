@@ -5,9 +5,9 @@ import upack.{Arr, Binary, Int32, Int64, Msg, Null, Obj, Str, UInt64}
 
 /** One MessagePack-RPC message, decoded.
   *
-  * Requests are `[0, id, method, params]`, replies `[1, id, error, result]`, notifications `[2, method, params]`.
-  * Which an array is follows from its length and the role of the reader; the type field is not checked, as AirSim's
-  * server does not check it either.
+  * Requests are `[0, id, method, params]`, replies `[1, id, error, result]`, notifications
+  * `[2, method, params]`. Which an array is follows from its length and the role of the reader; the type
+  * field is not checked, as AirSim's server does not check it either.
   */
 enum RpcMessage:
   case Request(id: Long, method: String, params: IndexedSeq[Msg])

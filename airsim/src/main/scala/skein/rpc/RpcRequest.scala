@@ -6,10 +6,8 @@ import upack.Msg
 
 /** One request as a handler sees it.
   *
-  * @param connection
-  *   which connection it came on; counts from 1 in the order they were accepted
-  * @param notification
-  *   whether the sender wants no answer
+  * @param connection which connection it came on; counts from 1 in the order they were accepted
+  * @param notification whether the sender wants no answer
   */
 final case class RpcRequest(connection: Long, method: String, params: IndexedSeq[Msg], notification: Boolean)
 
@@ -26,7 +24,7 @@ enum ServerEvent:
   /** A value that is no message; dropped. */
   case Ignored(connection: Long, what: String)
 
-/** Answers one request: `Left` is the text of the reply's error slot, `Right` the result. Replies leave in the order
-  * in which the futures complete. It must not block.
+/** Answers one request: `Left` is the text of the reply's error slot, `Right` the result. Replies leave in
+  * the order in which the futures complete. It must not block.
   */
 type RpcHandler = RpcRequest => Future[Either[String, Msg | Encoded]]

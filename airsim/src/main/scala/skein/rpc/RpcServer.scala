@@ -12,8 +12,8 @@ import skein.link.{Address, Incoming, Listening, Transport}
 
 /** A running MessagePack-RPC server.
   *
-  * @param failed
-  *   completes if it ceases to listen without having been closed, with the reason; all its connections are closed then
+  * @param failed completes if it ceases to listen without having been closed, with the reason; all its
+  *   connections are closed then
   */
 final class RpcServer private (
     listening: Listening,
@@ -34,13 +34,11 @@ final class RpcServer private (
 
 object RpcServer:
 
-  /** Serves `handler` at `at`; the future fails if that cannot be bound. Malformed input closes its own connection,
-    * with a reason that is logged, counted and observed, and harms no other.
+  /** Serves `handler` at `at`; the future fails if that cannot be bound. Malformed input closes its own
+    * connection, with a reason that is logged, counted and observed, and harms no other.
     *
-    * @param failureText
-    *   the error text for a request whose handler throws or fails
-    * @param observer
-    *   told of every event, on the connections' threads; it must be quick and throw nothing
+    * @param failureText the error text for a request whose handler throws or fails
+    * @param observer told of every event, on the connections' threads; it must be quick and throw nothing
     */
   def bind(
       transport: Transport,

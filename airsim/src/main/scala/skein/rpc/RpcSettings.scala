@@ -19,19 +19,18 @@ enum WhenFull:
   /** It fails at once with [[RpcError.Overloaded]]. */
   case Refuse
 
-  /** It waits in the channel's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]]. */
+  /** It waits in the channel's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]].
+    */
   case Wait
 
 /** How one call is made.
   *
-  * @param timeout
-  *   from the call to its answer, waiting included; then [[RpcError.Timeout]]
-  * @param idempotent
-  *   may run twice without harm: sent again, a bounded number of times, when its connection is lost
-  * @param key
-  *   calls with the same key use the same connection and are sent in the order of the calls
-  * @param withdrawn
-  *   when it completes, the answer is waited for no longer: [[RpcError.Timeout]] before the timeout is over
+  * @param timeout from the call to its answer, waiting included; then [[RpcError.Timeout]]
+  * @param idempotent may run twice without harm: sent again, a bounded number of times, when its connection
+  *   is lost
+  * @param key calls with the same key use the same connection and are sent in the order of the calls
+  * @param withdrawn when it completes, the answer is waited for no longer: [[RpcError.Timeout]] before the
+  *   timeout is over
   */
 final case class CallOptions(
     timeout: Span = Span.ofSeconds(5),
@@ -44,34 +43,23 @@ final case class CallOptions(
 
 /** The bounds of a client. Windows and queue hold for each channel by itself.
   *
-  * @param controlConnections
-  *   connections of [[Channel.Control]], opened with its first call; the paper's pool has 5
-  * @param sensorConnections
-  *   connections of [[Channel.Sensors]], opened with its first call
-  * @param bulkConnections
-  *   connections of [[Channel.Bulk]], opened with its first call
-  * @param windowPerConnection
-  *   most calls sent and not yet ended on one connection
-  * @param windowInAll
-  *   most calls sent and not yet ended on all connections of a channel
-  * @param queue
-  *   most calls of a channel that wait, for a place or for a connection being opened
-  * @param resends
-  *   how often one idempotent call is sent again at most
-  * @param rememberedIds
-  *   how many timed-out calls a connection remembers, to recognise their late replies
-  * @param strays
-  *   most values on a connection, since the last reply that was waited for, that answer no call of ours; then it is
-  *   closed as malformed
-  * @param messageTime
-  *   longest time from a message's first byte to its last; then its connection is closed as malformed
-  * @param openBytes
-  *   most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a connection whose message
-  *   finds no room is closed as malformed
-  * @param limits
-  *   of one message on [[Channel.Control]] and [[Channel.Sensors]]
-  * @param bulkLimits
-  *   of one message on [[Channel.Bulk]]
+  * @param controlConnections connections of [[Channel.Control]], opened with its first call; the paper's pool
+  *   has 5
+  * @param sensorConnections connections of [[Channel.Sensors]], opened with its first call
+  * @param bulkConnections connections of [[Channel.Bulk]], opened with its first call
+  * @param windowPerConnection most calls sent and not yet ended on one connection
+  * @param windowInAll most calls sent and not yet ended on all connections of a channel
+  * @param queue most calls of a channel that wait, for a place or for a connection being opened
+  * @param resends how often one idempotent call is sent again at most
+  * @param rememberedIds how many timed-out calls a connection remembers, to recognise their late replies
+  * @param strays most values on a connection, since the last reply that was waited for, that answer no call
+  *   of ours; then it is closed as malformed
+  * @param messageTime longest time from a message's first byte to its last; then its connection is closed as
+  *   malformed
+  * @param openBytes most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a
+  *   connection whose message finds no room is closed as malformed
+  * @param limits of one message on [[Channel.Control]] and [[Channel.Sensors]]
+  * @param bulkLimits of one message on [[Channel.Bulk]]
   */
 final case class RpcSettings(
     controlConnections: Int = 5,
@@ -105,8 +93,8 @@ final case class RpcSettings(
     case Channel.Sensors => sensorConnections
     case Channel.Bulk    => bulkConnections
 
-/** Pauses between attempts to connect: doubling from `first` to at most `longest`, each shortened at random by up to
-  * the fraction `jitter`, so that clients do not return in step.
+/** Pauses between attempts to connect: doubling from `first` to at most `longest`, each shortened at random
+  * by up to the fraction `jitter`, so that clients do not return in step.
   */
 final case class BackOff(
     first: Span = Span.ofMillis(50),

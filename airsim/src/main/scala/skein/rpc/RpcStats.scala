@@ -5,16 +5,11 @@ import java.util.concurrent.atomic.LongAdder
 /** What a client has counted since it was made. Every call ends exactly once:
   * `called = answered + refused + timedOut + lost + malformed + overloaded + cancelled + unreachable + pending`.
   *
-  * @param sent
-  *   requests written, those sent again included
-  * @param late
-  *   replies to calls that had timed out
-  * @param unexpected
-  *   replies to no known call
-  * @param ignored
-  *   values that were no replies
-  * @param skipped
-  *   elements that flows passed over
+  * @param sent requests written, those sent again included
+  * @param late replies to calls that had timed out
+  * @param unexpected replies to no known call
+  * @param ignored values that were no replies
+  * @param skipped elements that flows passed over
   */
 final case class RpcStats(
     called: Long,

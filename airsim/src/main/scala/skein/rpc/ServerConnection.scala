@@ -14,12 +14,12 @@ import upack.Msg
 /** Serves one connection: requests' bytes in, replies' bytes out, replies in the order of completion.
   *
   *   - '''Emits when''' replies are ready; those ready together leave together.
-  *   - '''Backpressures when''' its limit of requests being handled, of reply bytes not yet taken, or of memory held is
-  *     reached.
-  *     A request too large for the memory left waits for those of its connection that are under way; then, or after the
-  *     longest time for a message, it is answered with an error, and so is one whose reply is too large.
-  *   - '''Completes when''' upstream has completed and every request is answered, or at once on malformed input or a
-  *     limit that cannot be waited for.
+  *   - '''Backpressures when''' its limit of requests being handled, of reply bytes not yet taken, or of
+  *     memory held is reached. A request too large for the memory left waits for those of its connection that
+  *     are under way; then, or after the longest time for a message, it is answered with an error, and so is
+  *     one whose reply is too large.
+  *   - '''Completes when''' upstream has completed and every request is answered, or at once on malformed
+  *     input or a limit that cannot be waited for.
   *   - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
   */
 private[rpc] final class ServerConnection(
@@ -167,7 +167,9 @@ private[rpc] final class ServerConnection(
 
       private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
 
-      /** Whether it may hold what it holds: if not, it waits until some of its requests are answered and taken. */
+      /** Whether it may hold what it holds: if not, it waits until some of its requests are answered and
+        * taken.
+        */
       private def hasRoom: Boolean = isGranted || !underWay
 
       /** Whether it may have the rest of the message that is under way. */

@@ -4,36 +4,29 @@ import skein.units.*
 
 /** What one server gives its peers. Times are kept to one [[ServerLimits.Watch]].
   *
-  * @param inFlightPerConnection
-  *   most requests of one connection being handled; beyond that its socket is not read
-  * @param inFlightAssured
-  *   so many of them it may have whatever the others do
-  * @param inFlightInCommon
-  *   beyond those, for all connections together, first come, first served. What is being handled is what outlives the
-  *   garbage collector: 50,000 requests of 200 greedy connections make its pauses ten times as long, and everybody wait
-  * @param unsentBytesPerConnection
-  *   a connection that has this many bytes of replies to take is not read until it has taken them
-  * @param connections
-  *   most connections open. One more takes the place of the one that has been silent for the longest time, if that is
-  *   at least `silence`; else it is closed as it comes
-  * @param heldBytesPerConnection
-  *   memory that one connection may always make the server hold: messages under way, requests being handled, replies
-  *   not taken
-  * @param heldBytesInCommon
-  *   memory beyond that, for all connections together. A connection whose requests and replies hold it is not read until
-  *   some are answered and taken. One with nothing under way whose unfinished message finds none left is closed; a whole
-  *   request, or a reply, that finds none left becomes an error
-  * @param strays
-  *   most values that are no messages between two requests; then the connection is closed
-  * @param messageTime
-  *   longest time from a message's first byte to its last, while the server waits for it
-  * @param replyTime
-  *   longest time that a peer takes none of the replies that wait for it
-  * @param silence
-  *   how long a connection must be silent, with nothing under way, before a new one may take its place
-  * @param idle
-  *   a connection silent for so long, with nothing under way, is closed. AirSim's own clients think for minutes between
-  *   two calls and do not connect again
+  * @param inFlightPerConnection most requests of one connection being handled; beyond that its socket is not
+  *   read
+  * @param inFlightAssured so many of them it may have whatever the others do
+  * @param inFlightInCommon beyond those, for all connections together, first come, first served. What is
+  *   being handled is what outlives the garbage collector: 50,000 requests of 200 greedy connections make its
+  *   pauses ten times as long, and everybody wait
+  * @param unsentBytesPerConnection a connection that has this many bytes of replies to take is not read until
+  *   it has taken them
+  * @param connections most connections open. One more takes the place of the one that has been silent for the
+  *   longest time, if that is at least `silence`; else it is closed as it comes
+  * @param heldBytesPerConnection memory that one connection may always make the server hold: messages under
+  *   way, requests being handled, replies not taken
+  * @param heldBytesInCommon memory beyond that, for all connections together. A connection whose requests and
+  *   replies hold it is not read until some are answered and taken. One with nothing under way whose
+  *   unfinished message finds none left is closed; a whole request, or a reply, that finds none left becomes
+  *   an error
+  * @param strays most values that are no messages between two requests; then the connection is closed
+  * @param messageTime longest time from a message's first byte to its last, while the server waits for it
+  * @param replyTime longest time that a peer takes none of the replies that wait for it
+  * @param silence how long a connection must be silent, with nothing under way, before a new one may take its
+  *   place
+  * @param idle a connection silent for so long, with nothing under way, is closed. AirSim's own clients think
+  *   for minutes between two calls and do not connect again
   */
 final case class ServerLimits(
     frame: FrameLimits = FrameLimits(),
@@ -61,8 +54,8 @@ final case class ServerLimits(
     s"times must be at least ${ServerLimits.Watch.toSeconds} s: $this"
   )
 
-  /** The most memory that peers can make the server hold, bytes. A connection over its own part may still finish what
-    * is small: hence twice that part.
+  /** The most memory that peers can make the server hold, bytes. A connection over its own part may still
+    * finish what is small: hence twice that part.
     */
   def heldBytes: Long = heldBytesInCommon + 2L * connections * heldBytesPerConnection
 

@@ -4,36 +4,23 @@ import java.util.concurrent.atomic.{AtomicLong, LongAdder}
 
 /** What a server has counted since it was bound.
   *
-  * @param connections
-  *   open now
-  * @param accepted
-  *   connections served, closed ones included
-  * @param turnedAway
-  *   connections beyond the limit
-  * @param closedWithReason
-  *   connections that ended because of malformed input, a cut message, a limit or a failure
-  * @param malformed
-  *   of those: for what was no message, or one beyond [[FrameLimits]]
-  * @param overHeld
-  *   of those: for memory that no longer could be held for them
-  * @param tooSlow
-  *   of those: for a message, or the taking of replies, that took too long
-  * @param idle
-  *   of those: for silence, when their place was needed or far too long
-  * @param answered
-  *   replies with a result
-  * @param refused
-  *   replies with an error
-  * @param lacking
-  *   of those: requests, and replies, too large for the memory left; and notifications, which are dropped then
-  * @param ignored
-  *   values that were no messages
-  * @param dropped
-  *   requests taken and not run, because their connection had closed before their turn
-  * @param heldBytes
-  *   memory held for peers now; see [[ServerLimits.heldBytes]]
-  * @param mostHeldBytes
-  *   the most there was
+  * @param connections open now
+  * @param accepted connections served, closed ones included
+  * @param turnedAway connections beyond the limit
+  * @param closedWithReason connections that ended because of malformed input, a cut message, a limit or a
+  *   failure
+  * @param malformed of those: for what was no message, or one beyond [[FrameLimits]]
+  * @param overHeld of those: for memory that no longer could be held for them
+  * @param tooSlow of those: for a message, or the taking of replies, that took too long
+  * @param idle of those: for silence, when their place was needed or far too long
+  * @param answered replies with a result
+  * @param refused replies with an error
+  * @param lacking of those: requests, and replies, too large for the memory left; and notifications, which
+  *   are dropped then
+  * @param ignored values that were no messages
+  * @param dropped requests taken and not run, because their connection had closed before their turn
+  * @param heldBytes memory held for peers now; see [[ServerLimits.heldBytes]]
+  * @param mostHeldBytes the most there was
   */
 final case class ServerStats(
     connections: Long,

@@ -11,8 +11,8 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Random
 import upack.*
 
-/** Mutated byte sequences against the codec, judged by the oracle: the same values at the same places, the same end,
-  * and nothing thrown.
+/** Mutated byte sequences against the codec, judged by the oracle: the same values at the same places, the
+  * same end, and nothing thrown.
   */
 object CodecFuzz:
 

@@ -4,11 +4,11 @@ import org.apache.pekko.actor.ActorSystem
 import skein.airsim.ImageFuzz
 import skein.link.PreciseScheduler
 
-/** The long fuzz: mutated byte sequences against the codec, the reader of images and scans, a live server and a live client. Ends with an error that
-  * names the seed when anything crashes, hangs, or comes out wrong.
+/** The long fuzz: mutated byte sequences against the codec, the reader of images and scans, a live server and
+  * a live client. Ends with an error that names the seed when anything crashes, hangs, or comes out wrong.
   *
-  * Arguments: sequences for the codec and for the reader (default 1,000,000), for each of server and client (default 20,000), the first
-  * seed (default 1).
+  * Arguments: sequences for the codec and for the reader (default 1,000,000), for each of server and client
+  * (default 20,000), the first seed (default 1).
   */
 object Fuzz:
   def main(args: Array[String]): Unit =

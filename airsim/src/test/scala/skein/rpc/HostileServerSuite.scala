@@ -11,7 +11,9 @@ import skein.link.Address
 import skein.units.*
 import upack.{Arr, Binary, Float32, Float64, Int32, Int64, Msg, Null, Obj, Str}
 
-/** A client whose peer means ill: what it holds stays bounded, and each call ends with a reason that can be read. */
+/** A client whose peer means ill: what it holds stays bounded, and each call ends with a reason that can be
+  * read.
+  */
 class HostileServerSuite extends munit.FunSuite:
   private given system: ActorSystem = ManualTime.system("hostile-server")
 

@@ -6,7 +6,8 @@ import upack.*
 /** Byte sequences that are almost, or not at all, what a peer should send. */
 object Mutation:
 
-  /** A few messages of one kind, changed in a few places; one in eight is left whole, one in eight is noise. */
+  /** A few messages of one kind, changed in a few places; one in eight is left whole, one in eight is noise.
+    */
   def of(random: Random, message: Random => Msg): Array[Byte] =
     val stream = Array.concat(Seq.fill(1 + random.nextInt(3))(Wire.pack(message(random)))*)
     random.nextInt(8) match

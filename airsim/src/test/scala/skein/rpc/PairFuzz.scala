@@ -15,16 +15,14 @@ import upack.{Int32, Msg, Null}
 /** Mutated byte sequences against a live server and a live client, over loopback sockets. */
 object PairFuzz:
 
-  /** @param sequences
-    *   each on a connection of its own
-    * @param closedWithReason
-    *   connections that the server closed with a logged reason, as expected for each
-    * @param healthy
-    *   answers a well-behaved client got meanwhile, every one right
+  /** @param sequences each on a connection of its own
+    * @param closedWithReason connections that the server closed with a logged reason, as expected for each
+    * @param healthy answers a well-behaved client got meanwhile, every one right
     */
   final case class ServerFigures(sequences: Int, closedWithReason: Long, replies: Long, healthy: Long)
 
-  /** Every connection must end, with the reason that its bytes deserve, and the other client notice nothing. */
+  /** Every connection must end, with the reason that its bytes deserve, and the other client notice nothing.
+    */
   def server(sequences: Int, seed: Long)(using system: ActorSystem): ServerFigures =
     val transport = TcpTransport()
     val closings  = LinkedBlockingQueue[ServerEvent.Closed]()
@@ -72,10 +70,8 @@ object PairFuzz:
     Await.result(server.close(), 10.seconds)
     ServerFigures(sequences, reasons, replies, healthy)
 
-  /** @param right
-    *   results, each the one that was sent for this very call
-    * @param failed
-    *   calls that ended with an error, each as its bytes deserve
+  /** @param right results, each the one that was sent for this very call
+    * @param failed calls that ended with an error, each as its bytes deserve
     */
   final case class ClientFigures(sequences: Int, right: Int, refused: Int, failed: Int)
 

@@ -42,7 +42,9 @@ object Wire:
     assert(!unpacker.hasNext, "bytes after the value")
     value
 
-  /** Depth at most `depth`; strings and binaries of about `longest` bytes at most, often at the edge of an encoding. */
+  /** Depth at most `depth`; strings and binaries of about `longest` bytes at most, often at the edge of an
+    * encoding.
+    */
   def randomMsg(random: Random, depth: Int = 4, longest: Int = 71_000): Msg =
     def length = math.min(edgeLength(random), longest)
     def inner  = randomMsg(random, depth - 1, longest)

@@ -4,28 +4,22 @@ import skein.mavlink.*
 import skein.units.*
 import skein.vehicle.{GoTo, Setpoint}
 
-/** The decisions of an autopilot that behaves to the outside as PX4 does, as values: what it is told and what its vehicle
-  * does goes in, what it answers and what its vehicle is to do comes out. It knows no socket and no clock.
+/** The decisions of an autopilot that behaves to the outside as PX4 does, as values: what it is told and what
+  * its vehicle does goes in, what it answers and what its vehicle is to do comes out. It knows no socket and
+  * no clock.
   *
-  * As PX4's, offboard begins only where setpoints come already, and ends [[Parameters.OffboardLoss]] after the last one:
-  * the vehicle then holds its position, as PX4 does without a remote control where it is told so (`COM_OBL_RC_ACT`).
+  * As PX4's, offboard begins only where setpoints come already, and ends [[Parameters.OffboardLoss]] after
+  * the last one: the vehicle then holds its position, as PX4 does without a remote control where it is told
+  * so (`COM_OBL_RC_ACT`).
   *
-  * @param system
-  *   1 to 255
-  * @param home
-  *   where it started: the origin of its own frame
-  * @param anchor
-  *   the place that its mode flies to, own frame
-  * @param enteredAt
-  *   when it took its mode
-  * @param heardAt
-  *   when the last setpoint came
-  * @param stillSince
-  *   since when it stands still while it lands
-  * @param groundedAt
-  *   since when it is armed and on the ground
-  * @param hasFlown
-  *   whether it has flown since it was armed
+  * @param system 1 to 255
+  * @param home where it started: the origin of its own frame
+  * @param anchor the place that its mode flies to, own frame
+  * @param enteredAt when it took its mode
+  * @param heardAt when the last setpoint came
+  * @param stillSince since when it stands still while it lands
+  * @param groundedAt since when it is armed and on the ground
+  * @param hasFlown whether it has flown since it was armed
   */
 final case class Autopilot(
     system: Int,
@@ -50,8 +44,7 @@ final case class Autopilot(
 
   /** What comes of a message that is meant for this vehicle, or for all.
     *
-    * @param from
-    *   system and component of the sender
+    * @param from system and component of the sender
     */
   def heard(message: Message, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
     message match
@@ -97,7 +90,9 @@ final case class Autopilot(
           case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
           case Some(Left(why))     => refused(why)
 
-  /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never armed. */
+  /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never
+    * armed.
+    */
   def steer(motion: VehicleMotion): (heard: Heard, setpoint: Option[Setpoint]) =
     val (asked, texts) = uploading(motion)
     val (after, told)  = asked.onItsOwn(motion)
@@ -428,12 +423,9 @@ final case class Autopilot(
 object Autopilot:
   /** What comes of what was heard.
     *
-    * @param answers
-    *   for who has asked
-    * @param news
-    *   for everybody
-    * @param interval
-    *   the message that the asker wants so often, µs: −1 never, 0 as usual
+    * @param answers for who has asked
+    * @param news for everybody
+    * @param interval the message that the asker wants so often, µs: −1 never, 0 as usual
     */
   final case class Heard(
       next: Autopilot,
@@ -444,8 +436,7 @@ object Autopilot:
 
   /** A command, and its seven numbers; places in degrees.
     *
-    * @param frame
-    *   of its place, where it names one
+    * @param frame of its place, where it names one
     */
   private final case class Order(command: Int, numbers: Vector[Double], frame: Option[Int]):
     def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0

@@ -6,12 +6,10 @@ import skein.units.*
 
 /** What one peer hears of some vehicles, and how often: bytes for it, cut into datagrams. Not thread-safe.
   *
-  * @param systems
-  *   the vehicles that it sees
-  * @param isDatagrams
-  *   whether what it sends comes in datagrams, of which each ends where it ends, and not in pieces of a stream
-  * @param mostBytes
-  *   of a datagram
+  * @param systems the vehicles that it sees
+  * @param isDatagrams whether what it sends comes in datagrams, of which each ends where it ends, and not in
+  *   pieces of a stream
+  * @param mostBytes of a datagram
   */
 final class MavlinkChannel(
     val systems: Vector[Int],
@@ -42,8 +40,7 @@ final class MavlinkChannel(
 
   /** Changes how often a message is told.
     *
-    * @param micros
-    *   −1 never, 0 as usual
+    * @param micros −1 never, 0 as usual
     */
   def setInterval(system: Int, id: Int, micros: Double, now: Span): Unit =
     if micros < 0 then

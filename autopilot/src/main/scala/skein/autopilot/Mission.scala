@@ -5,10 +5,8 @@ import skein.units.*
 
 /** A mission that can be flown.
   *
-  * @param current
-  *   the item that is flown to
-  * @param reachedAt
-  *   since when the vehicle is there
+  * @param current the item that is flown to
+  * @param reachedAt since when the vehicle is there
   */
 final case class Mission(
     items: Vector[MissionItemInt] = Vector.empty,
@@ -66,10 +64,8 @@ object Mission:
 
 /** A mission on its way to the vehicle: items are asked for one by one, again where one does not come.
   *
-  * @param system
-  *   who sends it
-  * @param askedAt
-  *   when the next item was asked for last
+  * @param system who sends it
+  * @param askedAt when the next item was asked for last
   */
 final case class Upload(
     system: Int,

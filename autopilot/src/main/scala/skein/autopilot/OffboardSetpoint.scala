@@ -6,11 +6,10 @@ import skein.vehicle.{GoTo, Setpoint}
 
 /** What somebody outside wants the vehicle to do now, in offboard. */
 enum OffboardSetpoint:
-  /** Per axis a place, a velocity, or nothing; in the vehicle's own frame. A place and a velocity together are flown to
-    * with that velocity added.
+  /** Per axis a place, a velocity, or nothing; in the vehicle's own frame. A place and a velocity together
+    * are flown to with that velocity added.
     *
-    * @param inBody
-    *   whether the velocity is front, right and down
+    * @param inBody whether the velocity is front, right and down
     */
   case Move(
       north: Option[Double],
@@ -35,10 +34,8 @@ object OffboardSetpoint:
 
   /** What a message asks for.
     *
-    * @param home
-    *   the origin of the vehicle's own frame
-    * @return
-    *   None where it is no setpoint, or why it cannot be flown
+    * @param home the origin of the vehicle's own frame
+    * @return None where it is no setpoint, or why it cannot be flown
     */
   def of(message: Message, home: GeoLocation): Option[Either[String, OffboardSetpoint]] = message match
     case one: SetPositionTargetLocalNed =>
@@ -137,8 +134,7 @@ object OffboardSetpoint:
 
   /** What the flight controller is told for it.
     *
-    * @param cruise
-    *   the fastest that places are flown to
+    * @param cruise the fastest that places are flown to
     */
   def setpoint(target: OffboardSetpoint, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint =
     target match

@@ -14,10 +14,8 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
   def one(name: String, index: Int): Option[Message] =
     (if index >= 0 then known.lift(index) else known.find(_.name == name)).map(message)
 
-  /** @param value
-    *   as it stands in a message: the bits of an integer
-    * @return
-    *   the parameters with it, and what is told; or why not
+  /** @param value as it stands in a message: the bits of an integer
+    * @return the parameters with it, and what is told; or why not
     */
   def set(name: String, value: Float): Either[String, (Parameters, Message)] =
     known.find(_.name == name) match
@@ -43,8 +41,7 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
       known.indexOf(parameter)
     )
 
-/** @param default
-  *   in the unit that PX4's reference states
+/** @param default in the unit that PX4's reference states
   */
 final case class Parameter(
     name: String,

@@ -5,11 +5,8 @@ import skein.units.Span
 
 /** What an autopilot knows of its vehicle: in a simulator, the truth.
   *
-  * @param sinceBoot
-  *   its clock
-  * @param state
-  *   in its own frame, whose origin is where it started
-  * @param isFlying
-  *   whether it has taken off and not landed since
+  * @param sinceBoot its clock
+  * @param state in its own frame, whose origin is where it started
+  * @param isFlying whether it has taken off and not landed since
   */
 final case class VehicleMotion(sinceBoot: Span, state: Kinematics, isFlying: Boolean)

@@ -18,9 +18,10 @@ import skein.scenario.Scenarios
   val (steps, distance) = flights(4096)
   println(f"flights of a search n=4096: ${steps / 1e6}%.1f M steps/s, first comes to $distance%.3f m")
 
-/** What so many environment steps take, of 4,096 environments whose actions are always 0, under same-step autoreset: time
-  * by the clock and by the processors, and the most memory that the process had. Run:
-  * `./sbtw 'bench/runMain skein.bench.EnvironmentSteps 200000000'`; from Python it is `bench/python/environments.py`'s.
+/** What so many environment steps take, of 4,096 environments whose actions are always 0, under same-step
+  * autoreset: time by the clock and by the processors, and the most memory that the process had. Run:
+  * `./sbtw 'bench/runMain skein.bench.EnvironmentSteps 200000000'`; from Python it is
+  * `bench/python/environments.py`'s.
   */
 @main def EnvironmentSteps(steps: Long): Unit =
   val count = 4096

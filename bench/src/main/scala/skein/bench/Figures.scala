@@ -5,8 +5,8 @@ import skein.lanes.{DuelWorlds, QuadrotorKernel}
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 
-/** The figures that forward simulation is held to, on all cores, each with a witness. Given by the clock, and in
-  * processor time over the number of cores: the same on a machine with nothing else to do. Run
+/** The figures that forward simulation is held to, on all cores, each with a witness. Given by the clock, and
+  * in processor time over the number of cores: the same on a machine with nothing else to do. Run
   * `./sbtw "bench/runMain skein.bench.Figures"`.
   */
 object Figures:

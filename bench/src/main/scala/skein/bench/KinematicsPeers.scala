@@ -11,12 +11,14 @@ import skein.rpc.{RpcClient, RpcSettings}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.Clock
 
-/** How fast are kinematics requests to the built-in simulator: by our typed client, in sequence and pipelined, and by
-  * the official Python client, one after the other in one run. The witness is the last altitude read.
+/** How fast are kinematics requests to the built-in simulator: by our typed client, in sequence and
+  * pipelined, and by the official Python client, one after the other in one run. The witness is the last
+  * altitude read.
   *
-  * Arguments: seconds per row (default 5), and the interpreter of a virtual environment in which the official client
-  * is installed (the test of the official client makes one in the user's cache; `PYTHONPATH` must name its
-  * compatibility file's folder, simulator/src/test/resources/airsim-python); without it, that row is left out.
+  * Arguments: seconds per row (default 5), and the interpreter of a virtual environment in which the official
+  * client is installed (the test of the official client makes one in the user's cache; `PYTHONPATH` must name
+  * its compatibility file's folder, simulator/src/test/resources/airsim-python); without it, that row is left
+  * out.
   */
 object KinematicsPeers:
 

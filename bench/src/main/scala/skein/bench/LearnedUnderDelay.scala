@@ -11,20 +11,20 @@ import skein.search.Judge
 import skein.settings.PolicyFile
 import skein.training.*
 
-/** Is a policy better over a link that was taught under its timing, or does the paused simulator do? The same learner
-  * teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly over `vpn` under `stream` and
-  * `predictive` in virtual time, and where the simulator waits, beside the paper's policy and the best that a search finds:
-  * `./skein search --family lead-pursuit --link vpn`, and `--family chauffeur-evader`. Run:
-  * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and by a seed; what stands in the folder already is
-  * gone on with. The picture stands there too.
+/** Is a policy better over a link that was taught under its timing, or does the paused simulator do? The same
+  * learner teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly over
+  * `vpn` under `stream` and `predictive` in virtual time, and where the simulator waits, beside the paper's
+  * policy and the best that a search finds: `./skein search --family lead-pursuit --link vpn`, and
+  * `--family chauffeur-evader`. Run:
+  * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and
+  * by a seed; what stands in the folder already is gone on with. The picture stands there too.
   */
 object LearnedUnderDelay:
   private given Scenarios = Main.scenarios
 
   private val flown = Vector("paused" -> "none", "stream" -> "vpn", "predictive" -> "vpn")
 
-  /** @param captures
-    *   flights in which the pursuer came as near as [[CaptureM]]
+  /** @param captures flights in which the pursuer came as near as [[CaptureM]]
     */
   private final case class Row(
       policy: String,

@@ -6,7 +6,8 @@ import skein.plot.{Colour, Png}
 import skein.training.{LearnScore, LearningCurve}
 
 /** Learning curves of several learners in one picture, from tables as `./skein learn` writes them. Run:
-  * `./sbtw "bench/runMain skein.bench.LearningCurves OUT.png 'TITLE' 'NAME=FILE.csv' …"`; `NAME=NUMBER` draws a level.
+  * `./sbtw "bench/runMain skein.bench.LearningCurves OUT.png 'TITLE' 'NAME=FILE.csv' …"`; `NAME=NUMBER` draws
+  * a level.
   */
 object LearningCurves:
   private val colours = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9).map(Colour(_))

@@ -10,13 +10,13 @@ import java.util.zip.CRC32
 import skein.mcap.*
 import skein.mcap.file.McapFile
 
-/** How fast are MCAP files written and read, beside the official libraries? `bench/mcap` runs this and their twins over
-  * the same messages, which `corpus` writes to a file of their own: of each message its log time, ns, and its length as
-  * numbers of 8 and 4 bytes, lowest first, then its data.
+/** How fast are MCAP files written and read, beside the official libraries? `bench/mcap` runs this and their
+  * twins over the same messages, which `corpus` writes to a file of their own: of each message its log time,
+  * ns, and its length as numbers of 8 and 4 bytes, lowest first, then its data.
   *
-  * A row is what, how compressed, megabytes of messages a second of CPU time of the whole process (so threads of its own
-  * do not make it faster), the size of the file, and as witness the CRC32 of all data in the order read, which is the same
-  * in every row of a corpus. All CRCs are written, and held while reading.
+  * A row is what, how compressed, megabytes of messages a second of CPU time of the whole process (so threads
+  * of its own do not make it faster), the size of the file, and as witness the CRC32 of all data in the order
+  * read, which is the same in every row of a corpus. All CRCs are written, and held while reading.
   */
 object McapSpeed:
   final private case class Message(logTime: Long, data: Array[Byte])
@@ -26,9 +26,9 @@ object McapSpeed:
     case "run" :: rounds :: kind :: path :: Nil => run(rounds.toInt, kind, Path.of(path))
     case other => sys.error(s"expected corpus KIND PATH or run ROUNDS KIND PATH, came $other")
 
-  /** `poses`: 1,000,000 messages of 96 bytes, times and doubles of a vehicle that flies circles in gusts. `images`: 900
-    * images of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of a sensor in the lowest
-    * bit of a tenth of the bytes.
+  /** `poses`: 1,000,000 messages of 96 bytes, times and doubles of a vehicle that flies circles in gusts.
+    * `images`: 900 images of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of
+    * a sensor in the lowest bit of a tenth of the bytes.
     */
   private def corpus(kind: String, path: Path): Unit =
     val random = SplittableRandom(7)

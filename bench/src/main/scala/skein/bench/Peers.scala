@@ -4,13 +4,14 @@ import java.nio.file.{Files, Path}
 import scala.collection.mutable
 import scala.sys.process.*
 
-/** How fast is forward simulation beside its peers? On one machine in one run: a hand-vectorised C kernel of the
-  * yardstick's work, its Numba and JAX twins and ours; the `stream` loop's full event timing; the quadrotor beside
-  * Crazyflow. All sides take turns, round after round, on one thread and on all cores, so that other load meets all
-  * alike; the best round of each counts. Every row prints a witness. `bench/peers` prepares the tools and runs this.
+/** How fast is forward simulation beside its peers? On one machine in one run: a hand-vectorised C kernel of
+  * the yardstick's work, its Numba and JAX twins and ours; the `stream` loop's full event timing; the
+  * quadrotor beside Crazyflow. All sides take turns, round after round, on one thread and on all cores, so
+  * that other load meets all alike; the best round of each counts. Every row prints a witness. `bench/peers`
+  * prepares the tools and runs this.
   *
-  * Arguments: rounds, the compiled C program, Python with the twins' packages (`-`: without them), the folder of the
-  * peers' programs.
+  * Arguments: rounds, the compiled C program, Python with the twins' packages (`-`: without them), the folder
+  * of the peers' programs.
   */
 object Peers:
   def main(args: Array[String]): Unit =

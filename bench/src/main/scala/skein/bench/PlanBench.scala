@@ -9,11 +9,12 @@ import skein.planning.*
 import skein.policy.PaperEvader
 import skein.vehicle.{PlaneReading, ReducedModel}
 
-/** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of pursuer and
-  * evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads are those of the `plan`
-  * loop, which give way to all others, so other work on the machine takes its share first: rates are given per second of the
-  * clock and of the processor time used. Bytes are what a candidate leaves to the garbage collector: above a hundred, a
-  * loop of the kernel boxes its vectors, and collections fall into decisions.
+/** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of
+  * pursuer and evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads
+  * are those of the `plan` loop, which give way to all others, so other work on the machine takes its share
+  * first: rates are given per second of the clock and of the processor time used. Bytes are what a candidate
+  * leaves to the garbage collector: above a hundred, a loop of the kernel boxes its vectors, and collections
+  * fall into decisions.
   *
   * The witness is the cost of the best plan. Run: `./sbtw "bench/runMain skein.bench.PlanBench"`.
   */

@@ -12,9 +12,10 @@ import skein.rpc.*
 import skein.units.Clock
 import upack.{Binary, Float32, Msg, Obj, Str}
 
-/** How fast is the RPC over loopback, client and server in one JVM? A kinematics request carries a vehicle's name and
-  * its reply 13 + 6 floats in maps, encoded at the server and decoded at the client to `upack` values. The witness of
-  * each row is the number of replies whose content was as sent; `cpu` is how many cores the whole process used.
+/** How fast is the RPC over loopback, client and server in one JVM? A kinematics request carries a vehicle's
+  * name and its reply 13 + 6 floats in maps, encoded at the server and decoded at the client to `upack`
+  * values. The witness of each row is the number of replies whose content was as sent; `cpu` is how many
+  * cores the whole process used.
   *
   * Arguments: seconds per row (default 5), seconds of the steady rate (default 10).
   */

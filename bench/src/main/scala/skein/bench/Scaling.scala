@@ -4,8 +4,8 @@ import skein.forward.{DelayTable, Engagement, LoopTiming, Rollout}
 import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 
-/** How does the rate of forward simulation grow with the size of a batch, the number of threads and the size of a team?
-  * `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.lanes.DuelBatch]], teams by
+/** How does the rate of forward simulation grow with the size of a batch, the number of threads and the size
+  * of a team? `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.lanes.DuelBatch]], teams by
   * [[skein.forward.Rollout]]. Run: `./sbtw "bench/runMain skein.bench.Scaling"`.
   */
 object Scaling:
@@ -43,7 +43,9 @@ object Scaling:
   private def warmUp(): Unit = for _ <- 1 to 3 do
     for perEpisode <- Seq(1, 128) do measure(2048, perEpisode, 1)
 
-  /** The best of three, each of at least 100,000 agent-steps. The kernels stand ready; timetables are made anew. */
+  /** The best of three, each of at least 100,000 agent-steps. The kernels stand ready; timetables are made
+    * anew.
+    */
   private def measure(worlds: Int, perEpisode: Int, threads: Int): Rate =
     val calls = (100_000 / (worlds * 1200) + 1).max(1)
     Seq.tabulate(3): round =>

@@ -7,9 +7,10 @@ import skein.lanes.{Judged, ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.scenario.*
 import skein.simd.WorldRandom
 
-/** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of each episode, `stream` over `vpn`,
-  * 60 s, the reduced model, one thread; an agent-step is 0.1 s of one vehicle. The timetables are made before; what making
-  * them costs stands beside. Run: `./sbtw "bench/runMain skein.bench.TeamRates 6 20"`.
+/** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of each episode, `stream`
+  * over `vpn`, 60 s, the reduced model, one thread; an agent-step is 0.1 s of one vehicle. The timetables are
+  * made before; what making them costs stands beside. Run:
+  * `./sbtw "bench/runMain skein.bench.TeamRates 6 20"`.
   */
 object TeamRates:
   private val Candidates = 256

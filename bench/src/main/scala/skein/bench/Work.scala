@@ -4,8 +4,7 @@ import java.lang.management.ManagementFactory
 
 /** A piece of work for one thread: how many steps it made, and a witness of their result.
   *
-  * @param unit
-  *   what one step is
+  * @param unit what one step is
   */
 final case class Work(name: String, unit: String)(val of: Int => (Double, Double)):
 
@@ -29,12 +28,9 @@ object Work:
 
 /** Millions of steps.
   *
-  * @param byWall
-  *   per second of the clock
-  * @param byCpu
-  *   per second of processor time: other load on the machine disturbs it less
-  * @param witness
-  *   that the work was done
+  * @param byWall per second of the clock
+  * @param byCpu per second of processor time: other load on the machine disturbs it less
+  * @param witness that the work was done
   */
 final case class Rate(byWall: Double, byCpu: Double, witness: Double):
   /** The better of both, each for itself. */

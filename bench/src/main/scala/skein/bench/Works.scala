@@ -15,7 +15,9 @@ object Works:
   private val Decision    = "decision of a network with two hidden layers of eight"
   private val VehicleStep = "vehicle-step: 3 ms of the quadrotor and its controller"
 
-  /** What `yardstick/chauffeur.c` does: ages drawn, positions interpolated, decisions, one exact lag step, distance. */
+  /** What `yardstick/chauffeur.c` does: ages drawn, positions interpolated, decisions, one exact lag step,
+    * distance.
+    */
   val yardstick: Work = Work("yardstick, SIMD", AgentStep): thread =>
     val blocks = 2048
     val worlds = blocks * ChauffeurKernel.BLOCK

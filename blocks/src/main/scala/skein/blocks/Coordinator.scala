@@ -2,23 +2,16 @@ package skein.blocks
 
 import scala.collection.immutable.TreeSet
 
-/** Who computes which block: a value, changed by what workers say and by time. Blocks may be given out several times;
-  * the first answer counts, and later ones are counted as repeats.
+/** Who computes which block: a value, changed by what workers say and by time. Blocks may be given out
+  * several times; the first answer counts, and later ones are counted as repeats.
   *
-  * @param waiting
-  *   blocks that nobody has
-  * @param leases
-  *   blocks that somebody has, by their numbers
-  * @param seldom
-  *   leases of one worker alone, the oldest first: given out again once nothing waits
-  * @param workers
-  *   by name, also those that are gone
-  * @param cores
-  *   of all workers that are here
-  * @param patienceNanos
-  *   after which a block is given to others, whatever its worker does
-  * @param slowNanos
-  *   after which a block may go to a second worker, once nothing waits
+  * @param waiting blocks that nobody has
+  * @param leases blocks that somebody has, by their numbers
+  * @param seldom leases of one worker alone, the oldest first: given out again once nothing waits
+  * @param workers by name, also those that are gone
+  * @param cores of all workers that are here
+  * @param patienceNanos after which a block is given to others, whatever its worker does
+  * @param slowNanos after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
     waiting: Waiting,
@@ -52,15 +45,13 @@ final case class Coordinator private (
 
   def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting.followedBy(blocks))
 
-  /** A worker asks for a block. It holds one for each of its cores and, while there are more than enough, as many that
-    * wait for their turn at the worker.
+  /** A worker asks for a block. It holds one for each of its cores and, while there are more than enough, as
+    * many that wait for their turn at the worker.
     *
-    * @param holding
-    *   numbers of the blocks that it has; what it was given, or named, more than [[OnItsWay]] ago and does not name was lost
-    * @param nowNanos
-    *   on any clock that does not go back
-    * @return
-    *   the block that it gets, if there is one
+    * @param holding numbers of the blocks that it has; what it was given, or named, more than [[OnItsWay]]
+    *   ago and does not name was lost
+    * @param nowNanos on any clock that does not go back
+    * @return the block that it gets, if there is one
     */
   def asked(worker: String, holding: Set[Long], nowNanos: Long): (Coordinator, Option[Block]) =
     workers.get(worker).filter(_.isHere) match
@@ -78,8 +69,7 @@ final case class Coordinator private (
 
   /** A worker's answer.
     *
-    * @return
-    *   whether it is the first, which counts
+    * @return whether it is the first, which counts
     */
   def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, AnswerKind) =
     def tallied(record: WorkerRecord, accepted: Int) = record.copy(
@@ -191,8 +181,8 @@ object Coordinator:
   /** Of each core: a block that is computed, and one that waits for its turn at the worker. */
   val MostHeld = 2
 
-  /** Within which a block that was given, or the answer to one that its worker named, may still be on its way: twice as
-    * long as workers wait between two requests, at most.
+  /** Within which a block that was given, or the answer to one that its worker named, may still be on its
+    * way: twice as long as workers wait between two requests, at most.
     */
   val OnItsWay: Long = 4_000_000_000L
 
@@ -214,25 +204,18 @@ object Coordinator:
   final case class Lease(block: Block, holders: Map[String, Long]):
     private[blocks] def place: (Long, Long) = (holders.values.min, block.number)
 
-  /** @param accepted
-    *   blocks whose first answer came
-    * @param repeated
-    *   answers that were not the first
-    * @param doubled
-    *   blocks given out again since nothing else waited
-    * @param lost
-    *   blocks that waited again since their worker was gone
-    * @param overdue
-    *   blocks that waited again since nobody answered for too long
+  /** @param accepted blocks whose first answer came
+    * @param repeated answers that were not the first
+    * @param doubled blocks given out again since nothing else waited
+    * @param lost blocks that waited again since their worker was gone
+    * @param overdue blocks that waited again since nobody answered for too long
     */
   final case class Counts(accepted: Long, repeated: Long, doubled: Long, lost: Long, overdue: Long)
 
 /** What a worker has done.
   *
-  * @param holds
-  *   numbers of the blocks that it was given, and when, or when it named them last
-  * @param busyNanos
-  *   that it computed, over all its answers
+  * @param holds numbers of the blocks that it was given, and when, or when it named them last
+  * @param busyNanos that it computed, over all its answers
   */
 final case class WorkerRecord(
     cores: Int,

@@ -9,16 +9,15 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import scala.util.Using
 
-/** The answers that count, on disk: each block's first one, once. A coordinator that is started again reads it and asks
-  * for nothing twice. Whatever ends the process, a record is there whole or is cut off at the next start.
+/** The answers that count, on disk: each block's first one, once. A coordinator that is started again reads
+  * it and asks for nothing twice. Whatever ends the process, a record is there whole or is cut off at the
+  * next start.
   *
-  * The file: 16 bytes of [[Ledger.Magic]], 32 bytes that name the question, then records: length and CRC-32 of what
-  * follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
+  * The file: 16 bytes of [[Ledger.Magic]], 32 bytes that name the question, then records: length and CRC-32
+  * of what follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
   *
-  * @param index
-  *   where each block's answer stands, and how long it is
-  * @param cutOff
-  *   bytes at the end of the file that were no whole record and were removed
+  * @param index where each block's answer stands, and how long it is
+  * @param cutOff bytes at the end of the file that were no whole record and were removed
   */
 final class Ledger private (
     channel: FileChannel,
@@ -38,8 +37,7 @@ final class Ledger private (
       while bytes.hasRemaining && channel.read(bytes, at + bytes.position()) >= 0 do ()
       ArraySeq.unsafeWrapArray(bytes.array)
 
-  /** @return
-    *   whether the answer is the block's first and was written
+  /** @return whether the answer is the block's first and was written
     */
   def accept(key: BlockKey, answer: ArraySeq[Byte]): Boolean =
     !index.contains(key) && {
@@ -69,10 +67,8 @@ object Ledger:
 
   /** Opens the ledger of a question, or begins it.
     *
-    * @param question
-    *   32 bytes that name it
-    * @return
-    *   or why not: another question's ledger, or a file that cannot be written
+    * @param question 32 bytes that name it
+    * @return or why not: another question's ledger, or a file that cannot be written
     */
   def open(file: Path, question: ArraySeq[Byte]): Either[String, Ledger] =
     import StandardOpenOption.*
@@ -103,12 +99,9 @@ object Ledger:
 
   /** What a ledger holds, read from the file alone.
     *
-    * @param blocks
-    *   records with different keys
-    * @param repeats
-    *   records whose key came before; none, or something is wrong
-    * @param broken
-    *   bytes behind the last whole record
+    * @param blocks records with different keys
+    * @param repeats records whose key came before; none, or something is wrong
+    * @param broken bytes behind the last whole record
     */
   final case class Audit(blocks: Int, repeats: Int, broken: Long)
 
@@ -121,8 +114,7 @@ object Ledger:
 
   /** Tells every whole record from the first on.
     *
-    * @return
-    *   where the first byte stands that belongs to none
+    * @return where the first byte stands that belongs to none
     */
   private def scan(channel: FileChannel)(tell: (BlockKey, Long, Int) => Unit): Long =
     val size = channel.size

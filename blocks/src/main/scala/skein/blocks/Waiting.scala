@@ -2,13 +2,11 @@ package skein.blocks
 
 import scala.collection.immutable.TreeMap
 
-/** Blocks that nobody has. Those that somebody had go out first, by their numbers; then the others, in the order in
-  * which they came. No step takes longer where there are a million.
+/** Blocks that nobody has. Those that somebody had go out first, by their numbers; then the others, in the
+  * order in which they came. No step takes longer where there are a million.
   *
-  * @param again
-  *   that somebody had, by their numbers; an answer to them may still come
-  * @param fresh
-  *   that nobody ever had
+  * @param again that somebody had, by their numbers; an answer to them may still come
+  * @param fresh that nobody ever had
   */
 final case class Waiting private (again: TreeMap[Long, Block], fresh: Vector[Block]):
   def size: Int         = again.size + fresh.size

@@ -8,13 +8,11 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import skein.signal.SplitMix64
 
-/** Coordinator, ledger and workers over a network that loses, doubles, delays and reorders, on a clock of their own. The
-  * ledger is a file, of which a coordinator that dies loses a part that was not saved.
+/** Coordinator, ledger and workers over a network that loses, doubles, delays and reorders, on a clock of
+  * their own. The ledger is a file, of which a coordinator that dies loses a part that was not saved.
   *
-  * @param folder
-  *   for the ledger
-  * @param meanSeconds
-  *   of a block, at a speed of 1
+  * @param folder for the ledger
+  * @param meanSeconds of a block, at a speed of 1
   */
 final class CoordinatorSimulation(
     seed: Long,
@@ -175,8 +173,8 @@ final class CoordinatorSimulation(
     all += worker
     worker.live(deathsAnHour, cutsAnHour)
 
-  /** The coordinator's own death and its next life: what it knew is gone but for the ledger, and of that what was not on
-    * the disk yet, or a part of it.
+  /** The coordinator's own death and its next life: what it knew is gone but for the ledger, and of that what
+    * was not on the disk yet, or a part of it.
     */
   private def restart(): Unit =
     restarts += 1
@@ -198,18 +196,13 @@ final class CoordinatorSimulation(
 
   /** Until all is done.
     *
-    * @param deathsAnHour
-    *   share of the workers that die in an hour; each is noticed after 10 s, and another comes
-    * @param cutsAnHour
-    *   how often a worker is cut off, for 30 s on average
-    * @param splits
-    *   at these seconds a fifth of all workers is cut off at once, for two minutes
-    * @param restarts
-    *   of the coordinator, at these seconds
-    * @param saving
-    *   whether the ledger waits for the disk once a second
-    * @param onTick
-    *   once a second
+    * @param deathsAnHour share of the workers that die in an hour; each is noticed after 10 s, and another
+    *   comes
+    * @param cutsAnHour how often a worker is cut off, for 30 s on average
+    * @param splits at these seconds a fifth of all workers is cut off at once, for two minutes
+    * @param restarts of the coordinator, at these seconds
+    * @param saving whether the ledger waits for the disk once a second
+    * @param onTick once a second
     */
   def fly(
       deathsAnHour: Double,

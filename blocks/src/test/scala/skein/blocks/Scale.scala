@@ -4,13 +4,12 @@ import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 
 /** What coordinating many workers costs, by simulation:
-  * `./sbtw "blocks/Test/runMain skein.blocks.scale 10000 1000000 DIR"`. Speeds are heavy-tailed (Pareto, 1.5), a block
-  * takes a minute on average at a speed of 1; 5 % of the workers die in an hour, each is cut off for half a minute once
-  * in four hours, and every half an hour a fifth of them at once for two minutes. Ends with an error where the answer
-  * is wrong, or where a block counts twice.
+  * `./sbtw "blocks/Test/runMain skein.blocks.scale 10000 1000000 DIR"`. Speeds are heavy-tailed (Pareto,
+  * 1.5), a block takes a minute on average at a speed of 1; 5 % of the workers die in an hour, each is cut
+  * off for half a minute once in four hours, and every half an hour a fifth of them at once for two minutes.
+  * Ends with an error where the answer is wrong, or where a block counts twice.
   *
-  * @param out
-  *   folder for the ledger, which is deleted at the end
+  * @param out folder for the ledger, which is deleted at the end
   */
 @main def scale(workers: Int, blocks: Int, out: String): Unit =
   val begun  = System.nanoTime()

@@ -9,10 +9,8 @@ import skein.signal.LatencyDistribution
 
 /** Some cells of a budget's map, which any process that was asked the same question flies to the same bits.
   *
-  * @param number
-  *   of the subject, from 0
-  * @param episodes
-  *   of each link
+  * @param number of the subject, from 0
+  * @param episodes of each link
   */
 final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], episodes: Int):
 
@@ -20,8 +18,7 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
 
   /** Of each link what it came to.
     *
-    * @return
-    *   or why there is none
+    * @return or why there is none
     */
   def answer(subjects: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
     for

@@ -3,8 +3,8 @@ package skein.budget
 import skein.plot.*
 import skein.units.Decimals.significant
 
-/** How far the objective is off the truth, by latency and jitter, one panel per period: the contour where it leaves the
-  * tolerance, and the marked links.
+/** How far the objective is off the truth, by latency and jitter, one panel per period: the contour where it
+  * leaves the tolerance, and the marked links.
   */
 object BudgetFigure:
   private val width  = 430.0
@@ -16,8 +16,7 @@ object BudgetFigure:
   /** Drawn where the objective never came to a number. */
   private val Most = 1e6
 
-  /** @param maps
-    *   of the same question at several periods
+  /** @param maps of the same question at several periods
     */
   def apply(maps: Vector[BudgetMap]): Drawing =
     val (_, unit) = maps.head.tolerance.shown(maps.head.unit)

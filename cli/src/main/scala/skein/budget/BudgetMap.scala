@@ -8,12 +8,9 @@ import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with what is said of it.
   *
-  * @param policy
-  *   or scenario
-  * @param engine
-  *   what flew it, in a line
-  * @param marks
-  *   named links with what was flown over them as they were measured
+  * @param policy or scenario
+  * @param engine what flew it, in a line
+  * @param marks named links with what was flown over them as they were measured
   */
 final case class BudgetMap(
     loop: String,

@@ -16,10 +16,8 @@ object BudgetQuestion:
 
   /** Of a policy in the paper's duel.
     *
-    * @param policy
-    *   and `opponent`: as [[PolicyFile.text]] writes them
-    * @param role
-    *   of the policy
+    * @param policy and `opponent`: as [[PolicyFile.text]] writes them
+    * @param role of the policy
     */
   final case class OfDuel(
       role: String,
@@ -40,10 +38,8 @@ object BudgetQuestion:
 
   /** Of a scenario.
     *
-    * @param set
-    *   settings by their keys
-    * @param objective
-    *   a sum of its measures; without one, the first
+    * @param set settings by their keys
+    * @param objective a sum of its measures; without one, the first
     */
   final case class OfScenario(
       scenario: String,

@@ -11,14 +11,10 @@ import skein.simd.WorldRandom
 
 /** What a budget is of: something that is flown over links and comes to a number.
   *
-  * @param loop
-  *   by its name
-  * @param vehicles
-  *   what flies, in a line
-  * @param label
-  *   of the policy, or of the scenario
-  * @param formula
-  *   of the number, in `unit`, which may be empty
+  * @param loop by its name
+  * @param vehicles what flies, in a line
+  * @param label of the policy, or of the scenario
+  * @param formula of the number, in `unit`, which may be empty
   */
 trait BudgetSubject(
     val loop: String,
@@ -43,19 +39,15 @@ trait BudgetSubject(
 
   /** Of each cell; all meet the same random numbers.
     *
-    * @return
-    *   or why not
+    * @return or why not
     */
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]]
 
 /** Cells of a map that are to be flown.
   *
-  * @param links
-  *   by their round trips
-  * @param episodes
-  *   of each
-  * @param onProgress
-  *   told how many episodes are flown
+  * @param links by their round trips
+  * @param episodes of each
+  * @param onProgress told how many episodes are flown
   */
 final case class BudgetCells(
     links: Vector[LatencyDistribution],

@@ -5,8 +5,7 @@ import skein.signal.LatencyDistribution
 
 /** Flies something over links of many latencies and jitters, and once over none while the world waits.
   *
-  * @param asked
-  *   episodes of each cell, where they were asked for
+  * @param asked episodes of each cell, where they were asked for
   */
 final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
   /** Of the map's cells, row by row. */
@@ -27,12 +26,9 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
 
   /** The whole map, row by row.
     *
-    * @param onProgress
-    *   told how many episodes are flown
-    * @param onRow
-    *   told of all rows that are known, after each
-    * @return
-    *   or why there is none
+    * @param onProgress told how many episodes are flown
+    * @param onRow told of all rows that are known, after each
+    * @return or why there is none
     */
   def map(
       onProgress: Long => Unit,

@@ -11,10 +11,8 @@ import upickle.default.ReadWriter
 
 /** Flown elsewhere, in blocks of some cells each, to the same bits as here.
   *
-  * @param number
-  *   of it among all that the question asks
-  * @param blockEpisodes
-  *   of a block, about; without it, as many as take seconds at most
+  * @param number of it among all that the question asks
+  * @param blockEpisodes of a block, about; without it, as many as take seconds at most
   */
 final class ClusterSubject(
     here: BudgetSubject,
@@ -56,9 +54,8 @@ object ClusterSubject:
 
   /** The question as workers get it.
     *
-    * @param probes
-    *   what each came to at the coordinator in one episode: a worker that comes to anything else, by a file of another
-    *   content for example, does not answer the question
+    * @param probes what each came to at the coordinator in one episode: a worker that comes to anything else,
+    *   by a file of another content for example, does not answer the question
     */
   private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[Long])
       derives ReadWriter

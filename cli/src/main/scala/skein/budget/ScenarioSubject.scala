@@ -26,11 +26,10 @@ final case class ScenarioQuestion(
   /** Of the sum, where all terms agree. */
   def unit: String = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
 
-  /** How it is flown: forward by lanes or world by world where forward simulation knows its policies and measures, else in
-    * flights in virtual time.
+  /** How it is flown: forward by lanes or world by world where forward simulation knows its policies and
+    * measures, else in flights in virtual time.
     *
-    * @return
-    *   or what was expected, what came, and in which option
+    * @return or what was expected, what came, and in which option
     */
   def subject(plantIsTold: Boolean)(using Scenarios): Either[String, BudgetSubject] =
     WholeFlights.plane(scenario, conditions.durationS) match
@@ -48,8 +47,7 @@ final case class ScenarioQuestion(
 
 object ScenarioQuestion:
 
-  /** @param objective
-    *   a sum of measures by their keys; without it, the first
+  /** @param objective a sum of measures by their keys; without it, the first
     */
   def of(
       scenario: Scenario,
@@ -101,8 +99,7 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
 
 /** Whatever its measures are: each is taken of a whole flight.
   *
-  * @param fly
-  *   one episode over a link by its round trips, or with a world that waits; on the calling thread
+  * @param fly one episode over a link by its round trips, or with a world that waits; on the calling thread
   */
 final class FlownSubject private (
     question: ScenarioQuestion,

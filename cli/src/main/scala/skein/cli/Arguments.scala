@@ -24,7 +24,9 @@ private[cli] object Arguments:
         case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
         case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
 
-  /** Options that were given, also those of a group of options. One that has a value of its own is not told from it. */
+  /** Options that were given, also those of a group of options. One that has a value of its own is not told
+    * from it.
+    */
   def told(options: Product): Set[String] =
     options.productElementNames.zip(options.productIterator).toSet.flatMap:
       case (name, Some(_))         => Set(flag(name))

@@ -56,8 +56,7 @@ final case class BudgetOptions(
     json: Flag
 )
 
-/** @param program
-  *   the class whose `main` starts the commands
+/** @param program the class whose `main` starts the commands
   */
 final class BudgetCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[BudgetOptions](

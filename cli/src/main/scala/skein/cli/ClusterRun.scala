@@ -136,12 +136,9 @@ private[cli] object ClusterRun:
 
   /** Runs with a coordinator and workers, and ends them.
     *
-    * @param program
-    *   the class whose `main` starts the commands
-    * @param folder
-    *   for the ledger and the workers' logs
-    * @param threads
-    *   of all workers that it starts
+    * @param program the class whose `main` starts the commands
+    * @param folder for the ledger and the workers' logs
+    * @param threads of all workers that it starts
     */
   def using[A](
       options: ClusterOptions.Checked,

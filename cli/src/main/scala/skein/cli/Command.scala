@@ -6,17 +6,14 @@ import skein.report.TextTable
 
 /** A command of `./skein`: one file each.
   *
-  * @param name
-  *   the word after `./skein`
-  * @param summary
-  *   one line for `./skein --help`
+  * @param name the word after `./skein`
+  * @param summary one line for `./skein --help`
   */
 trait Command(val name: String, val summary: String):
 
   /** Runs with the words after the command's name.
     *
-    * @return
-    *   the exit status: 0 done, 1 failed, 2 wrong arguments
+    * @return the exit status: 0 done, 1 failed, 2 wrong arguments
     */
   def run(arguments: Seq[String]): Int
 
@@ -34,23 +31,20 @@ private object OptionValues:
 
 /** A command whose options are the fields of a case class.
   *
-  * @tparam A
-  *   the options; mainargs derives flags from the fields' names and help from their `@arg(doc = …)`
+  * @tparam A the options; mainargs derives flags from the fields' names and help from their `@arg(doc = …)`
   */
 abstract class OptionsCommand[A](name: String, summary: String, parser: ParserForClass[A])
     extends Command(name, summary):
 
   /** Does what the options say.
     *
-    * @return
-    *   or why it could not, in a line or more for a person
+    * @return or why it could not, in a line or more for a person
     */
   protected def execute(options: A): Either[String, Unit]
 
   final def help: String = help(100)
 
-  /** @param width
-    *   in columns
+  /** @param width in columns
     */
   private[cli] def help(width: Int): String = HelpText.of(name, summary, operandsAndOptions, width)
 
@@ -79,8 +73,8 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
               Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
               1
 
-  /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the first word
-    * without a dash for such words.
+  /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the
+    * first word without a dash for such words.
     */
   private def optionsFirst(arguments: Seq[String]): Seq[String] =
     val (options, files) = Iterator

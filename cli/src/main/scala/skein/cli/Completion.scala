@@ -4,7 +4,9 @@ package skein.cli
 private[cli] object Completion:
   val Shells: Seq[String] = Seq("bash", "zsh")
 
-  /** For bash: completes the program's commands, each one's options, the values that are known, and else files. */
+  /** For bash: completes the program's commands, each one's options, the values that are known, and else
+    * files.
+    */
   def bash(program: String, commands: Seq[Command]): String =
     val values =
       for

@@ -5,8 +5,7 @@ import mainargs.{Leftover, ParserForClass, arg}
 /** Options of `./skein completion`. */
 final case class CompletionOptions(@arg(doc = "bash or zsh") shell: Leftover[String])
 
-/** @param commands
-  *   all of the program, this one included
+/** @param commands all of the program, this one included
   */
 final class CompletionCommand(commands: => Seq[Command])
     extends OptionsCommand[CompletionOptions](

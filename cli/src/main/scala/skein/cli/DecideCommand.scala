@@ -68,8 +68,7 @@ final class DecideCommand(using scenarios: Scenarios)
 
   /** Where it is asked.
     *
-    * @param failed
-    *   fails where nobody can ask there any more
+    * @param failed fails where nobody can ask there any more
     */
   private final case class Served(close: () => Future[Done], failed: Future[Nothing] = Future.never)
 

@@ -12,8 +12,8 @@ private[cli] object Edge:
 
   @volatile private var interrupted = false
 
-  /** Whether Ctrl-C ends the program: then a hook waits for the main thread to end by itself, and `sys.exit` would wait
-    * for the hook.
+  /** Whether Ctrl-C ends the program: then a hook waits for the main thread to end by itself, and `sys.exit`
+    * would wait for the hook.
     */
   def isInterrupted: Boolean = interrupted
 
@@ -29,7 +29,9 @@ private[cli] object Edge:
   /** Ends whatever runs [[untilInterrupted]] now, as Ctrl-C would; the process goes on. */
   def interrupt(): Unit = stops.asScala.foreach(_())
 
-  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most `graceMillis`. */
+  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most
+    * `graceMillis`.
+    */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()
     val hook = Thread(() =>
@@ -46,8 +48,7 @@ private[cli] object Edge:
       stops.remove(stop): Unit
       removeHook(hook)
 
-  /** @return
-    *   `false` where the JVM is shutting down already, and so waits for nobody
+  /** @return `false` where the JVM is shutting down already, and so waits for nobody
     */
   private def added(hook: Thread): Boolean =
     try

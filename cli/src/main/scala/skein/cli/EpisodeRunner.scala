@@ -10,8 +10,7 @@ private[cli] trait EpisodeRunner:
 
   /** Shows how it goes while others fly and this thread waits.
     *
-    * @param show
-    *   told how many episodes of the call under way are flown, and what to say
+    * @param show told how many episodes of the call under way are flown, and what to say
     */
   def onWait(show: (Long, String) => Unit): Unit
 
@@ -36,8 +35,7 @@ private[cli] object EpisodeRunner:
 
   /** Runs with those whom the options choose, and ends them.
     *
-    * @param program
-    *   the class whose `main` starts the commands
+    * @param program the class whose `main` starts the commands
     */
   def using(
       options: Option[ClusterOptions.Checked],

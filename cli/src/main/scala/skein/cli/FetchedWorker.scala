@@ -7,12 +7,11 @@ import skein.cluster.WorkerProcesses
 import skein.cluster.jars.Fetched
 import skein.units.Expect
 
-/** The worker of a program that a coordinator shipped: a process of its own, which ends with this one, however that ends.
+/** The worker of a program that a coordinator shipped: a process of its own, which ends with this one,
+  * however that ends.
   *
-  * @param words
-  *   of its command line
-  * @param archives
-  *   folder for what the JVM keeps of the program's classes
+  * @param words of its command line
+  * @param archives folder for what the JVM keeps of the program's classes
   */
 private[cli] final class FetchedWorker(words: Seq[String], archives: Path):
   private enum State:

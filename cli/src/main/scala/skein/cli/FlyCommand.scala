@@ -160,8 +160,8 @@ final class FlyCommand(using Scenarios)
   private def kept[A](out: Path)(body: => A): A =
     Edge.tellingIfCut(s"the flights are recorded; ./skein report $out/*.duckdb shows them")(body)
 
-  /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot be shown or
-    * written, all that went wrong is told.
+  /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot
+    * be shown or written, all that went wrong is told.
     */
   private def report(landed: Vector[FlightResult], out: Path, shown: Shown): Either[String, Unit] =
     val told =
@@ -195,10 +195,8 @@ private[cli] object FlyCommand:
 
   /** A flight in which no vehicle was ever read for a decision is none, unless somebody ended it.
     *
-    * @param decisions
-    *   by flight
-    * @param ended
-    *   flights that somebody ended
+    * @param decisions by flight
+    * @param ended flights that somebody ended
     */
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }

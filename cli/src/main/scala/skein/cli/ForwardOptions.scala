@@ -40,8 +40,7 @@ final case class ForwardOptions(
     @arg(doc = "number of threads; does not change the result (default: one per core)")
     threads: Option[Int]
 ):
-  /** @param otherwise
-    *   how long an episode is, unless it is told
+  /** @param otherwise how long an episode is, unless it is told
     */
   def conditions(period: Span, otherwise: Span = Span.ofSeconds(60)): Either[String, Conditions] =
     for duration <- duration.fold(Right(otherwise))(Span.parse).left.map("--duration: " + _)
@@ -56,8 +55,7 @@ final case class ForwardOptions(
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)
 
-  /** @param role
-    *   of the policy that is judged
+  /** @param role of the policy that is judged
     */
   def opponentOf(role: Role)(using Scenarios): Either[String, PolicyFile] =
     val other = Role.opponentOf(role)

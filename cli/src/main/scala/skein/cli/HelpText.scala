@@ -7,10 +7,8 @@ private[cli] object HelpText:
 
   /** What stands for a value, as usage lines show it.
     *
-    * @param option
-    *   its name without dashes
-    * @param kind
-    *   as mainargs names its type
+    * @param option its name without dashes
+    * @param kind as mainargs names its type
     */
   def placeholder(option: String, kind: String): String =
     Named.getOrElse(
@@ -21,8 +19,7 @@ private[cli] object HelpText:
         case _                  => option.replaceAll("^.*-", "").toUpperCase(java.util.Locale.ROOT)
     )
 
-  /** @param width
-    *   in columns
+  /** @param width in columns
     */
   def of(command: String, summary: String, options: Seq[CommandOption], width: Int): String =
     val (flags, operands) = options.partition(_.flag.nonEmpty)

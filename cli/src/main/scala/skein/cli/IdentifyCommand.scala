@@ -133,7 +133,9 @@ final class IdentifyCommand(using scenarios: Scenarios)
     val flight = recording.flight
     s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator}"
 
-  /** Flights in virtual time fly the built-in simulator only: not what a fit to another one should be mixed with. */
+  /** Flights in virtual time fly the built-in simulator only: not what a fit to another one should be mixed
+    * with.
+    */
   private def clocks(recordings: Vector[Recording]): String =
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
     byClock.map((clock, flown) => s"${flown.size} on the $clock clock").mkString("recordings: ", ", ", "")

@@ -74,8 +74,7 @@ final case class LearnOptions(
     json: Flag
 )
 
-/** @param program
-  *   the class whose `main` starts the commands
+/** @param program the class whose `main` starts the commands
   */
 final class LearnCommand(program: String)(using Scenarios)
     extends OptionsCommand[LearnOptions](
@@ -249,8 +248,7 @@ object LearnCommand:
 
   /** What the options ask.
     *
-    * @return
-    *   or what was expected, what came, and in which option
+    * @return or what was expected, what came, and in which option
     */
   def question(options: LearnOptions)(using scenarios: Scenarios): Either[String, LearnQuestion] =
     import options.forward
@@ -322,10 +320,8 @@ object LearnCommand:
         Right((least, most))
       case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
 
-  /** @param distances
-    *   what so many flights in virtual time with a policy come to: [[LearnGame.came]]
-    * @param isElsewhere
-    *   whether workers do it
+  /** @param distances what so many flights in virtual time with a policy come to: [[LearnGame.came]]
+    * @param isElsewhere whether workers do it
     */
   private final case class Measuring(
       judge: Judge => Evaluator,

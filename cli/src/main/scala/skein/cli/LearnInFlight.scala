@@ -38,8 +38,7 @@ final case class LearnInFlight(
 
   /** Who learns, in the flights of these settings.
     *
-    * @return
-    *   or what was expected, what came, and in which option
+    * @return or what was expected, what came, and in which option
     */
   def chosen(settings: FlySettings)(using Scenarios): Either[String, Option[ChosenPolicy]] =
     val alone =

@@ -13,12 +13,13 @@ import skein.training.{LearnQuestion, LearnSetup}
 import skein.units.{Expect, Span}
 import upickle.default.ReadWriter
 
-/** What was learned, as workers measure it: on fresh episodes of forward simulation, and by flights in virtual time. */
+/** What was learned, as workers measure it: on fresh episodes of forward simulation, and by flights in
+  * virtual time.
+  */
 private[cli] object LearnWork:
   import SearchFile.given
 
-  /** @param probe
-    *   what the baseline came to at the coordinator
+  /** @param probe what the baseline came to at the coordinator
     */
   private final case class ProbedQuestion(question: LearnQuestion, probe: Vector[RunningStats])
       derives ReadWriter
@@ -59,8 +60,7 @@ private[cli] object LearnWork:
 
   /** Flights of the scenario with a policy instead of its own, as the commands fly it.
     *
-    * @return
-    *   settings, and a plan for each flight; or why there are none
+    * @return settings, and a plan for each flight; or why there are none
     */
   def flights(
       setup: LearnSetup,

@@ -13,16 +13,11 @@ import skein.units.Clock
 
 /** What `./skein fly` flies by the clock.
   *
-  * @param simulator
-  *   one that runs already; without it, each flight has a built-in one
-  * @param shown
-  *   where flights are looked at meanwhile
-  * @param sinks
-  *   for what is written beside the recordings
-  * @param requests
-  *   that end or hold flights from outside
-  * @param isMavlinkByTcp
-  *   see [[FlightAssembler]]
+  * @param simulator one that runs already; without it, each flight has a built-in one
+  * @param shown where flights are looked at meanwhile
+  * @param sinks for what is written beside the recordings
+  * @param requests that end or hold flights from outside
+  * @param isMavlinkByTcp see [[FlightAssembler]]
   */
 private[cli] final class LiveCommand(
     settings: FlySettings,
@@ -54,7 +49,9 @@ private[cli] final class LiveCommand(
     finally
       val _ = Edge.await(system.terminate())
 
-  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
+  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C
+    * ends them all.
+    */
   private def inTurn(assembler: FlightAssembler, plans: Vector[FlightPlan])(using
       ActorSystem
   ): Either[String, Flown] =
@@ -116,8 +113,7 @@ private[cli] final class LiveCommand(
             board.close()
 
 private[cli] object LiveCommand:
-  /** @param grounded
-    *   why the flights that are not among those that landed were not flown, if any was not
+  /** @param grounded why the flights that are not among those that landed were not flown, if any was not
     */
   final case class Flown(landed: Vector[FlightResult], grounded: Option[String]):
     def and(more: Either[String, Vector[FlightResult]]): Flown =

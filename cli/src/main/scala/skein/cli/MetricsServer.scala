@@ -11,21 +11,17 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.cluster.{CoordinatorNode, Endpoint}
 import skein.view.{Access, HttpSystem}
 
-/** Tells how it goes to whoever asks over HTTP, `GET /metrics`: Prometheus, or a person. It has an actor system and a
-  * thread of its own.
+/** Tells how it goes to whoever asks over HTTP, `GET /metrics`: Prometheus, or a person. It has an actor
+  * system and a thread of its own.
   */
 private[cli] object MetricsServer:
 
   /** Serves while `body` runs.
     *
-    * @param listen
-    *   port 0 for any that is free
-    * @param text
-    *   in Prometheus' format, asked for again each time
-    * @param say
-    *   told where it is to be read
-    * @return
-    *   of `body`, or why it cannot listen
+    * @param listen port 0 for any that is free
+    * @param text in Prometheus' format, asked for again each time
+    * @param say told where it is to be read
+    * @return of `body`, or why it cannot listen
     */
   def serving[A](listen: Endpoint, text: () => String, say: String => Unit)(
       body: => Either[String, A]

@@ -5,8 +5,7 @@ import mainargs.{ArgSig, Result, TokensReader, Util}
 /** What is wrong with the words of a command line, a line for each mistake. */
 private object Misuse:
 
-  /** @param options
-    *   of the command, with their dashes
+  /** @param options of the command, with their dashes
     */
   def text(failure: Result.Failure, options: Seq[String]): String = failure match
     case Result.Failure.MismatchedArguments(missing, unknown, duplicate, incomplete) =>

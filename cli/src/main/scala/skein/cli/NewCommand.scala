@@ -42,7 +42,9 @@ object NewCommand
   private def className(name: String)   = name.split('-').map(_.capitalize).mkString
   private def packageName(name: String) = name.replace("-", "")
 
-  /** Why a project of this name would not compile: its package or class means something else in its own sources. */
+  /** Why a project of this name would not compile: its package or class means something else in its own
+    * sources.
+    */
   private def taken(name: String): Option[String] =
     val sources = Seq("Scenario.scala.txt", "Suite.scala.txt").map(resource).mkString("\n")
     // Neither members of others nor what stands between quotes.

@@ -4,9 +4,13 @@ import com.sun.management.UnixOperatingSystemMXBean
 import java.lang.management.ManagementFactory
 import skein.units.Expect
 
-/** How many files and connections a process may have open: too few of them look like a simulator that does not answer. */
+/** How many files and connections a process may have open: too few of them look like a simulator that does
+  * not answer.
+  */
 private[cli] object OpenFiles:
-  /** Measured: the program has some 60 open before it flies; a flight in real time, with simulator and link, 26. */
+  /** Measured: the program has some 60 open before it flies; a flight in real time, with simulator and link,
+    * 26.
+    */
   private val OfTheProgram = 96
   private val OfAFlight    = 30
 

@@ -13,13 +13,11 @@ import skein.plot.{Drawing, Png, Svg}
 /** Folders that commands write into. */
 private[cli] object OutFolder:
 
-  /** Makes the folder if need be and sees whether files can be written there, so that a command of minutes does not
-    * fail at its end.
+  /** Makes the folder if need be and sees whether files can be written there, so that a command of minutes
+    * does not fail at its end.
     *
-    * @param option
-    *   that names the folder, for example `--out`
-    * @return
-    *   or why not, in a line
+    * @param option that names the folder, for example `--out`
+    * @return or why not, in a line
     */
   def made(option: String, text: String): Either[String, Path] =
     if text.isEmpty then Left(s"$option: expected a folder, came ''")
@@ -46,8 +44,7 @@ private[cli] object OutFolder:
 
   /** Runs `body` as the only command at work in a folder.
     *
-    * @return
-    *   or that another is
+    * @return or that another is
     */
   def alone[A](folder: Path)(body: => Either[String, A]): Either[String, A] =
     val other = Left(s"another command is at work in $folder; expected it to end first")
@@ -61,8 +58,7 @@ private[cli] object OutFolder:
 
   /** Writes files by their names.
     *
-    * @return
-    *   where they are, or why not, in a line
+    * @return where they are, or why not, in a line
     */
   def write(folder: Path, files: Seq[(String, Array[Byte])]): Either[String, Vector[Path]] =
     try Right(files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes)))
@@ -72,8 +68,7 @@ private[cli] object OutFolder:
 
   /** `NAME.svg` and, where this machine can paint, `NAME.png`; where it cannot, that is said.
     *
-    * @param scale
-    *   pixels for a unit of the drawing
+    * @param scale pixels for a unit of the drawing
     */
   def picture(
       name: String,

@@ -2,13 +2,11 @@ package skein.cli
 
 import java.io.PrintStream
 
-/** One line that tells how far long work is, and how long it will take: rewritten on a terminal, else a new one every
-  * 5 s.
+/** One line that tells how far long work is, and how long it will take: rewritten on a terminal, else a new
+  * one every 5 s.
   *
-  * @param total
-  *   of the work
-  * @param from
-  *   what was done before this run
+  * @param total of the work
+  * @param from what was done before this run
   */
 private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long = 0):
   private val isTerminal = System.console() != null && System.console().isTerminal
@@ -17,8 +15,7 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
   private var shownAt    = startedAt
   private var width      = 0
 
-  /** @param text
-    *   what else is to be said now
+  /** @param text what else is to be said now
     */
   def show(done: Long, text: => String): Unit =
     val now = System.nanoTime()
@@ -47,7 +44,9 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
 
 private[cli] object ProgressLine:
 
-  /** What fits into one line of a terminal. The last place stays free: some terminals wrap as soon as it is written. */
+  /** What fits into one line of a terminal. The last place stays free: some terminals wrap as soon as it is
+    * written.
+    */
   def cut(line: String, width: Option[Int]): String = width match
     case Some(columns) if line.length >= columns => (line.take((columns - 2).max(0)) + "…").take(columns - 1)
     case _                                       => line

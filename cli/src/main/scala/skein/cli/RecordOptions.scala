@@ -52,8 +52,7 @@ final case class RecordOptions(
 
   /** Of a flight that is flown already.
     *
-    * @return
-    *   or why not
+    * @return or why not
     */
   def exported(plan: FlightPlan, folder: Path): Either[String, Unit] =
     if wantsMcap then

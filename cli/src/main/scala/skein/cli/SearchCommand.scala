@@ -60,8 +60,7 @@ final case class SearchOptions(
     json: Flag
 )
 
-/** @param program
-  *   the class whose `main` starts the commands
+/** @param program the class whose `main` starts the commands
   */
 final class SearchCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[SearchOptions](

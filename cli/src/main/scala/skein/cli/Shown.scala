@@ -7,8 +7,7 @@ private[cli] final class Shown(asJson: Boolean):
 
   /** Tables alone are data.
     *
-    * @param text
-    *   what people see in their place
+    * @param text what people see in their place
     */
   def tables(sections: Seq[Section], text: => String): Unit =
     Console.out.println(if asJson then Section.json(sections) else text)

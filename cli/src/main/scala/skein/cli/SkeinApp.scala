@@ -14,21 +14,21 @@ import skein.scenario.{ScenarioKind, Scenarios}
   * object Patrol extends SkeinApp(ScenarioKind(OverTheRidge()))
   * }}}
   *
-  * @param kinds
-  *   at least one; the first is flown where none is named
+  * @param kinds at least one; the first is flown where none is named
   */
 open class SkeinApp(kinds: ScenarioKind[?]*):
   // First of all: numbers, dates and what libraries do with letters are the same wherever the machine stands.
   Locale.setDefault(Locale.ROOT)
   Terminal.adapt()
 
-  /** Families of policies of your own, for the duel's roles: `search`, `budget`, policy files, `--opponent` and
-    * `--fallback` know them by name. It is asked for before the object's own values are there, so write them into it.
+  /** Families of policies of your own, for the duel's roles: `search`, `budget`, policy files, `--opponent`
+    * and `--fallback` know them by name. It is asked for before the object's own values are there, so write
+    * them into it.
     */
   def policyFamilies: Seq[PolicyFamily] = Nil
 
-  /** Structures of plants of your own: `identify` fits them, and `--plant FILE` and `--predictor FILE` know them. It is
-    * asked for as [[policyFamilies]] is.
+  /** Structures of plants of your own: `identify` fits them, and `--plant FILE` and `--predictor FILE` know
+    * them. It is asked for as [[policyFamilies]] is.
     */
   def structures: Seq[Structure] = Nil
 
@@ -83,8 +83,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   /** Runs one command, for tests.
     *
-    * @return
-    *   the exit status: 0 done, 1 failed, 2 wrong arguments
+    * @return the exit status: 0 done, 1 failed, 2 wrong arguments
     */
   final def run(arguments: Seq[String]): Int =
     arguments.headOption match

@@ -27,7 +27,9 @@ private[cli] object SolverOptions:
       )
     case _ => Right(())
 
-  /** To every solver that a flight can name in real time. To name the build takes a while, and only they ask for it. */
+  /** To every solver that a flight can name in real time. To name the build takes a while, and only they ask
+    * for it.
+    */
   def reached(settings: FlySettings, secured: SolverSecurity.Checked)(using ActorSystem): Solvers =
     if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current, secured)
 
@@ -40,8 +42,8 @@ private[cli] object SolverOptions:
     }
   )
 
-  /** A flight's plans in virtual time, with its solver behind a link that is as the way to it was: its median, and its
-    * spread by a lognormal distribution.
+  /** A flight's plans in virtual time, with its solver behind a link that is as the way to it was: its
+    * median, and its spread by a lognormal distribution.
     */
   def twins(flown: FlightResult, count: Int): Vector[FlightPlan] =
     flown.plan.twins(count).flatMap: plan =>

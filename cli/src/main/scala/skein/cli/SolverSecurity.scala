@@ -71,10 +71,8 @@ final case class SolverSecurity(
 object SolverSecurity:
   given ParserForClass[SolverSecurity] = ParserForClass[SolverSecurity]
 
-  /** @param certificates
-    *   for a solver behind TCP
-    * @param kafka
-    *   of Kafka's clients
+  /** @param certificates for a solver behind TCP
+    * @param kafka of Kafka's clients
     */
   final case class Checked(certificates: Option[SSLContext], kafka: Map[String, String])
 

@@ -25,8 +25,7 @@ final case class SpreadOptions(
     json: Flag
 )
 
-/** @param program
-  *   the class whose `main` starts the commands
+/** @param program the class whose `main` starts the commands
   */
 final class SpreadCommand(program: String)(using Scenarios)
     extends OptionsCommand[SpreadOptions](

@@ -14,23 +14,19 @@ import skein.settings.{FlightPlan, FlySettings}
 import skein.units.{Expect, Span}
 import upickle.default.ReadWriter
 
-/** What is flown many times, as workers get it. A block is one flight: a plan's place among those of the settings, and a
-  * seed.
+/** What is flown many times, as workers get it. A block is one flight: a plan's place among those of the
+  * settings, and a seed.
   *
-  * @param settings
-  *   `skein.fly`, as JSON
-  * @param probe
-  *   digests of short flights: who flies them otherwise must not take part
+  * @param settings `skein.fly`, as JSON
+  * @param probe digests of short flights: who flies them otherwise must not take part
   */
 private[cli] final case class SpreadQuestion(settings: String, probe: Vector[String]) derives ReadWriter:
   def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
 private[cli] object SpreadQuestion:
 
-  /** @param config
-    *   `skein.fly`, from which the settings were read
-    * @return
-    *   or why others cannot fly it
+  /** @param config `skein.fly`, from which the settings were read
+    * @return or why others cannot fly it
     */
   def of(config: Config, settings: FlySettings): Either[String, SpreadQuestion] =
     val outside = config.getStringList("skein.fly.policies").asScala.find(_.startsWith("unix:"))
@@ -40,8 +36,8 @@ private[cli] object SpreadQuestion:
       case None =>
         probe(settings).map(SpreadQuestion(config.root.render(ConfigRenderOptions.concise), _))
 
-  /** What is read from a file may be another elsewhere. A recording begins with policies, models and scenes; links tell
-    * on vehicles alone.
+  /** What is read from a file may be another elsewhere. A recording begins with policies, models and scenes;
+    * links tell on vehicles alone.
     */
   private def probe(settings: FlySettings): Either[String, Vector[String]] =
     val plans = settings.plans
@@ -76,8 +72,7 @@ private[cli] object SpreadQuestion:
 
     /** Has them flown elsewhere. What does not fit into a message is flown here, and told.
       *
-      * @param onLanded
-      *   told of each, in any order
+      * @param onLanded told of each, in any order
       */
     def elsewhere(by: BlockExecutor, seeds: Int, tell: String => Unit)(onLanded: => Unit)(
         onWait: => Unit

@@ -9,10 +9,8 @@ import skein.view.TaskShow.Axis
 
 /** A search, for its viewers.
   *
-  * @param expected
-  *   episodes
-  * @param measured
-  *   what candidates are compared by, with its unit
+  * @param expected episodes
+  * @param measured what candidates are compared by, with its unit
   */
 private[cli] final class SearchOnShow(show: TaskShow, title: String, expected: Long, measured: String):
   private var best = Vector.empty[(Double, Double)]

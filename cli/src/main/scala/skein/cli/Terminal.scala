@@ -38,8 +38,8 @@ private[cli] object Terminal:
       .flatMap(_ => Try(Using.resource(TerminalBuilder.builder().dumb(true).build())(_.getWidth)).toOption)
       .filter(_ > 0)
 
-  /** Makes both outputs readable on terminals that know other letters than ours, ASCII alone for example. To be called
-    * before anything is printed.
+  /** Makes both outputs readable on terminals that know other letters than ours, ASCII alone for example. To
+    * be called before anything is printed.
     */
   def adapt(): Unit =
     if !knows(System.out.charset) then System.setOut(stream(FileDescriptor.out, System.out.charset))

@@ -35,8 +35,7 @@ final case class TortureOptions(
     json: Flag
 )
 
-/** @param program
-  *   the class whose `main` starts the commands
+/** @param program the class whose `main` starts the commands
   */
 final class TortureCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[TortureOptions](

@@ -12,10 +12,8 @@ import upickle.default.ReadWriter
 
 /** What flies through faults, as workers get it. A block is a range of seeds.
   *
-  * @param scenario
-  *   by its name; without one, duels
-  * @param scene
-  *   what a recording keeps of it; without one, what the scenario says
+  * @param scenario by its name; without one, duels
+  * @param scene what a recording keeps of it; without one, what the scenario says
   */
 private[cli] final case class TortureQuestion(
     durationNanos: Long,
@@ -49,8 +47,7 @@ private[cli] object TortureQuestion:
   def read(bytes: ArraySeq[Byte])(using Scenarios): Either[String, Ready] =
     JsonText.read[TortureQuestion](bytes, "torture's question").flatMap(_.ready)
 
-  /** @param scenario
-    *   absent where duels are flown, as many as the seed says
+  /** @param scenario absent where duels are flown, as many as the seed says
     */
   final case class Ready(duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]):
 

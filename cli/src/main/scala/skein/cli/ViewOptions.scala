@@ -24,8 +24,7 @@ final case class ViewOptions(
 ):
   /** Serves `shows` while `body` runs, if that is wanted.
     *
-    * @param controlled
-    *   whether anything can be done to them from the page
+    * @param controlled whether anything can be done to them from the page
     */
   def serving[A](shows: Shows, controlled: Boolean = false)(body: => Either[String, A]): Either[String, A] =
     val port = viewPort.getOrElse(ViewServer.DefaultPort)

@@ -10,8 +10,9 @@ import skein.simulator.MultirotorBody
 import skein.units.Decimals.fixed
 import skein.vehicle.Quadrotor
 
-/** What cameras saw at decisive moments: drawn anew by the built-in simulator's renderer, from where the camera was at the
-  * exposure and where the vehicle was that it looked at, with a box around the place at which it was recognised.
+/** What cameras saw at decisive moments: drawn anew by the built-in simulator's renderer, from where the
+  * camera was at the exposure and where the vehicle was that it looked at, with a box around the place at
+  * which it was recognised.
   */
 object DetectionFigure:
   private val shownPx = 330.0

@@ -3,8 +3,9 @@ package skein.figures
 import skein.measure.{Distribution, FlightSet, FlightSummary}
 import skein.plot.*
 
-/** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a panel stand
-  * mean and range of the last 10 s for each loop: ours as a coloured disc, the paper's as a black diamond.
+/** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a
+  * panel stand mean and range of the last 10 s for each loop: ours as a coloured disc, the paper's as a black
+  * diamond.
   */
 object DistanceFigure:
   private val plotWidth  = 830.0

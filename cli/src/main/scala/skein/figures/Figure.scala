@@ -5,10 +5,8 @@ import skein.plot.Drawing
 
 /** A picture of the report.
   *
-  * @param name
-  *   of its files
-  * @param caption
-  *   what it shows and how to read it
+  * @param name of its files
+  * @param caption what it shows and how to read it
   */
 final case class Figure(name: String, title: String, caption: String, drawing: Drawing)
 
@@ -60,7 +58,9 @@ object Figure:
       drawing
     )
 
-  /** What any scenario has: where the vehicles flew, from above and, where they climb, their altitudes; and its series. */
+  /** What any scenario has: where the vehicles flew, from above and, where they climb, their altitudes; and
+    * its series.
+    */
   def ofScenario(flown: ScenarioFlights): Vector[Figure] =
     val name  = flown.scenario.name
     val title = name.capitalize

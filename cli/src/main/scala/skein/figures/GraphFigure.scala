@@ -23,8 +23,7 @@ object GraphFigure:
     def bottom: Double = top + High
     def centre: Double = top + High / 2
 
-  /** @param graph
-    *   with a part at least
+  /** @param graph with a part at least
     */
   def apply(graph: LoopGraph): Drawing =
     val spots  = GraphLayout.of(graph)

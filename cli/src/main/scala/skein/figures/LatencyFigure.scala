@@ -5,8 +5,8 @@ import skein.plot.*
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.units.Decimals.fixed
 
-/** The paper's Figure 3: histograms of round trips, one panel per link, with the density and the quantiles of the
-  * link's profile, which for `direct` and `vpn` are the paper's own samples.
+/** The paper's Figure 3: histograms of round trips, one panel per link, with the density and the quantiles of
+  * the link's profile, which for `direct` and `vpn` are the paper's own samples.
   */
 object LatencyFigure:
   private val measured     = Colour(0x7aa6c2)
@@ -14,8 +14,7 @@ object LatencyFigure:
   private val halvesLine   = Stroke(Colour(0xd55e00), 1.3)
   private val quantileLine = Stroke(FlightTheme.published.faded(0.6), 0.8, Vector(3, 2))
 
-  /** @param roundTripsMs
-    *   by the name of the link, in the order of the panels
+  /** @param roundTripsMs by the name of the link, in the order of the panels
     */
   def apply(roundTripsMs: Seq[(String, Distribution)]): Option[Drawing] =
     Option.when(roundTripsMs.nonEmpty):
@@ -106,7 +105,8 @@ object LatencyFigure:
       ((roundTripsMs.head, 0.0) +: pieces.flatten) :+ (roundTripsMs.last, 0.0)
     case _ => Vector.empty
 
-  /** The same for what an emulated link does: half of one sample on the way there, half of another one back. */
+  /** The same for what an emulated link does: half of one sample on the way there, half of another one back.
+    */
   private def densityOfHalves(profile: LatencyDistribution, step: Double): Vector[(Double, Double)] =
     val count  = 400
     val halves = Vector.tabulate(count)(index => profile.quantile((index + 0.5) / count).toMillis / 2)

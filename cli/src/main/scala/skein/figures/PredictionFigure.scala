@@ -3,8 +3,8 @@ package skein.figures
 import skein.measure.PredictionGroup
 import skein.plot.*
 
-/** Prediction error against age, a panel per loop and link: medians as full lines, 95 % quantiles dashed; of the deciding
-  * vehicle itself in the loop's colour, of others in grey.
+/** Prediction error against age, a panel per loop and link: medians as full lines, 95 % quantiles dashed; of
+  * the deciding vehicle itself in the loop's colour, of others in grey.
   */
 object PredictionFigure:
   val name = "prediction"

@@ -4,8 +4,9 @@ import skein.identify.TimeHistory
 import skein.plot.*
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
-/** How a fitted model follows what was measured: per vehicle the velocity north and east, measured as dots and modelled as
-  * a line, and below what remains. The model flies from the first reading to the last, told nothing but the commands.
+/** How a fitted model follows what was measured: per vehicle the velocity north and east, measured as dots
+  * and modelled as a line, and below what remains. The model flies from the first reading to the last, told
+  * nothing but the commands.
   */
 object ResponseFigure:
   private val width    = 620.0

@@ -11,8 +11,8 @@ object ScenarioFigure:
   private val plotWidth  = 900.0
   private val plotHeight = 190.0
 
-  /** Every vehicle's way from above (north is up), one panel per flight, all panels of one scale; where a limit was broken
-    * the worst, a red ring around each vehicle of it.
+  /** Every vehicle's way from above (north is up), one panel per flight, all panels of one scale; where a
+    * limit was broken the worst, a red ring around each vehicle of it.
     */
   def trajectories(flown: ScenarioFlights): Drawing =
     val tracks = flown.flights.map(_.result.tracks)
@@ -85,8 +85,7 @@ object ScenarioFigure:
 
   /** What the scenario draws over time, one panel per link, a line per loop, the truth in each.
     *
-    * @param index
-    *   of the scenario's series
+    * @param index of the scenario's series
     */
   def series(flown: ScenarioFlights, index: Int): Drawing =
     val links = flown.flights.filter(!flown.truth.contains(_)).map(_.summary.flight.link).distinct match
@@ -134,7 +133,9 @@ object ScenarioFigure:
         legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
     )
 
-  /** The highest of a curve, but where it begins far above all that follows: then some more than what follows. */
+  /** The highest of a curve, but where it begins far above all that follows: then some more than what
+    * follows.
+    */
   private def highestShown(curve: Vector[(Double, Double)]): Double =
     val highest = curve.map(_._2).max
     val settled = curve.drop(curve.size / 2).map(_._2).max

@@ -4,8 +4,8 @@ import skein.measure.{Compared, Distribution, FlightSet, Twin}
 import skein.plot.*
 import skein.units.Decimals.{fixed, signed}
 
-/** Cumulative distributions in live flights and in their virtual twins, one line of panels per live flight: what the
-  * decisions for evader and pursuer were made on.
+/** Cumulative distributions in live flights and in their virtual twins, one line of panels per live flight:
+  * what the decisions for evader and pursuer were made on.
   */
 object TwinFigure:
   val name = "twins"

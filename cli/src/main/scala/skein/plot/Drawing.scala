@@ -1,7 +1,7 @@
 package skein.plot
 
-/** A picture: shapes on a canvas, in the order in which they are painted. Lengths are in CSS pixels, 1/96 inch, from
-  * the top left corner, y downwards. [[Svg]] and [[Png]] render it.
+/** A picture: shapes on a canvas, in the order in which they are painted. Lengths are in CSS pixels, 1/96
+  * inch, from the top left corner, y downwards. [[Svg]] and [[Png]] render it.
   */
 final case class Drawing(width: Double, height: Double, shapes: Vector[Mark])
 
@@ -27,20 +27,16 @@ object Drawing:
 
 /** A place in a drawing, in its units.
   *
-  * @param x
-  *   to the right from the left edge
-  * @param y
-  *   downwards from the upper edge
+  * @param x to the right from the left edge
+  * @param y downwards from the upper edge
   */
 final case class Point(x: Double, y: Double):
   def moved(dx: Double, dy: Double): Point = Point(x + dx, y + dy)
 
 /** A colour.
   *
-  * @param rgb
-  *   0xRRGGBB
-  * @param opacity
-  *   from 0, unseen, to 1
+  * @param rgb 0xRRGGBB
+  * @param opacity from 0, unseen, to 1
   */
 final case class Colour(rgb: Int, opacity: Double = 1):
   def faded(opacity: Double): Colour = copy(opacity = opacity)
@@ -52,10 +48,8 @@ final case class Colour(rgb: Int, opacity: Double = 1):
 
 /** How a line is drawn.
   *
-  * @param width
-  *   in the drawing's units
-  * @param dash
-  *   lengths of dash and gap; empty for a solid line
+  * @param width in the drawing's units
+  * @param dash lengths of dash and gap; empty for a solid line
   */
 final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty)
 
@@ -77,10 +71,8 @@ enum Mark:
 
   /** One line of text.
     *
-    * @param at
-    *   on the baseline, at the text's anchor
-    * @param upwards
-    *   turned by a quarter, to be read from below
+    * @param at on the baseline, at the text's anchor
+    * @param upwards turned by a quarter, to be read from below
     */
   case Text(
       at: Point,
@@ -94,10 +86,8 @@ enum Mark:
 
   /** A picture of pixels, stretched to this size.
     *
-    * @param at
-    *   its top left corner
-    * @param png
-    *   the file
+    * @param at its top left corner
+    * @param png the file
     */
   case Raster(at: Point, width: Double, height: Double, png: Array[Byte])
 

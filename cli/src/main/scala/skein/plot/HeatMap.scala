@@ -2,12 +2,9 @@ package skein.plot
 
 /** Values on a grid of points, each shown as a rectangle that reaches half-way to its neighbours.
   *
-  * @param xs
-  *   ascending, at least two
-  * @param ys
-  *   ascending, at least two
-  * @param values
-  *   by y, then by x; a missing one stays empty
+  * @param xs ascending, at least two
+  * @param ys ascending, at least two
+  * @param values by y, then by x; a missing one stays empty
   */
 final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[Vector[Option[Double]]]):
   require(
@@ -40,8 +37,8 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     else if index == values.size then values.last + (values.last - values(values.size - 2)) / 2
     else (values(index - 1) + values(index)) / 2
 
-  /** Where the values pass a level: straight pieces between points of the grid (marching squares); none beside a
-    * missing value.
+  /** Where the values pass a level: straight pieces between points of the grid (marching squares); none
+    * beside a missing value.
     */
   def contour(level: Double): Vector[((Double, Double), (Double, Double))] =
     for

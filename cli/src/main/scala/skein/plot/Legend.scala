@@ -7,10 +7,8 @@ object Legend:
   private val middle      = 9.0
   private val height      = 24.0
 
-  /** @param width
-    *   of the mark
-    * @param mark
-    *   its shapes, when its left end's middle is at the point
+  /** @param width of the mark
+    * @param mark its shapes, when its left end's middle is at the point
     */
   final case class Item(label: String, width: Double, mark: Point => Vector[Mark])
 

@@ -10,10 +10,8 @@ import javax.imageio.stream.{MemoryCacheImageInputStream, MemoryCacheImageOutput
 /** Renders drawings as PNG on white. Needs a font on the machine, but no screen. */
 object Png:
 
-  /** @param scale
-    *   pixels of the image per pixel of the drawing; 3 gives 288 dots per inch
-    * @return
-    *   the file's bytes, or what the machine lacks
+  /** @param scale pixels of the image per pixel of the drawing; 3 gives 288 dots per inch
+    * @return the file's bytes, or what the machine lacks
     */
   def bytes(drawing: Drawing, scale: Double = 3): Either[String, Array[Byte]] =
     try Right(paint(drawing, scale))

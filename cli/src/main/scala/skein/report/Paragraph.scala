@@ -5,8 +5,7 @@ object Paragraph:
 
   /** Broken between words. A word that is longer has a line of its own.
     *
-    * @param width
-    *   of the longest line, in letters
+    * @param width of the longest line, in letters
     */
   def lines(text: String, width: Int): Vector[String] =
     text.split(' ').filter(_.nonEmpty).foldLeft(Vector.empty[String]): (lines, word) =>

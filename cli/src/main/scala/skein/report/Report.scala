@@ -21,16 +21,14 @@ object Report:
 
   /** What was written.
     *
-    * @param withoutPng
-    *   why there are no PNG files, where there are none
+    * @param withoutPng why there are no PNG files, where there are none
     */
   final case class Output(page: Path, withoutPng: Option[String])
 
-  /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which is made
-    * if need be; files of these names are replaced.
+  /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which
+    * is made if need be; files of these names are replaced.
     *
-    * @return
-    *   or why it could not be written
+    * @return or why it could not be written
     */
   def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
     val figures = ReportFigures.of(set)

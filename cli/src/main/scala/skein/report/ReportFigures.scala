@@ -4,7 +4,9 @@ import skein.figures.Figure
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionGroup}
 import skein.scenario.Scenarios
 
-/** The pictures of a report, in its order; those without anything to show are left out. Blocks for those of the loops. */
+/** The pictures of a report, in its order; those without anything to show are left out. Blocks for those of
+  * the loops.
+  */
 object ReportFigures:
 
   def of(set: FlightSet)(using Scenarios): Vector[Figure] =

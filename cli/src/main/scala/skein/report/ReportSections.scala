@@ -7,8 +7,7 @@ import skein.scenario.Scenarios
 /** What a report consists of, in its order. Sections without anything to show are left out. */
 object ReportSections:
 
-  /** @param figures
-    *   as [[ReportFigures.of]] gives them; none, where only tables are shown
+  /** @param figures as [[ReportFigures.of]] gives them; none, where only tables are shown
     */
   def of(set: FlightSet, figures: Seq[Figure] = Nil)(using Scenarios): Vector[Section] =
     val results  = ScenarioReport.each(set)((report, flights) => report.results(flights))
@@ -31,7 +30,9 @@ object ReportSections:
       )
     )
 
-  /** All of a report, for the terminal: the tables, how far each loop was off the truth, and what was cut short or paused. */
+  /** All of a report, for the terminal: the tables, how far each loop was off the truth, and what was cut
+    * short or paused.
+    */
   def text(set: FlightSet)(using Scenarios): String =
     val said = Vector(
       Verdict.sentences(set.deviations),

@@ -4,8 +4,8 @@ import skein.figures.Figure
 import skein.measure.{FlightSet, FlightSummary, ScenarioFlights}
 import skein.scenario.{ScenarioKind, Scenarios}
 
-/** What a report has of one kind of scenario: its results as tables, and its pictures. A kind that has some of its own
-  * extends it and gives these in the place of the general ones:
+/** What a report has of one kind of scenario: its results as tables, and its pictures. A kind that has some
+  * of its own extends it and gives these in the place of the general ones:
   *
   * {{{
   * object PatrolKind extends ScenarioKind(Patrol()), ScenarioReport:
@@ -14,8 +14,7 @@ import skein.scenario.{ScenarioKind, Scenarios}
   */
 trait ScenarioReport:
 
-  /** @param set
-    *   the flights of this kind, with any settings
+  /** @param set the flights of this kind, with any settings
     */
   def results(set: FlightSet): Vector[Section] = set.scenarios.flatMap: flown =>
     Vector(
@@ -40,7 +39,9 @@ trait ScenarioReport:
 
 object ScenarioReport:
 
-  /** For each kind that there are flights of, in the registry's order; then for those that are not known here. */
+  /** For each kind that there are flights of, in the registry's order; then for those that are not known
+    * here.
+    */
   private[report] def each[A](set: FlightSet)(show: (ScenarioReport, FlightSet) => Vector[A])(using
       Scenarios
   ): Vector[A] =

@@ -9,8 +9,8 @@ import skein.units.Decimals.{fixed, signed}
 /** Tables of a scenario's flights. */
 object ScenarioTables:
 
-  /** A row per flight: its measures, the first against the paused truth's, and how far the vehicles were from where they
-    * are in the paused truth at the same time.
+  /** A row per flight: its measures, the first against the paused truth's, and how far the vehicles were from
+    * where they are in the paused truth at the same time.
     */
   def flights(flown: ScenarioFlights): TextTable =
     val names = flown.scenario.measures.map(_.title)
@@ -75,8 +75,8 @@ object ScenarioTables:
 
   private val MostListed = 5
 
-  /** A row per loop and link: of each measure mean ± standard deviation, least … most over the flights; of counts the
-    * total and the flights that have any.
+  /** A row per loop and link: of each measure mean ± standard deviation, least … most over the flights; of
+    * counts the total and the flights that have any.
     */
   def spread(flown: ScenarioFlights): TextTable =
     val groups = flown.flights.groupBy(flight => (flight.summary.name, flight.summary.flight.link))

@@ -5,12 +5,9 @@ import ujson.{Arr, Null, Num, Obj, Str, Value}
 
 /** A part of a report: rendered as text for the terminal, as part of a page, and as data for scripts.
   *
-  * @param note
-  *   how to read it; may be empty
-  * @param table
-  *   absent where there are pictures alone
-  * @param figures
-  *   on the page alone
+  * @param note how to read it; may be empty
+  * @param table absent where there are pictures alone
+  * @param figures on the page alone
   */
 final case class Section(
     title: String,
@@ -28,8 +25,8 @@ object Section:
   private def textOf(section: Section, table: TextTable): String =
     (Vector(section.title, table.render) ++ Paragraph.lines(section.note, 100)).mkString("\n")
 
-  /** All tables: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as the columns; a cell is a
-    * number where it is one, null where it is empty, and else text.
+  /** All tables: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as the
+    * columns; a cell is a number where it is one, null where it is empty, and else text.
     */
   def json(sections: Seq[Section]): String =
     val tables = sections.flatMap(section => section.table.map(jsonOf(section, _)))

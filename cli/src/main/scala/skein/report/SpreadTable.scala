@@ -6,10 +6,11 @@ import skein.units.Decimals.fixed
 /** How much a loop's result varies from flight to flight. */
 object SpreadTable:
 
-  /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of the mean
-    * distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the closest approach,
-    * in how many flights it was a capture, and the deviation from the paused truth of the same policies where it was
-    * flown too. Where a loop and link gave no distance, since a vehicle was never read, the flights are counted alone.
+  /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of
+    * the mean distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the
+    * closest approach, in how many flights it was a capture, and the deviation from the paused truth of the
+    * same policies where it was flown too. Where a loop and link gave no distance, since a vehicle was never
+    * read, the flights are counted alone.
     */
   def of(flights: Seq[FlightSummary]): TextTable =
     val groups = flights.groupBy(summary => (summary.name, summary.flight.link))

@@ -42,8 +42,8 @@ object SummaryTables:
         Vector(summary.name, summary.flight.link) ++ ours ++ paper
     )
 
-  /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true ages; by the
-    * role that was decided for.
+  /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true
+    * ages; by the role that was decided for.
     */
   def observations(set: FlightSet): TextTable =
     TextTable(
@@ -78,8 +78,8 @@ object SummaryTables:
           kinds.map(summary.count(_).toString)
     )
 
-  /** What cameras saw: how much, how long recognition took, how old it was when it was decided upon, and how far what was
-    * believed at the exposure was from the truth.
+  /** What cameras saw: how much, how long recognition took, how old it was when it was decided upon, and how
+    * far what was believed at the exposure was from the truth.
     */
   def seen(flights: Seq[FlightSummary]): TextTable =
     def spread(values: Option[Distribution], digits: Int) =
@@ -107,8 +107,8 @@ object SummaryTables:
       "used. Ages of detections count from the exposure to each decision made from " +
       "them; off: how far the estimate for the exposure lay from the truth."
 
-  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, by
-    * role, and how far apart they converged.
+  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made
+    * on, by role, and how far apart they converged.
     */
   def twins(set: FlightSet): TextTable =
     val columns = Twin.columns(set.twins)

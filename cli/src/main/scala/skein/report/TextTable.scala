@@ -2,10 +2,8 @@ package skein.report
 
 /** A table in monospaced text.
   *
-  * @param header
-  *   the columns' names; those that begin with `<` are aligned left
-  * @param rows
-  *   each as wide as the header
+  * @param header the columns' names; those that begin with `<` are aligned left
+  * @param rows each as wide as the header
   */
 final case class TextTable(header: Vector[String], rows: Vector[Vector[String]]):
 
@@ -24,6 +22,8 @@ final case class TextTable(header: Vector[String], rows: Vector[Vector[String]])
 
 object TextTable:
 
-  /** Names come from files and from other machines: what would move a terminal's cursor or colour it is shown as `�`. */
+  /** Names come from files and from other machines: what would move a terminal's cursor or colour it is shown
+    * as `�`.
+    */
   def printable(text: String): String = text.map: letter =>
     if letter.isControl && letter != '\n' && letter != '\t' then '\ufffd' else letter

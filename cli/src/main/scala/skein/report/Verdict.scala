@@ -7,8 +7,8 @@ import skein.units.Decimals.fixed
 /** What the flights come to, in a sentence for each link: how far each loop was off the paused truth. */
 object Verdict:
 
-  /** One sentence per link and clock over which several loops flew with the paper's policies, live flights last, and
-    * the link with the largest deviation last among them; empty without a paused flight.
+  /** One sentence per link and clock over which several loops flew with the paper's policies, live flights
+    * last, and the link with the largest deviation last among them; empty without a paused flight.
     */
   def sentences(deviations: Seq[Deviation]): Vector[String] =
     val groups = deviations.toVector.groupBy(one => (one.link, one.clock)).toVector.filter(_._2.sizeIs > 1)

@@ -4,14 +4,10 @@ import skein.settings.PolicyFile
 
 /** What a search's result is held against, on the same episodes.
   *
-  * @param word
-  *   for the line that tells of it
-  * @param name
-  *   for tables
-  * @param parameters
-  *   one per axis of a space of its own, by their names
-  * @param label
-  *   name and parameters, for people
+  * @param word for the line that tells of it
+  * @param name for tables
+  * @param parameters one per axis of a space of its own, by their names
+  * @param label name and parameters, for people
   */
 final case class Baseline(word: String, name: String, parameters: Vector[(String, Double)], label: String):
   def candidate: Vector[Double] = parameters.map(_._2)

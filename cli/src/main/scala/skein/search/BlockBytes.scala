@@ -15,10 +15,8 @@ private[skein] object BlockBytes:
 
   def of[A: Codec](value: A): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(Codec.bytes(value))
 
-  /** @param what
-    *   the bytes should be, in words
-    * @return
-    *   or what was expected, and what came
+  /** @param what the bytes should be, in words
+    * @return or what was expected, and what came
     */
   def read[A: Codec](bytes: ArraySeq[Byte], what: String): Either[String, A] =
     Codec.message[A](bytes.toArray).left.map(wrong => s"expected $what: $wrong")

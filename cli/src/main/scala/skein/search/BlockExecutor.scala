@@ -7,10 +7,8 @@ import scala.concurrent.{Await, Future}
 
 /** Computes blocks in other processes. */
 trait BlockExecutor:
-  /** @param onAnswer
-    *   told each as it comes, in any order, on any thread
-    * @return
-    *   the answers in the order of the works; none if it was cancelled; or why there are none
+  /** @param onAnswer told each as it comes, in any order, on any thread
+    * @return the answers in the order of the works; none if it was cancelled; or why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
@@ -20,12 +18,9 @@ trait BlockExecutor:
 
   /** Has works computed, and blocks the calling thread meanwhile.
     *
-    * @param isCancelled
-    *   asked a few times a second; what is under way is given up then
-    * @param onAnswer
-    *   told each as it comes, in any order, by the calling thread
-    * @param onWait
-    *   called a few times a second by the calling thread
+    * @param isCancelled asked a few times a second; what is under way is given up then
+    * @param onAnswer told each as it comes, in any order, by the calling thread
+    * @param onWait called a few times a second by the calling thread
     */
   final def computed(
       works: Vector[ArraySeq[Byte]],

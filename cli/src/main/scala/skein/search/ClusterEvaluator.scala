@@ -2,13 +2,12 @@ package skein.search
 
 import skein.optimise.{Evaluator, RunningStats}
 
-/** Has candidates judged elsewhere, in blocks: to the same bits as [[skein.optimise.ValueEvaluator]] judges them here.
-  * Blocks the calling thread meanwhile.
+/** Has candidates judged elsewhere, in blocks: to the same bits as [[skein.optimise.ValueEvaluator]] judges
+  * them here. Blocks the calling thread meanwhile.
   *
-  * @param atMost
-  *   episodes of a block
-  * @param onWait
-  *   called a few times a second by the thread that waits, with the call's episodes over all candidates
+  * @param atMost episodes of a block
+  * @param onWait called a few times a second by the thread that waits, with the call's episodes over all
+  *   candidates
   */
 final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int, onWait: Long => Unit)
     extends Evaluator:
@@ -19,8 +18,7 @@ final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
     talliesUnless(() => false)(candidates, episodes).get
 
-  /** @throws BlocksFailed
-    *   where there can be no answer
+  /** @throws BlocksFailed where there can be no answer
     */
   override def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],

@@ -13,10 +13,8 @@ import upickle.implicits.key
 
 /** Under what candidates are judged by forward simulation, as users name it.
   *
-  * @param plant
-  *   see [[VehicleChoice.parse]]
-  * @param eye
-  *   a file of [[SensorFile]]: the pursuer knows of the evader by that alone
+  * @param plant see [[VehicleChoice.parse]]
+  * @param eye a file of [[SensorFile]]: the pursuer knows of the evader by that alone
   */
 final case class Conditions(
     loop: String,
@@ -54,7 +52,9 @@ object Conditions:
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
     def batch(threads: Int): DuelBatch = DuelBatch(duel, timing, vehicle.response, threads)
 
-    /** The ground truth with the same vehicles: the same period, a world that waits, and a pursuer that is told. */
+    /** The ground truth with the same vehicles: the same period, a world that waits, and a pursuer that is
+      * told.
+      */
     def paused: Resolved =
       copy(
         timing = LoopTiming.Paused(timing.periodS),

@@ -28,10 +28,8 @@ object Effort:
 
   /** Of duels.
     *
-    * @param together
-    *   whether candidates that share their episodes fly by lanes
-    * @param alone
-    *   whether worlds with delays of their own do
+    * @param together whether candidates that share their episodes fly by lanes
+    * @param alone whether worlds with delays of their own do
     */
   def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice): Effort =
     def level(byLanes: Boolean) = (byLanes, vehicle.fliesInSteps) match

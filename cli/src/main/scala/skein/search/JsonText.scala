@@ -10,10 +10,8 @@ private[skein] object JsonText:
   /** In UTF-8. */
   def bytes[A: Writer](value: A): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(value).getBytes(UTF_8))
 
-  /** @param what
-    *   the bytes should be, in words
-    * @return
-    *   or what was expected, and what came
+  /** @param what the bytes should be, in words
+    * @return or what was expected, and what came
     */
   def read[A: Reader](bytes: ArraySeq[Byte], what: String): Either[String, A] =
     parse(String(bytes.toArray, UTF_8), what)

@@ -5,12 +5,9 @@ import skein.policy.SearchSpace
 
 /** The objective around a candidate, along one or two axes of the space with the others at the candidate.
   *
-  * @param x
-  *   number of the axis
-  * @param y
-  *   of the second, if there is one
-  * @param cells
-  *   by y, then by x; one row without y. Rows are missing at the end of a map that is not done
+  * @param x number of the axis
+  * @param y of the second, if there is one
+  * @param cells by y, then by x; one row without y. Rows are missing at the end of a map that is not done
   */
 final case class Landscape(
     space: SearchSpace,
@@ -43,12 +40,9 @@ object Landscape:
 
   private val Probes = 9
 
-  /** @param episodes
-    *   of every cell
-    * @param onMap
-    *   points along each axis of a map
-    * @param onRow
-    *   told of the map after each of its rows
+  /** @param episodes of every cell
+    * @param onMap points along each axis of a map
+    * @param onRow told of the map after each of its rows
     */
   def of(
       space: SearchSpace,

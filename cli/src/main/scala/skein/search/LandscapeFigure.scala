@@ -3,8 +3,8 @@ package skein.search
 import skein.plot.*
 import skein.units.Decimals.significant
 
-/** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found candidate
-  * marked, and the defaults.
+/** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found
+  * candidate marked, and the defaults.
   */
 object LandscapeFigure:
   private val width  = 560.0
@@ -13,8 +13,7 @@ object LandscapeFigure:
   private val found  = Colour(0xd55e00)
   private val plain  = Colour(0x111111)
 
-  /** @param value
-    *   what the objective is, with its unit, for the axis or the scale
+  /** @param value what the objective is, with its unit, for the axis or the scale
     */
   def apply(landscape: Landscape, title: String, value: String): Drawing =
     if landscape.y.isEmpty then curve(landscape, title, value) else map(landscape, title, value)

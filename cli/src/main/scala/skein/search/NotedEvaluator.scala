@@ -2,11 +2,10 @@ package skein.search
 
 import skein.optimise.{Evaluator, RunningStats}
 
-/** Judges as another does, and notes what flies the candidates: their policies may be of several forms. One call at a
-  * time.
+/** Judges as another does, and notes what flies the candidates: their policies may be of several forms. One
+  * call at a time.
   *
-  * @param engine
-  *   of a candidate, in a line for the user
+  * @param engine of a candidate, in a line for the user
   */
 final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => String) extends Evaluator:
   private val candidates = collection.mutable.LinkedHashMap.empty[String, Int].withDefaultValue(0)

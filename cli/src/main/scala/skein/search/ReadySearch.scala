@@ -26,8 +26,7 @@ trait ReadySearch:
 
   /** Who is searched, and against whom.
     *
-    * @param axes
-    *   what is searched of it
+    * @param axes what is searched of it
     */
   def subject(axes: String): String
 
@@ -49,7 +48,9 @@ trait ReadySearch:
   /** A line that says what flies a candidate, or the baseline, where it is judged. */
   def engine(candidate: Vector[Double], judge: Judge): String
 
-  /** What flies the candidates, and where it is something else, what flies the winner's fresh episodes and the baseline's. */
+  /** What flies the candidates, and where it is something else, what flies the winner's fresh episodes and
+    * the baseline's.
+    */
   final def engines: String =
     val together = engine(space.defaults, Judge.Candidates)
     val fresh    =

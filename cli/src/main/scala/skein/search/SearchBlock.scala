@@ -6,11 +6,11 @@ import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.search.BlockBytes.given
 import skein.units.Expect
 
-/** A part of a call of an evaluator, which any process with the same question answers with the same bits: so many
-  * candidates on so many episodes.
+/** A part of a call of an evaluator, which any process with the same question answers with the same bits: so
+  * many candidates on so many episodes.
   *
-  * @param isWhole
-  *   whether the episodes are all of the call, so that tallies can be told; else each episode's value is
+  * @param isWhole whether the episodes are all of the call, so that tallies can be told; else each episode's
+  *   value is
   */
 final case class SearchBlock(
     judge: Judge,
@@ -63,8 +63,8 @@ object SearchBlock:
   /** Episodes of a block at most. */
   val MostEpisodes: Int = MostBytes / 8
 
-  /** Cuts a call into blocks of at most so many episodes, over all their candidates; into sixteen or more, where they do
-    * not become too small. Candidates that would not fit are parted by episodes.
+  /** Cuts a call into blocks of at most so many episodes, over all their candidates; into sixteen or more,
+    * where they do not become too small. Candidates that would not fit are parted by episodes.
     */
   def cut(
       judge: Judge,
@@ -85,10 +85,9 @@ object SearchBlock:
 
   /** Puts the answers of a call's blocks together.
     *
-    * @param episodes
-    *   of the call
-    * @return
-    *   a tally for each candidate in their order, equal to an undivided call's to the bit; or what was wrong
+    * @param episodes of the call
+    * @return a tally for each candidate in their order, equal to an undivided call's to the bit; or what was
+    *   wrong
     */
   def together(
       blocks: Vector[SearchBlock],

@@ -19,16 +19,11 @@ import upickle.default.ReadWriter
 
 /** What a search is asked, in the words of the user; enough to go on with it, or to ask again.
   *
-  * @param opponent
-  *   a policy as [[PolicyFile.text]] writes it, of the other role
-  * @param candidates
-  *   to be tried in all, about
-  * @param episodes
-  *   that each flies; when racing, in the first round
-  * @param population
-  *   of a generation, for the methods that have them
-  * @param fresh
-  *   episodes on which the winner is measured; without it, as many as the engine flies quickly
+  * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role
+  * @param candidates to be tried in all, about
+  * @param episodes that each flies; when racing, in the first round
+  * @param population of a generation, for the methods that have them
+  * @param fresh episodes on which the winner is measured; without it, as many as the engine flies quickly
   */
 final case class SearchQuestion(
     family: String,
@@ -151,8 +146,7 @@ final case class SearchSetup(
 
   def batch(threads: Int): DuelBatch = conditions.batch(threads)
 
-  /** @param many
-    *   whether many candidates will meet the same episodes
+  /** @param many whether many candidates will meet the same episodes
     */
   def evaluator(
       batch: DuelBatch,

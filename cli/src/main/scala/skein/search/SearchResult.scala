@@ -55,8 +55,7 @@ object SearchResult:
 
   private val MostShown = 12
 
-  /** @param state
-    *   with a best candidate
+  /** @param state with a best candidate
     */
   def measured(ready: ReadySearch, by: Judge => Evaluator, state: SearchState, episodes: Int): Found =
     val best              = state.best.get.candidate

@@ -3,7 +3,9 @@ package skein.search
 import java.nio.file.Path
 import skein.optimise.{Evaluator, Search, SearchState}
 
-/** Steps a search to its end, or until it is stopped, and keeps its state on disk: a kill loses a few seconds. */
+/** Steps a search to its end, or until it is stopped, and keeps its state on disk: a kill loses a few
+  * seconds.
+  */
 final class SearchRun(
     search: Search,
     question: SearchQuestion | TeamQuestion,
@@ -13,12 +15,9 @@ final class SearchRun(
 ):
   import SearchRun.*
 
-  /** @param isStopped
-    *   asked now and then, from any thread; the step under way is given up then
-    * @param onStep
-    *   told of every state
-    * @return
-    *   the last state, or why it could not be kept
+  /** @param isStopped asked now and then, from any thread; the step under way is given up then
+    * @param onStep told of every state
+    * @return the last state, or why it could not be kept
     */
   def run(
       from: SearchState,

@@ -6,15 +6,13 @@ import java.nio.file.{Files, NoSuchFileException, Path, StandardCopyOption, Stan
 import java.util.zip.CRC32C
 import upickle.default.{ReadWriter, write as writeJson}
 
-/** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it: numbers that
-  * were damaged or edited would still be numbers, and what goes on from them would end as no unbroken run does.
+/** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it:
+  * numbers that were damaged or edited would still be numbers, and what goes on from them would end as no
+  * unbroken run does.
   *
-  * @param name
-  *   of the file, in its folder
-  * @param version
-  *   of the object, which its first field is
-  * @param what
-  *   it is the state of, in words, for example "a search"
+  * @param name of the file, in its folder
+  * @param version of the object, which its first field is
+  * @param what it is the state of, in words, for example "a search"
   */
 private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, what: String):
   import StateFile.*
@@ -24,8 +22,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
     val text = writeJson(state).stripSuffix("}")
     s"$text$Seal${sumOf(text)}}"
 
-  /** @return
-    *   what [[json]] was made of, or what was expected and came
+  /** @return what [[json]] was made of, or what was expected and came
     */
   def parse(text: String): Either[String, A] =
     val at = text.lastIndexOf(Seal)
@@ -43,8 +40,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
 
   /** Reads the file of a folder.
     *
-    * @return
-    *   or why it cannot be gone on with
+    * @return or why it cannot be gone on with
     */
   def read(folder: Path): Either[String, A] =
     val file = folder.resolve(name)
@@ -60,8 +56,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
 
   /** Replaces the file, so that whatever happens there is the old one or the new one.
     *
-    * @return
-    *   or why not
+    * @return or why not
     */
   def write(folder: Path, state: A): Either[String, Unit] =
     val target  = folder.resolve(name)

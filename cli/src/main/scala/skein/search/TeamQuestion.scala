@@ -27,8 +27,7 @@ object Varied:
 
   /** Reads `ring-m=4..12`.
     *
-    * @return
-    *   or what was expected, and what came
+    * @return or what was expected, and what came
     */
   def parse(text: String): Either[String, Varied] = text match
     case Form(key, NumberOf(least), NumberOf(most)) if least < most => Right(Varied(key, least, most))
@@ -38,20 +37,15 @@ object Varied:
   private object NumberOf:
     def unapply(text: String): Option[Double] = text.toDoubleOption.filter(_.isFinite)
 
-/** What a search over a scenario's settings is asked, in the words of the user; enough to go on with it, or to ask again.
+/** What a search over a scenario's settings is asked, in the words of the user; enough to go on with it, or
+  * to ask again.
   *
-  * @param set
-  *   settings that have one value, by their keys
-  * @param objective
-  *   a sum of the scenario's measures
-  * @param candidates
-  *   to be tried in all, about
-  * @param episodes
-  *   that each flies; when racing, in the first round
-  * @param population
-  *   of a generation, for the methods that have them
-  * @param fresh
-  *   episodes on which the winner is measured
+  * @param set settings that have one value, by their keys
+  * @param objective a sum of the scenario's measures
+  * @param candidates to be tried in all, about
+  * @param episodes that each flies; when racing, in the first round
+  * @param population of a generation, for the methods that have them
+  * @param fresh episodes on which the winner is measured
   */
 final case class TeamQuestion(
     scenario: String,
@@ -101,11 +95,10 @@ final case class TeamQuestion(
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield TeamSetup(this, kind, space, by, engine, method)
 
-  /** By lanes, where forward simulation knows the policies and the measures; world by world, where it knows the policies;
-    * else in flights in virtual time.
+  /** By lanes, where forward simulation knows the policies and the measures; world by world, where it knows
+    * the policies; else in flights in virtual time.
     *
-    * @param all
-    *   the scenario as it is, first, and with the bounds of what is searched
+    * @param all the scenario as it is, first, and with the bounds of what is searched
     */
   private def engine(by: TeamObjective, all: Vector[Scenario])(using
       Scenarios
@@ -166,8 +159,7 @@ object TeamQuestion:
 
 /** What flies a team's candidates.
   *
-  * @param isVirtual
-  *   whether candidates fly some a second
+  * @param isVirtual whether candidates fly some a second
   */
 enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
   /** By measures of quantities. */
@@ -180,8 +172,7 @@ enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String)
 
 /** A search over a scenario's settings, ready to run.
   *
-  * @param objective
-  *   of the scenario as it is unless told otherwise
+  * @param objective of the scenario as it is unless told otherwise
   */
 final case class TeamSetup(
     question: TeamQuestion,
@@ -261,7 +252,8 @@ final case class TeamSetup(
     case _: TeamEngine.Reduced => asked.fliesByLanes(candidate(space.defaults))
     case _: TeamEngine.Whole   => false
 
-  /** Is asked what flies, of every candidate, and flies nothing; where teams fly by measures of quantities. */
+  /** Is asked what flies, of every candidate, and flies nothing; where teams fly by measures of quantities.
+    */
   private lazy val asked: TeamBatch = flownBy match
     case TeamEngine.Reduced(conditions, _) => batch(conditions, 1)
     case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")

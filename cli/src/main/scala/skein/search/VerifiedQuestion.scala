@@ -9,9 +9,8 @@ import upickle.default.ReadWriter
 
 /** A search's question as workers get it.
   *
-  * @param probe
-  *   what the defaults came to at the coordinator on the first episodes: a worker that comes to anything else, by a file
-  *   of another content for example, does not answer the question
+  * @param probe what the defaults came to at the coordinator on the first episodes: a worker that comes to
+  *   anything else, by a file of another content for example, does not answer the question
   */
 final case class VerifiedQuestion(question: SearchFile.Question, probe: Vector[RunningStats])
 

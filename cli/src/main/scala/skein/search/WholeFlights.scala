@@ -12,16 +12,11 @@ import skein.vehicle.VehicleKind
 
 /** Episodes of a scenario that are flown whole, one by one, whatever its policies and measures are.
   *
-  * @param vehicles
-  *   what flies, for people
-  * @param model
-  *   the same in a word
-  * @param by
-  *   the engine
-  * @param why
-  *   nothing faster flies them
-  * @param fly
-  *   an episode by its number; on the calling thread
+  * @param vehicles what flies, for people
+  * @param model the same in a word
+  * @param by the engine
+  * @param why nothing faster flies them
+  * @param fly an episode by its number; on the calling thread
   */
 final class WholeFlights private (
     val vehicles: String,
@@ -34,8 +29,7 @@ final class WholeFlights private (
 ):
   /** What an episode comes to.
     *
-    * @return
-    *   or why it could not be flown to its end
+    * @return or why it could not be flown to its end
     */
   def value(scenario: Scenario, objective: TeamObjective, episode: Int): Either[String, Double] =
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
@@ -60,7 +54,8 @@ final class WholeFlights private (
     )
 
 object WholeFlights:
-  /** What an episode counts for that never comes to a measure, in the measure's unit: worse than all that do. */
+  /** What an episode counts for that never comes to a measure, in the measure's unit: worse than all that do.
+    */
   val Never = 1e6
 
   /** Flights in virtual time that a search may take: a day of them, at one a second. */
@@ -68,8 +63,7 @@ object WholeFlights:
 
   /** A scenario as forward simulation flies it.
     *
-    * @return
-    *   or why it cannot
+    * @return or why it cannot
     */
   def plane(scenario: Scenario, durationS: Double): Either[String, Engagement] =
     try
@@ -82,10 +76,8 @@ object WholeFlights:
 
   /** One episode by forward simulation.
     *
-    * @param key
-    *   of its random numbers
-    * @return
-    *   or that its vehicles were not all seen
+    * @param key of its random numbers
+    * @return or that its vehicles were not all seen
     */
   def forward(
       scenario: Scenario,
@@ -114,8 +106,7 @@ object WholeFlights:
 
   /** By forward simulation, world by world.
     *
-    * @param plain
-    *   measures that are not of a quantity
+    * @param plain measures that are not of a quantity
     */
   def scalar(flown: Conditions.Resolved, link: Delays, seed: Long, plain: Seq[String]): WholeFlights =
     WholeFlights(
@@ -168,8 +159,7 @@ object WholeFlights:
 
 /** Judges candidates by whole flights.
   *
-  * @param scenario
-  *   of a candidate
+  * @param scenario of a candidate
   */
 final class WholeFlightEvaluator(
     flights: WholeFlights,
@@ -178,8 +168,7 @@ final class WholeFlightEvaluator(
     threads: Int
 ) extends ValueEvaluator:
 
-  /** @throws BlocksFailed
-    *   if a flight could not be flown to its end
+  /** @throws BlocksFailed if a flight could not be flown to its end
     */
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],

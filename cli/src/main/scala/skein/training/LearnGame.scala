@@ -9,10 +9,8 @@ import skein.settings.PolicyFile
 enum LearnGame:
   /** The paper's duel.
     *
-    * @param against
-    *   the other side
-    * @param scenario
-    *   as flights fly it
+    * @param against the other side
+    * @param scenario as flights fly it
     */
   case OfDuel(objective: Objective, against: PolicyFile, scenario: Scenario)
 

@@ -15,26 +15,17 @@ import upickle.default.ReadWriter
 
 /** What is to be learned, in the words of the user; enough to go on with it, or to learn it again.
   *
-  * @param conditions
-  *   under which is learned and judged
-  * @param opponent
-  *   a policy as [[PolicyFile.text]] writes it, of the other role; in the duel
-  * @param objective
-  *   by which the policy is judged now and then; what is learned is a small, or a great, distance
-  * @param steps
-  *   of all environments together
-  * @param environments
-  *   side by side
-  * @param lessonS
-  *   how long an episode of learning lasts
-  * @param startLeastM
-  *   it begins with the evader so far away
-  * @param turnRateRadPerS
-  *   the most that it turns
-  * @param episodes
-  *   on which the policy is judged now and then
-  * @param fresh
-  *   on which it is judged at the end
+  * @param conditions under which is learned and judged
+  * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role; in the duel
+  * @param objective by which the policy is judged now and then; what is learned is a small, or a great,
+  *   distance
+  * @param steps of all environments together
+  * @param environments side by side
+  * @param lessonS how long an episode of learning lasts
+  * @param startLeastM it begins with the evader so far away
+  * @param turnRateRadPerS the most that it turns
+  * @param episodes on which the policy is judged now and then
+  * @param fresh on which it is judged at the end
   */
 final case class LearnQuestion(
     algorithm: String,
@@ -131,7 +122,8 @@ final case class LearnSetup(
     case _: LearnGame.OfTeam => true
     case _: LearnGame.OfDuel => false
 
-  /** What every result is held against: the paper's policy of the role, or what the scenario's own come to. */
+  /** What every result is held against: the paper's policy of the role, or what the scenario's own come to.
+    */
   val baseline: Baseline = game match
     case _: LearnGame.OfDuel    => Baseline.of(PolicyFile.paperOf(role))
     case team: LearnGame.OfTeam =>

@@ -9,10 +9,8 @@ import skein.units.Decimals.significant
 
 /** What was learned, measured on episodes that learning never met.
   *
-  * @param paper
-  *   the baseline on the same episodes
-  * @param flights
-  *   what flights in virtual time came to, where such were flown: [[LearnGame.came]]
+  * @param paper the baseline on the same episodes
+  * @param flights what flights in virtual time came to, where such were flown: [[LearnGame.came]]
   */
 final case class LearnResult(
     setup: LearnSetup,
@@ -93,10 +91,8 @@ final case class LearnResult(
   )
 
 object LearnResult:
-  /** @param by
-    *   judges what was learned, and the paper's policy as the baseline
-    * @param state
-    *   with a best policy
+  /** @param by judges what was learned, and the paper's policy as the baseline
+    * @param state with a best policy
     */
   def measured(setup: LearnSetup, by: Judge => Evaluator, state: LearnState, episodes: Int): LearnResult =
     val policy = setup.policy(state.best.get.weights)

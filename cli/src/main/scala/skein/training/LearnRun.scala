@@ -10,12 +10,9 @@ import skein.scenario.Scenarios
 
 /** Learns round by round, judges the policy now and then, and keeps its state on disk.
   *
-  * @param judge
-  *   of policies, by their parameters
-  * @param folder
-  *   without one, nothing is kept
-  * @param isElsewhere
-  *   whether others judge: then learning goes on meanwhile, and comes to the same
+  * @param judge of policies, by their parameters
+  * @param folder without one, nothing is kept
+  * @param isElsewhere whether others judge: then learning goes on meanwhile, and comes to the same
   */
 final class LearnRun(
     setup: LearnSetup,
@@ -27,12 +24,9 @@ final class LearnRun(
   import LearnRun.*
   import setup.question
 
-  /** @param isStopped
-    *   asked at every step; the round under way is given up then
-    * @param onRound
-    *   told of every state
-    * @return
-    *   the last state, or why there is none
+  /** @param isStopped asked at every step; the round under way is given up then
+    * @param onRound told of every state
+    * @return the last state, or why there is none
     */
   def run(from: LearnState, threads: Int, isStopped: () => Boolean)(
       onRound: LearnState => Unit

@@ -18,10 +18,8 @@ import upickle.default.ReadWriter
 
 /** How far learning has come.
   *
-  * @param rounds
-  *   that are done
-  * @param scores
-  *   of the policy, as it grew
+  * @param rounds that are done
+  * @param scores of the policy, as it grew
   */
 final case class LearnState(
     rounds: Int = 0,
@@ -29,21 +27,20 @@ final case class LearnState(
     best: Option[LearnBest] = None
 ) derives ReadWriter
 
-/** @param steps
-  *   of all environments before it
-  * @param mean
-  *   of the objective over the episodes of judging
+/** @param steps of all environments before it
+  * @param mean of the objective over the episodes of judging
   */
 final case class LearnScore(steps: Long, mean: Double, sd: Double) derives ReadWriter
 
 /** The policy with the best score so far.
   *
-  * @param weights
-  *   of a [[skein.policy.LearnedPolicy]]
+  * @param weights of a [[skein.policy.LearnedPolicy]]
   */
 final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) derives ReadWriter
 
-/** Learning as it stands on disk: `learn.json` with question and state, and beside it all numbers of the learner. */
+/** Learning as it stands on disk: `learn.json` with question and state, and beside it all numbers of the
+  * learner.
+  */
 final case class LearnFile(version: Int, question: LearnQuestion, state: LearnState) derives ReadWriter
 
 object LearnFile:

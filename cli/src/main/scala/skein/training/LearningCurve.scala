@@ -2,15 +2,13 @@ package skein.training
 
 import skein.plot.*
 
-/** How good policies became with the steps they were learned in: means over the episodes of judging, and a standard
-  * deviation to either side.
+/** How good policies became with the steps they were learned in: means over the episodes of judging, and a
+  * standard deviation to either side.
   */
 object LearningCurve:
 
-  /** @param scores
-    *   with what tells them from others in the legend, and their colour
-    * @param levels
-    *   values to compare with, by name
+  /** @param scores with what tells them from others in the legend, and their colour
+    * @param levels values to compare with, by name
     */
   def apply(
       title: String,

@@ -12,11 +12,11 @@ import skein.search.*
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
-/** What others cost: candidates judged by two processes of one thread each, against this process with two threads, in
-  * turns: `./sbtw "cli/Test/runMain skein.cli.clusterOverhead 9 250 DIR"`. Both must come to the same bits.
+/** What others cost: candidates judged by two processes of one thread each, against this process with two
+  * threads, in turns: `./sbtw "cli/Test/runMain skein.cli.clusterOverhead 9 250 DIR"`. Both must come to the
+  * same bits.
   *
-  * @param blockMs
-  *   that a block takes one core, about
+  * @param blockMs that a block takes one core, about
   */
 @main def clusterOverhead(pairs: Int, blockMs: Int, out: String): Unit =
   given Scenarios = Scenarios.ours

@@ -30,8 +30,8 @@ class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.
 
 class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Lengthy
 
-/** Runs every command of a kind that README, guides, results and examples show, as it is written there, for a shorter time;
-  * [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
+/** Runs every command of a kind that README, guides, results and examples show, as it is written there, for a
+  * shorter time; [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
   */
 abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("documented-commands")
@@ -92,8 +92,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
 
   /** What makes a command short, and where its results go.
     *
-    * @param live
-    *   how long flights by the clock last
+    * @param live how long flights by the clock last
     */
   private def shortened(words: Seq[String], out: Path, live: String = "2s"): Seq[String] =
     val more = words.head match
@@ -281,15 +280,18 @@ object DocumentedCommands:
   enum Kind:
     case Flight, Cluster, Search, Other
 
-  /** The guides' flights by the clock, where the clock is not what they are about: those of the README are flown live. */
+  /** The guides' flights by the clock, where the clock is not what they are about: those of the README are
+    * flown live.
+    */
   private def inVirtualTime(command: String, readme: Seq[String]): String =
     val isLive = Seq("--clock", "--view", "--record", "--simulator", "unix:").exists(command.contains)
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
 
-  /** Not run: what stands for many commands, and `identify` where it names no recording. Examples show `./sbtw …` and
-    * `python …` besides. The tests of those projects run the same programs (`./sbtw NAME/test`), `PythonPackageLiveSuite`
-    * runs `learn.py`; the other Python programs want frameworks that are not installed here.
+  /** Not run: what stands for many commands, and `identify` where it names no recording. Examples show
+    * `./sbtw …` and `python …` besides. The tests of those projects run the same programs (`./sbtw
+    * NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other Python programs want frameworks that
+    * are not installed here.
     */
   private def leftOut(command: String): Boolean =
     val standsForMany = Seq("--algorithm …", "--scenario NAME", "--loop …").exists(command.contains)

@@ -10,8 +10,7 @@ import skein.testing.{Lengthy, TemporaryFolders}
 class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private case class Ended(status: Int, out: String, err: String)
 
-  /** @param before
-    *   what the shell does first, for example a limit
+  /** @param before what the shell does first, for example a limit
     */
   private def skein(in: Path, before: String, jvm: Seq[String], arguments: String*): Ended =
     val agent =

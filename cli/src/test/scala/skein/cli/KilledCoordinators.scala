@@ -9,17 +9,14 @@ import scala.util.Random
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
 
-/** A search by two workers, and the next by five, whose coordinator is killed twice, and of whom one is killed now and
-  * then; each time it goes on with `--resume`. Then its files are held to those of one process:
-  * `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Ends with an error where they differ, or where a
-  * block counts twice.
+/** A search by two workers, and the next by five, whose coordinator is killed twice, and of whom one is
+  * killed now and then; each time it goes on with `--resume`. Then its files are held to those of one
+  * process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Ends with an error where
+  * they differ, or where a block counts twice.
   *
-  * @param candidates
-  *   so many that the search lasts for all kills
-  * @param first
-  *   number of a run, which is its seed; so is `last`
-  * @param everyS
-  *   a worker is killed; on a busy machine workers take long to start
+  * @param candidates so many that the search lasts for all kills
+  * @param first number of a run, which is its seed; so is `last`
+  * @param everyS a worker is killed; on a busy machine workers take long to start
   */
 @main def killCoordinator(candidates: Int, first: Int, last: Int, everyS: Int, out: String): Unit =
   val question =

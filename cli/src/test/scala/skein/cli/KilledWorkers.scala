@@ -8,11 +8,10 @@ import scala.util.Random
 import skein.blocks.Ledger
 
 /** One search by three workers, of whom one is killed every 5 s; then the same search by this process alone:
-  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Ends with an error where their files differ, or where a block counts
-  * twice.
+  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Ends with an error where their files
+  * differ, or where a block counts twice.
   *
-  * @param candidates
-  *   so many that the search lasts for all kills
+  * @param candidates so many that the search lasts for all kills
   */
 @main def killWorkers(candidates: Int, kills: Int, out: String): Unit =
   given ExecutionContext = ExecutionContext.global

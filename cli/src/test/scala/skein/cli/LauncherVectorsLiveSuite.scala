@@ -3,8 +3,8 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import skein.testing.TemporaryFolders
 
-/** What our launcher and that of a project of a user's ask the JVM for: a JVM that says so, and nothing else, is in the
-  * place of a real one.
+/** What our launcher and that of a project of a user's ask the JVM for: a JVM that says so, and nothing else,
+  * is in the place of a real one.
   */
 class LauncherVectorsLiveSuite extends munit.FunSuite, TemporaryFolders:
   private lazy val scratch = temporaryFolder()

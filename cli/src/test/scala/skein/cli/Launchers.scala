@@ -26,8 +26,7 @@ object Launchers:
 
   /** Runs it to its end, within minutes.
     *
-    * @return
-    *   its exit status, and what it said
+    * @return its exit status, and what it said
     */
   def run(
       launcher: Path,

@@ -6,8 +6,8 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 
 /** The same flight with a policy that was learned, which learns on beside it or does not, in turns:
-  * `cli/Test/runMain skein.cli.learningFlights 60 3`. The network is the usual one, and so is what it learns from each
-  * decision.
+  * `cli/Test/runMain skein.cli.learningFlights 60 3`. The network is the usual one, and so is what it learns
+  * from each decision.
   */
 @main def learningFlights(seconds: Int, rounds: Int): Unit =
   given Scenarios = DuelReport.scenarios

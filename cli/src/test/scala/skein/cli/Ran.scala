@@ -5,8 +5,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 
 /** What a command that ran in this process said.
   *
-  * @param status
-  *   its exit status
+  * @param status its exit status
   */
 private[cli] final case class Ran(status: Int, out: String, err: String):
 

@@ -10,8 +10,8 @@ import scala.util.Using
 import skein.cluster.WorkerProcesses
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
-/** A search of a program with a family of policies of its own, by a worker that was started as plain Skein: three
-  * processes over loopback.
+/** A search of a program with a family of policies of its own, by a worker that was started as plain Skein:
+  * three processes over loopback.
   */
 class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private lazy val parent = temporaryFolder()

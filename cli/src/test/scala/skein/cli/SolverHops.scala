@@ -9,16 +9,13 @@ import skein.record.RecordingReader
 import skein.scenario.Scenarios
 
 /** What a solver in another process adds to the age of what is decided upon, by TCP and by Kafka on loopback:
-  * `./sbtw cli/stage "cli/Test/runMain skein.cli.solverHops 40 3 vpn DIR"`. For each a solver is started and then asked by
-  * flights one after the other, so that the first one shows what is cold. Each flies `predictive` without the hop and
-  * with it.
+  * `./sbtw cli/stage "cli/Test/runMain skein.cli.solverHops 40 3 vpn DIR"`. For each a solver is started and
+  * then asked by flights one after the other, so that the first one shows what is cold. Each flies
+  * `predictive` without the hop and with it.
   *
-  * @param seconds
-  *   of each flight
-  * @param flights
-  *   of each solver
-  * @param out
-  *   folder for recordings and logs, which must not be there yet
+  * @param seconds of each flight
+  * @param flights of each solver
+  * @param out folder for recordings and logs, which must not be there yet
   */
 @main def solverHops(seconds: Int, flights: Int, link: String, out: String): Unit =
   given Scenarios = Scenarios.ours

@@ -4,8 +4,8 @@ import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** `decide` and `fly` as two programs that the launcher's script starts, as it is made by `cli/stage`: what it leaves out
-  * of their command lines, no test within a process sees.
+/** `decide` and `fly` as two programs that the launcher's script starts, as it is made by `cli/stage`: what
+  * it leaves out of their command lines, no test within a process sees.
   */
 class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private lazy val scratch = temporaryFolder()

@@ -13,8 +13,7 @@ import skein.scenario.Scenarios
 
 /** How late a flight's questions leave, by its recording.
   *
-  * @param p99Ms
-  *   after the tick that each belongs to
+  * @param p99Ms after the tick that each belongs to
   */
 final case class Lateness(questions: Int, p50Ms: Double, p99Ms: Double, mostMs: Double)
 
@@ -37,8 +36,8 @@ object Lateness:
     def quantile(share: Double)       = late(((late.size - 1) * share).round.toInt)
     Lateness(late.size, quantile(0.5), quantile(0.99), late.last)
 
-/** Viewers that subscribe to every topic and throw away what comes: all as fast as it comes, but one that reads a byte a
-  * second.
+/** Viewers that subscribe to every topic and throw away what comes: all as fast as it comes, but one that
+  * reads a byte a second.
   */
 final class Viewers(port: Int, count: Int) extends AutoCloseable:
   val bytes: AtomicLong    = AtomicLong()
@@ -73,7 +72,8 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
     on = false
     sockets.foreach(_.close())
 
-/** The same flight without viewers and with ten, in turns: `cli/Test/runMain skein.cli.watchedFlights 30 3`. */
+/** The same flight without viewers and with ten, in turns: `cli/Test/runMain skein.cli.watchedFlights 30 3`.
+  */
 @main def watchedFlights(seconds: Int, rounds: Int): Unit =
   given Scenarios = DuelReport.scenarios
   val folder      = Files.createTempDirectory("watched")

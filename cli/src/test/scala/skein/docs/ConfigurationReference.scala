@@ -5,8 +5,8 @@ import scala.jdk.CollectionConverters.*
 import skein.cli.OurScenarios
 import skein.settings.ConfigKeys
 
-/** All settings with their defaults as a page of the documentation: from `reference.conf` and its comments, and from the
-  * scenarios.
+/** All settings with their defaults as a page of the documentation: from `reference.conf` and its comments,
+  * and from the scenarios.
   */
 object ConfigurationReference:
   private val file = "flight/src/main/resources/reference.conf"

@@ -30,8 +30,7 @@ object TwinFlights:
 
   /** Flies all that the settings say, and each again in virtual time. Blocks for as long as a flight lasts.
     *
-    * @param twins
-    *   of each live flight
+    * @param twins of each live flight
     */
   def fly(settings: FlySettings, twins: Int): Either[String, FlightSet] =
     inFolder: folder =>
@@ -62,9 +61,9 @@ object TwinFlights:
         _.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_))
       )
 
-/** Shows that live flights and their virtual twins agree: flies `stream` and `predictive` over `direct` and `vpn` in real
-  * time for so many seconds, each again in virtual time with ten seeds, and fails where the converged distances differ
-  * by more than 2 %. For a quiet machine; 60 s are the experiment's own:
+/** Shows that live flights and their virtual twins agree: flies `stream` and `predictive` over `direct` and
+  * `vpn` in real time for so many seconds, each again in virtual time with ten seeds, and fails where the
+  * converged distances differ by more than 2 %. For a quiet machine; 60 s are the experiment's own:
   * `cli/Test/runMain skein.flight.checkTwins 60`.
   */
 @main def checkTwins(seconds: Int): Unit =

@@ -6,7 +6,9 @@ import skein.loop.{GraphLayout, LoopKind, OwnLoop}
 import skein.plot.Svg
 import skein.scenario.PaperDuel
 
-/** The graphs in `docs/pictures` are those that run. `cli/Test/runMain skein.report.drawLoops` draws them anew. */
+/** The graphs in `docs/pictures` are those that run. `cli/Test/runMain skein.report.drawLoops` draws them
+  * anew.
+  */
 class LoopPicturesLiveSuite extends munit.FunSuite:
 
   test("the documentation's graphs are drawn from the loops as they run"):

@@ -7,8 +7,9 @@ import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 
-/** A recording of the paper's duel between vehicles that follow their commanded velocity with a first-order lag of
-  * 0.8 s, seen through a link's round trips. Its shapes are those of a flight; its figures are nobody's.
+/** A recording of the paper's duel between vehicles that follow their commanded velocity with a first-order
+  * lag of 0.8 s, seen through a link's round trips. Its shapes are those of a flight; its figures are
+  * nobody's.
   */
 object SyntheticFlight:
   private val step   = Span.ofMillis(5)

@@ -10,8 +10,7 @@ import skein.units.*
 class TeamMeasuresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  /** @param placeM
-    *   north and east of a vehicle at a time, s
+  /** @param placeM north and east of a vehicle at a time, s
     */
   private def flown(scenario: Scenario, seconds: Int, loop: String = "stream")(
       placeM: (Int, Double) => (Double, Double)

@@ -11,8 +11,8 @@ import skein.cluster.jars.ClassPath
 /** Names what a process would compute with: the classes on its class path, wherever they lie. */
 object BuildId:
 
-  /** 16 hexadecimal digits. Processes of the same name have the same classes; a class more, as of somebody's scenario, is
-    * another name.
+  /** 16 hexadecimal digits. Processes of the same name have the same classes; a class more, as of somebody's
+    * scenario, is another name.
     */
   lazy val current: String = of(ClassPath.current)
 

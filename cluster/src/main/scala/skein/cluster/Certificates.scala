@@ -10,8 +10,8 @@ import java.util.HexFormat
 import scala.util.Using
 import scala.util.control.NonFatal
 
-/** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host that [[Tls.of]]
-  * reads.
+/** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host
+  * that [[Tls.of]] reads.
   */
 object Certificates:
   private val Days = 825
@@ -22,10 +22,8 @@ object Certificates:
   /** A folder's name, of a host's; `*.workers.lab` stands for all hosts of that domain. */
   def folderOf(host: String): String = host.replace("*", "_")
 
-  /** @param hosts
-    *   names or addresses, as `--listen` and `--join` have them
-    * @return
-    *   each host's folder; or what went wrong
+  /** @param hosts names or addresses, as `--listen` and `--join` have them
+    * @return each host's folder; or what went wrong
     */
   def make(folder: Path, hosts: Seq[String]): Either[String, Vector[Path]] =
     try

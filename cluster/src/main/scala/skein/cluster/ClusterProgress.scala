@@ -4,18 +4,12 @@ import skein.blocks.Coordinator
 
 /** Where a coordinator's work stands.
   *
-  * @param done
-  *   blocks of the call under way that have their answers
-  * @param of
-  *   all blocks of that call
-  * @param resumed
-  *   blocks, of all calls, whose answers were in the ledger already
-  * @param died
-  *   how often a worker was lost
-  * @param traffic
-  *   messages since the start
-  * @param ledgerBytes
-  *   of the file
+  * @param done blocks of the call under way that have their answers
+  * @param of all blocks of that call
+  * @param resumed blocks, of all calls, whose answers were in the ledger already
+  * @param died how often a worker was lost
+  * @param traffic messages since the start
+  * @param ledgerBytes of the file
   */
 final case class ClusterProgress(
     coordinator: Coordinator = Coordinator(),

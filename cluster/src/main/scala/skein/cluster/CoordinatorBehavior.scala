@@ -13,12 +13,9 @@ import skein.cluster.jars.Shipment
 
 /** What a coordinator works on.
   *
-  * @param run
-  *   names this coordinator's life; not 0
-  * @param build
-  *   that workers must have
-  * @param shipment
-  *   of that build, for workers that have another
+  * @param run names this coordinator's life; not 0
+  * @param build that workers must have
+  * @param shipment of that build, for workers that have another
   */
 private[cluster] final case class Job(
     run: Long,
@@ -27,13 +24,12 @@ private[cluster] final case class Job(
     shipment: Option[Shipment] = None
 )
 
-/** The edge of [[Coordinator]], which decides: hears workers, keeps answers, tells how it goes. One call at a time.
+/** The edge of [[Coordinator]], which decides: hears workers, keeps answers, tells how it goes. One call at a
+  * time.
   *
-  * @param onProgress
-  *   told after every change
-  * @param down
-  *   takes a process out of the cluster that has ended or is out of reach: until that is done nobody else becomes a
-  *   member. Who was there all the same joins again
+  * @param onProgress told after every change
+  * @param down takes a process out of the cluster that has ended or is out of reach: until that is done
+  *   nobody else becomes a member. Who was there all the same joins again
   */
 private[cluster] final class CoordinatorBehavior private (
     context: ActorContext[CoordinatorBehavior.Command],

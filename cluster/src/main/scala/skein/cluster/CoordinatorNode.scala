@@ -36,15 +36,13 @@ final class CoordinatorNode private (
   /** How it goes, for Prometheus. */
   def metrics: String = Metrics.text(progress, Cluster(system.toTyped).state.members.size)
 
-  /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed again. One
-    * call at a time.
+  /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed
+    * again. One call at a time.
     *
-    * @param onAnswer
-    *   told each answer when it comes or is found in the ledger, in any order, on a thread of the node's own
-    * @param onWanted
-    *   told, on such a thread, that the ledger does not have all answers
-    * @return
-    *   the answers in the order of the works; none if it was cancelled; or why there are none
+    * @param onAnswer told each answer when it comes or is found in the ledger, in any order, on a thread of
+    *   the node's own
+    * @param onWanted told, on such a thread, that the ledger does not have all answers
+    * @return the answers in the order of the works; none if it was cancelled; or why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
@@ -75,16 +73,11 @@ object CoordinatorNode:
   /** Of [[CoordinatorNode.metrics]], in HTTP's words. */
   val MetricsType: String = Metrics.ContentType
 
-  /** @param listen
-    *   port 0 for any that is free
-    * @param ledger
-    *   of this question
-    * @param shipment
-    *   this program, for workers of another that accept it
-    * @param tell
-    *   on a thread of the node's own
-    * @return
-    *   or why it cannot listen
+  /** @param listen port 0 for any that is free
+    * @param ledger of this question
+    * @param shipment this program, for workers of another that accept it
+    * @param tell on a thread of the node's own
+    * @return or why it cannot listen
     */
   def start(
       listen: Endpoint,

@@ -2,12 +2,12 @@ package skein.cluster
 
 import java.nio.ByteBuffer
 
-/** Looks over what a connection of Pekko's brings, which is four letters, a stream's number, and frames behind their
-  * lengths in four bytes each, the lowest first. Pekko 1.2.1 does not check a length: it reads a frame for ever whose length
-  * is below zero or close to 2³¹, and waits for all of one that is too long. Mutable; of one connection.
+/** Looks over what a connection of Pekko's brings, which is four letters, a stream's number, and frames
+  * behind their lengths in four bytes each, the lowest first. Pekko 1.2.1 does not check a length: it reads a
+  * frame for ever whose length is below zero or close to 2³¹, and waits for all of one that is too long.
+  * Mutable; of one connection.
   *
-  * @param most
-  *   bytes of a frame
+  * @param most bytes of a frame
   */
 private[cluster] final class FrameCheck(most: Int):
   private var skips  = FrameCheck.Header
@@ -16,8 +16,7 @@ private[cluster] final class FrameCheck(most: Int):
 
   /** Takes the next bytes, between the buffer's position and its limit, which stay where they are.
     *
-    * @return
-    *   a length that no frame has, if there is one
+    * @return a length that no frame has, if there is one
     */
   def refused(bytes: ByteBuffer): Option[Int] =
     var at    = bytes.position()

@@ -6,18 +6,15 @@ import skein.cluster.jars.Sha256
 
 /** What workers say. Any message may come late, twice or never.
   *
-  * `run` names a coordinator's life: what was said in an earlier one means nothing. `worker` names a process, and
-  * `number` a block of the run.
+  * `run` names a coordinator's life: what was said in an earlier one means nothing. `worker` names a process,
+  * and `number` a block of the run.
   */
 private[cluster] enum ToCoordinator:
   /** A worker has room for blocks. Said once a second at least.
     *
-    * @param run
-    *   0 before it is known
-    * @param build
-    *   see [[BuildId]]
-    * @param holding
-    *   the blocks that it has
+    * @param run 0 before it is known
+    * @param build see [[BuildId]]
+    * @param holding the blocks that it has
     */
   case Ask(
       worker: String,
@@ -36,7 +33,9 @@ private[cluster] enum ToCoordinator:
   /** This worker cannot answer the run's question, or does not run its program. */
   case Unable(run: Long, worker: String, reason: String)
 
-  /** A worker wants bytes of the program that it was offered: of its text or of one of its jars, from an offset on. */
+  /** A worker wants bytes of the program that it was offered: of its text or of one of its jars, from an
+    * offset on.
+    */
   case Fetch(worker: String, content: Sha256, offset: Long, replyTo: ActorRef[ToWorker])
 
 /** What the coordinator says. */

@@ -5,11 +5,11 @@ import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
 import skein.cluster.jars.Sha256
 
-/** Messages as bytes: a byte for the kind, then the fields in their order, big-endian; texts and byte strings behind
-  * their length, 4 bytes. No size that a peer states is believed before it is seen to be within its bound.
+/** Messages as bytes: a byte for the kind, then the fields in their order, big-endian; texts and byte strings
+  * behind their length, 4 bytes. No size that a peer states is believed before it is seen to be within its
+  * bound.
   *
-  * @param nameOf
-  *   an actor's address as text, and back
+  * @param nameOf an actor's address as text, and back
   */
 private[cluster] final class MessageCodec(
     nameOf: ActorRef[ToWorker] => String,

@@ -3,8 +3,8 @@ package skein.cluster
 import java.util.Locale
 import skein.blocks.WorkerRecord
 
-/** Where a coordinator's work stands, as Prometheus reads it: its text format, version 0.0.4. Rates are Prometheus' own
-  * to take, for example `rate(skein_worker_blocks_counted_total[1m])`.
+/** Where a coordinator's work stands, as Prometheus reads it: its text format, version 0.0.4. Rates are
+  * Prometheus' own to take, for example `rate(skein_worker_blocks_counted_total[1m])`.
   */
 private[cluster] object Metrics:
   val ContentType = "text/plain; version=0.0.4; charset=utf-8"
@@ -12,8 +12,7 @@ private[cluster] object Metrics:
   /** Workers that are listed, those that did most; the others are counted together. */
   private val MostWorkers = 1000
 
-  /** @param members
-    *   processes of the cluster, the coordinator's own among them
+  /** @param members processes of the cluster, the coordinator's own among them
     */
   def text(progress: ClusterProgress, members: Int): String =
     val state            = progress.coordinator

@@ -9,10 +9,8 @@ private[cluster] object NodeConfig:
   /** A message with its envelope. */
   private val MostFrame = MessageCodec.MostBytes + (64 << 10)
 
-  /** @param listen
-    *   port 0 for any that is free
-    * @param joins
-    *   whom it connects to
+  /** @param listen port 0 for any that is free
+    * @param joins whom it connects to
     */
   def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
     for _ <- (listen +: joins.toSeq).find(!_.isLoopback && tls.isEmpty).toLeft(()).left.map(beyond =>
@@ -26,8 +24,8 @@ private[cluster] object NodeConfig:
       .withFallback(ConfigFactory.parseString(common(listen)))
       .withFallback(ConfigFactory.load())
 
-  /** Without certificates, which only loopback gets: nothing is encrypted. The engine passes bytes on, and so can check the
-    * lengths of frames.
+  /** Without certificates, which only loopback gets: nothing is encrypted. The engine passes bytes on, and so
+    * can check the lengths of frames.
     */
   private val Plain = """
     pekko.remote.artery {

@@ -6,19 +6,17 @@ import java.nio.file.{Files, Path}
 import java.security.{GeneralSecurityException, KeyStore}
 import javax.net.ssl.{KeyManagerFactory, SSLContext, TrustManagerFactory}
 
-/** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are verified.
+/** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are
+  * verified.
   *
-  * @param keyStore
-  *   PKCS #12, with the node's key and certificate
-  * @param trustStore
-  *   PKCS #12, with the certificate of whoever signs
+  * @param keyStore PKCS #12, with the node's key and certificate
+  * @param trustStore PKCS #12, with the certificate of whoever signs
   */
 final case class Tls(keyStore: Path, trustStore: Path, password: String):
 
   /** For connections that are not Pekko's own: who shows what, and whom it trusts.
     *
-    * @return
-    *   or what is wrong with the files
+    * @return or what is wrong with the files
     */
   def context: Either[String, SSLContext] =
     def store(file: Path) = KeyStore.getInstance(file.toFile, password.toCharArray)
@@ -61,8 +59,7 @@ object Tls:
 
   /** Reads a folder with `node.p12`, `trust.p12` and `password`.
     *
-    * @return
-    *   or what is missing
+    * @return or what is missing
     */
   def of(folder: Path): Either[String, Tls] =
     val missing =

@@ -9,15 +9,12 @@ import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
 import skein.cluster.jars.{Acceptance, Sha256}
 
-/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the question before
-  * it is a member, and for blocks once it is: whoever is no member would not be missed.
+/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the
+  * question before it is a member, and for blocks once it is: whoever is no member would not be missed.
   *
-  * @param pool
-  *   of as many threads as cores
-  * @param tell
-  *   what it does, in lines for a person
-  * @param onEnd
-  *   why it ended
+  * @param pool of as many threads as cores
+  * @param tell what it does, in lines for a person
+  * @param onEnd why it ended
   */
 private[cluster] final class WorkerBehavior private (
     context: ActorContext[WorkerBehavior.Command],
@@ -143,10 +140,8 @@ private[cluster] final class WorkerBehavior private (
     Solved(of, number, answer, System.nanoTime() - begun)
 
 private[cluster] object WorkerBehavior:
-  /** @param build
-    *   see [[BuildId]]
-    * @param programs
-    *   that it runs in the place of its own
+  /** @param build see [[BuildId]]
+    * @param programs that it runs in the place of its own
     */
   final case class Self(
       name: String,

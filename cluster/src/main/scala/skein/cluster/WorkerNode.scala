@@ -26,12 +26,9 @@ import skein.cluster.jars.{Acceptance, Fetched, NotFetched, Sha256}
 
 /** A process that computes blocks.
   *
-  * @param patience
-  *   for how long it tries to reach a coordinator that it has not reached yet, or has lost
-  * @param programs
-  *   that it runs in the place of its own
-  * @param tell
-  *   what it does, in lines for a person
+  * @param patience for how long it tries to reach a coordinator that it has not reached yet, or has lost
+  * @param programs that it runs in the place of its own
+  * @param tell what it does, in lines for a person
   */
 final class WorkerNode(
     coordinator: Endpoint,
@@ -62,9 +59,8 @@ final class WorkerNode(
 
   /** Works until the coordinator has no more to do. Blocks the calling thread.
     *
-    * @return
-    *   the coordinator's program, where that is another, and is accepted: it is to work in the place of this one. Or why
-    *   it could not
+    * @return the coordinator's program, where that is another, and is accepted: it is to work in the place of
+    *   this one. Or why it could not
     */
   def run(): Either[String, Option[Fetched]] =
     NodeConfig.of(listen, tls, joins = Some(coordinator)).flatMap: config =>
@@ -169,7 +165,8 @@ final class WorkerNode(
       case ToWorker.Piece(`content`, `offset`, bytes) => bytes
 
 object WorkerNode:
-  /** Pieces of a program are asked for so often, each time for so long, until the coordinator counts as lost. */
+  /** Pieces of a program are asked for so often, each time for so long, until the coordinator counts as lost.
+    */
   private val Attempts     = 5
   private val AnswerWithin = 3.seconds
 

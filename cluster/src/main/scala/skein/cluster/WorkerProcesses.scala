@@ -8,19 +8,16 @@ import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
 import skein.cluster.jars.Fetched
 
-/** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from it, whose end
-  * it watches for ([[WorkerProcesses.endWithParent]]).
+/** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from
+  * it, whose end it watches for ([[WorkerProcesses.endWithParent]]).
   *
   * A process that dies is replaced, unless several have ended soon after their start and computed nothing.
   *
-  * @param command
-  *   of a worker
-  * @param log
-  *   of a worker by its number, from 1
-  * @param onEnd
-  *   told the name of a worker whose process has ended, on a thread of its own; tells whether it had computed anything
-  * @param onGivenUp
-  *   told, in a line, when no process is left and none is started again
+  * @param command of a worker
+  * @param log of a worker by its number, from 1
+  * @param onEnd told the name of a worker whose process has ended, on a thread of its own; tells whether it
+  *   had computed anything
+  * @param onGivenUp told, in a line, when no process is left and none is started again
   */
 final class WorkerProcesses(
     count: Int,
@@ -103,19 +100,18 @@ object WorkerProcesses:
     watching.setName("parent")
     watching.start()
 
-  /** A command that runs a program as this one runs: the same JVM, options and class path. An archive of classes
-    * that the JVM makes by itself is another, since workers need other classes: it is made by the first of them.
+  /** A command that runs a program as this one runs: the same JVM, options and class path. An archive of
+    * classes that the JVM makes by itself is another, since workers need other classes: it is made by the
+    * first of them.
     *
-    * @param program
-    *   the class with `main`
+    * @param program the class with `main`
     */
   def likeThis(program: String, words: Seq[String]): Seq[String] =
     command(ofWorkers, sys.props("java.class.path"), program, words)
 
   /** A command that runs a program that was fetched as this one runs, by classes of its own.
     *
-    * @param archives
-    *   folder for what the JVM keeps of them
+    * @param archives folder for what the JVM keeps of them
     */
   def fetched(program: Fetched, archives: Path, words: Seq[String]): Seq[String] =
     val archive                = archives.resolve(s"${program.digest}.jsa")

@@ -24,8 +24,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   /** Reverses, and counts how often it was asked.
     *
-    * @param before
-    *   called before each block
+    * @param before called before each block
     */
   private final class Reversing(before: () => Unit = () => ()) extends BlockSolverFactory:
     val solved                    = AtomicInteger()

@@ -6,7 +6,8 @@ import java.nio.ByteOrder.LITTLE_ENDIAN
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Random
 
-/** What a stranger sends, by seed: noise, other protocols, Pekko's own wire and TLS's with lengths that lie. */
+/** What a stranger sends, by seed: noise, other protocols, Pekko's own wire and TLS's with lengths that lie.
+  */
 private[cluster] object Garbage:
 
   /** Of the kind that the number says, in turns. */

@@ -4,14 +4,12 @@ import skein.signal.{ClockAlignment, Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleModel
 
-/** What is known of vehicles from their readings and from the commands sent to them. Immutable and pure: events go in as
-  * they come, in any order; estimates come out for any moment.
+/** What is known of vehicles from their readings and from the commands sent to them. Immutable and pure:
+  * events go in as they come, in any order; estimates come out for any moment.
   *
-  * @param models
-  *   one per vehicle: the vehicle's own where its commands are known, else [[skein.vehicle.ConstantVelocity]] or
-  *   [[skein.vehicle.ConstantTurn]]
-  * @param delays
-  *   absent before the first reading
+  * @param models one per vehicle: the vehicle's own where its commands are known, else
+  *   [[skein.vehicle.ConstantVelocity]] or [[skein.vehicle.ConstantTurn]]
+  * @param delays absent before the first reading
   */
 final case class Forecast private (
     models: Vector[VehicleModel[?]],
@@ -30,11 +28,11 @@ final case class Forecast private (
       updated(vehicle)(_.replaced(sequence, answeredAt))
     case ForecastEvent.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
 
-  /** Where the vehicles will be when a command acts that is sent now, under the commands that are on their way; absent
-    * until every vehicle was seen. A vehicle of which a newer reading is held than that moment is where it was read.
+  /** Where the vehicles will be when a command acts that is sent now, under the commands that are on their
+    * way; absent until every vehicle was seen. A vehicle of which a newer reading is held than that moment is
+    * where it was read.
     *
-    * @param now
-    *   on the controller's clock
+    * @param now on the controller's clock
     */
   def whenActing(now: Instant): Option[Vector[Estimate]] =
     told
@@ -46,8 +44,8 @@ final case class Forecast private (
           told = Some((now, estimates))
           estimates
 
-  /** What each vehicle flies through, from its newest reading on, until a command acts that is sent now; absent until
-    * every vehicle was seen. [[whenActing]] is where that leads.
+  /** What each vehicle flies through, from its newest reading on, until a command acts that is sent now;
+    * absent until every vehicle was seen. [[whenActing]] is where that leads.
     */
   def legsWhenActing(now: Instant): Option[Vector[Vector[Leg]]] =
     for delays <- delays if tracks.forall(_.isDefined)
@@ -93,8 +91,8 @@ enum ForecastEvent:
   /** A command was sent to a vehicle. */
   case Sent(vehicle: Int, command: Commanded)
 
-  /** The vehicle answered that a command was replaced, as AirSim does when the next one arrives: a receipt for that
-    * next one.
+  /** The vehicle answered that a command was replaced, as AirSim does when the next one arrives: a receipt
+    * for that next one.
     */
   case Replaced(vehicle: Int, sequence: Long, answeredAt: Instant)
 

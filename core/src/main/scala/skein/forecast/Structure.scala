@@ -3,15 +3,13 @@ package skein.forecast
 import skein.policy.{Axis, SearchSpace}
 import skein.vehicle.{ObservedPlant, ReducedModel}
 
-/** Plants of one form that differ in named parameters: what `skein identify` fits to flights, and what a model file names.
+/** Plants of one form that differ in named parameters: what `skein identify` fits to flights, and what a
+  * model file names.
   *
-  * @param label
-  *   as on the command line and in model files, for example `drag`
-  * @param space
-  *   the free parameters: names with their units, bounds, and as defaults the guesses from which a fit begins; a fit that
-  *   ends at a bound says so
-  * @param make
-  *   a plant of one value per axis; a pure function
+  * @param label as on the command line and in model files, for example `drag`
+  * @param space the free parameters: names with their units, bounds, and as defaults the guesses from which a
+  *   fit begins; a fit that ends at a bound says so
+  * @param make a plant of one value per axis; a pure function
   */
 final class Structure(val label: String, val space: SearchSpace, make: Vector[Double] => ObservedPlant[?]):
   for name <- label +: names do
@@ -32,8 +30,8 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
 
   override def toString: String = label
 
-/** Those of a [[skein.vehicle.ReducedModel]]: a parameter that is not free says that its effect is absent. The bounds are
-  * wider than any multirotor.
+/** Those of a [[skein.vehicle.ReducedModel]]: a parameter that is not free says that its effect is absent.
+  * The bounds are wider than any multirotor.
   */
 object Structure:
   private val gain     = Axis("gain", 0.05, 5, 0.9)

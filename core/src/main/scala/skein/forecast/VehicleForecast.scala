@@ -5,19 +5,14 @@ import skein.signal.{Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint, VehicleModel}
 
-/** What is known of one vehicle's past and of what is on its way to it. Instants are the controller's, except where
-  * they come from the simulator: `validAt` and everything named after it.
+/** What is known of one vehicle's past and of what is on its way to it. Instants are the controller's, except
+  * where they come from the simulator: `validAt` and everything named after it.
   *
-  * @param state
-  *   the model's, at the newest reading
-  * @param readings
-  *   the newest readings, the newest last
-  * @param resting
-  *   in effect before the first of all commands
-  * @param before
-  *   in effect before the first of `commands`; absent: `resting`
-  * @param commands
-  *   in the order of their sending: the one in effect at the newest reading, and all later ones
+  * @param state the model's, at the newest reading
+  * @param readings the newest readings, the newest last
+  * @param resting in effect before the first of all commands
+  * @param before in effect before the first of `commands`; absent: `resting`
+  * @param commands in the order of their sending: the one in effect at the newest reading, and all later ones
   */
 final case class VehicleForecast[S] private (
     model: VehicleModel[S],
@@ -29,8 +24,8 @@ final case class VehicleForecast[S] private (
 ):
   def newest: Stamped[Kinematics] = readings.last
 
-  /** Takes a reading: the model flies to it under the commands in effect, and is corrected by it. A reading that is not
-    * newer than the newest changes nothing.
+  /** Takes a reading: the model flies to it under the commands in effect, and is corrected by it. A reading
+    * that is not newer than the newest changes nothing.
     */
   def seen(reading: Stamped[Kinematics], delays: OneWayDelays): VehicleForecast[S] =
     if reading.validAt <= newest.validAt then this
@@ -44,8 +39,8 @@ final case class VehicleForecast[S] private (
         commands = needed
       )
 
-  /** Takes the first reading by a simulator that has started again with an earlier clock: where the vehicle is does not
-    * follow from where it was, and what was predicted before is never read.
+  /** Takes the first reading by a simulator that has started again with an earlier clock: where the vehicle
+    * is does not follow from where it was, and what was predicted before is never read.
     */
   def startedAgain(reading: Stamped[Kinematics]): VehicleForecast[S] =
     copy(state = model.start(reading.value), readings = Vector(reading))
@@ -61,8 +56,8 @@ final case class VehicleForecast[S] private (
           commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt)))
         )
 
-  /** A call failed: unless its command is known to have arrived, or the vehicle already flies under it, it is taken for
-    * lost.
+  /** A call failed: unless its command is known to have arrived, or the vehicle already flies under it, it is
+    * taken for lost.
     */
   def failed(sequence: Long): VehicleForecast[S] =
     copy(commands =
@@ -76,8 +71,8 @@ final case class VehicleForecast[S] private (
     val at = validAt.max(newest.validAt)
     Estimate(model.kinematics(advancedTo(at, delays, now)), at, newest.validAt)
 
-  /** Where the vehicle was at an instant on the simulator's clock, by the cubic through the two readings around it;
-    * absent where there are none, or none close enough together.
+  /** Where the vehicle was at an instant on the simulator's clock, by the cubic through the two readings
+    * around it; absent where there are none, or none close enough together.
     */
   def positionNedAt(validAt: Instant): Option[Vector3] =
     readings
@@ -88,8 +83,8 @@ final case class VehicleForecast[S] private (
       )
       .map(VehicleForecast.between(_, _, validAt))
 
-  /** What the vehicle flies through from the newest reading until an instant on the simulator's clock, by what is known
-    * now; up to the reading itself where that is not before it.
+  /** What the vehicle flies through from the newest reading until an instant on the simulator's clock, by
+    * what is known now; up to the reading itself where that is not before it.
     */
   def legsTo(validAt: Instant, delays: OneWayDelays, now: Instant): Vector[Leg] =
     val until  = validAt.max(newest.validAt)
@@ -116,7 +111,8 @@ final case class VehicleForecast[S] private (
       if part < left then flown(next, left - part) else next
     flown(from, span)
 
-  /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one sent earlier.
+  /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one
+    * sent earlier.
     */
   private def effects(delays: OneWayDelays, now: Instant): Vector[(Commanded, Instant)] =
     val acting = commands.filterNot(isPresumedLost(_, delays, now))
@@ -130,8 +126,8 @@ final case class VehicleForecast[S] private (
     if acting.isEmpty then Vector.empty
     else acting.zip(times.drop(1).scanLeft(times.head)(_.max(_)))
 
-  /** A command is taken for lost when its arrival should have been heard of long ago. The oldest held one never is: the
-    * vehicle flies under something.
+  /** A command is taken for lost when its arrival should have been heard of long ago. The oldest held one
+    * never is: the vehicle flies under something.
     */
   private def isPresumedLost(command: Commanded, delays: OneWayDelays, now: Instant): Boolean =
     command.answeredAt.isEmpty && command != commands.head &&
@@ -153,8 +149,8 @@ object VehicleForecast:
   /** On top of two round trips, before a command is presumed lost. */
   val Grace: Span = Span.ofMillis(500)
 
-  /** Between two readings, for a position between them to be interpolated: the cubic's error grows with its fourth
-    * power, to about 5 mm here.
+  /** Between two readings, for a position between them to be interpolated: the cubic's error grows with its
+    * fourth power, to about 5 mm here.
     */
   val MaxGap: Span = Span.ofMillis(300)
 
@@ -180,10 +176,8 @@ object VehicleForecast:
 
 /** Where a vehicle is taken to be.
   *
-  * @param predictedFor
-  *   the simulator's time at which this is expected to be true
-  * @param readAt
-  *   the simulator's time of the reading that it was carried forward from
+  * @param predictedFor the simulator's time at which this is expected to be true
+  * @param readAt the simulator's time of the reading that it was carried forward from
   */
 final case class Estimate(kinematics: Kinematics, predictedFor: Instant, readAt: Instant):
 

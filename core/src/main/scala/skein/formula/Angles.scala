@@ -3,24 +3,19 @@ package skein.formula
 import scala.collection.mutable
 import skein.formula.Op.*
 
-/** Rewrites an expression for machines that compute many worlds at once, where an arc tangent costs as much as twenty
-  * products: equal but for rounding, and cheaper.
+/** Rewrites an expression for machines that compute many worlds at once, where an arc tangent costs as much
+  * as twenty products: equal but for rounding, and cheaper.
   *
-  *   - The sine and cosine of an angle that is made of arc tangents, quarter turns and angles whose direction is known are
-  *     products of directions; of such an angle wrapped to one turn one arc tangent remains.
+  *   - The sine and cosine of an angle that is made of arc tangents, quarter turns and angles whose direction
+  *     is known are products of directions; of such an angle wrapped to one turn one arc tangent remains.
   *   - Of what a condition chooses between, that which both have alike is computed once.
   *   - What depends on parameters alone becomes a parameter ([[derived]]): it is computed once, in double.
   *
-  * @param source
-  *   of the old expression
-  * @param target
-  *   where the new expression goes
-  * @param leaf
-  *   what stands for an input
-  * @param direction
-  *   of an input that is an angle: cosine and sine
-  * @param parameter
-  *   what stands for a parameter of the new expression, by its number
+  * @param source of the old expression
+  * @param target where the new expression goes
+  * @param leaf what stands for an input
+  * @param direction of an input that is an angle: cosine and sine
+  * @param parameter what stands for a parameter of the new expression, by its number
   */
 final class Angles(
     source: Trace,

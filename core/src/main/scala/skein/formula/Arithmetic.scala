@@ -3,8 +3,8 @@ package skein.formula
 import java.lang.classfile.Opcode
 import skein.formula.Value.*
 
-/** What instructions compute of numbers, and the functions of formulas. A whole number or a truth that depends on what is
-  * observed is a double, or 1 and 0, as far as that goes; the rest is refused.
+/** What instructions compute of numbers, and the functions of formulas. A whole number or a truth that
+  * depends on what is observed is a double, or 1 and 0, as far as that goes; the rest is refused.
   */
 private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing):
   import Arithmetic.*
@@ -88,8 +88,7 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
 
   /** Whether a branch is taken that asks how two doubles compare.
     *
-    * @param ifUnordered
-    *   see [[Compared]]
+    * @param ifUnordered see [[Compared]]
     */
   def ofComparison(opcode: Opcode, a: Node, b: Node, ifUnordered: Int): Node =
     val high = ifUnordered > 0

@@ -9,8 +9,7 @@ import scala.jdk.OptionConverters.*
 
 /** A method's code, by the number of the instruction.
   *
-  * @param source
-  *   the file it was written in
+  * @param source the file it was written in
   */
 private[formula] final class MethodCode(
     val owner: String,
@@ -29,8 +28,8 @@ private[formula] final class MethodCode(
   def where(instruction: Int): String =
     s"${owner.replace('/', '.')}.$name ($source:${lines(instruction)})"
 
-  /** For each instruction the first that every way from it to the method's end goes through; the number of instructions
-    * for the end itself. Ways that end by throwing are left out.
+  /** For each instruction the first that every way from it to the method's end goes through; the number of
+    * instructions for the end itself. Ways that end by throwing are left out.
     */
   lazy val joins: Array[Int] =
     val end          = instructions.length
@@ -102,8 +101,7 @@ private[formula] final class ClassFiles(loader: ClassLoader):
 
   /** The method as an object of this class has it: its own, a superclass's, or an interface's.
     *
-    * @return
-    *   none where it has no code
+    * @return none where it has no code
     */
   def method(className: String, name: String, descriptor: String): Option[MethodCode] =
     methods.getOrElseUpdate((className, name, descriptor), inClasses(className, name, descriptor))

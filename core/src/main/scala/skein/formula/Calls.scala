@@ -7,11 +7,10 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Which code runs when a method is called while another is traced: methods are gone into, closures applied, and what
-  * the JDK and Scala do to numbers, boxes and arrays is done here.
+/** Which code runs when a method is called while another is traced: methods are gone into, closures applied,
+  * and what the JDK and Scala do to numbers, boxes and arrays is done here.
   *
-  * @param enter
-  *   runs a method
+  * @param enter runs a method
   */
 private[formula] final class Calls(
     files: ClassFiles,

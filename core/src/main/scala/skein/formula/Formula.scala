@@ -5,15 +5,12 @@ import scala.collection.mutable
 import scala.util.control.NonFatal
 import skein.formula.Value.*
 
-/** What an ordinary method computes, as data: numbers from [[inputs]] and [[parameters]] to [[outputs]]. A compiler is a
-  * function of it (`skein.simd.LaneCompiler`); one for another machine would be one more.
+/** What an ordinary method computes, as data: numbers from [[inputs]] and [[parameters]] to [[outputs]]. A
+  * compiler is a function of it (`skein.simd.LaneCompiler`); one for another machine would be one more.
   *
-  * @param inputs
-  *   names of the numbers that the arguments come to
-  * @param outputs
-  *   what the method answers, by name; an answer that is a single number is called `answer`
-  * @param parameters
-  *   where in the object the doubles are that the method reads of it
+  * @param inputs names of the numbers that the arguments come to
+  * @param outputs what the method answers, by name; an answer that is a single number is called `answer`
+  * @param parameters where in the object the doubles are that the method reads of it
   */
 final class Formula private (
     val trace: Trace,
@@ -47,16 +44,11 @@ object Formula:
 
   /** What an object's method computes.
     *
-    * @param method
-    *   by name
-    * @param sizes
-    *   of arguments that are arrays, by name
-    * @param arguments
-    *   the types of its arguments, where a class has several methods of the name
-    * @param known
-    *   arguments that are whole numbers, by name: which they are
-    * @return
-    *   or why it cannot be traced
+    * @param method by name
+    * @param sizes of arguments that are arrays, by name
+    * @param arguments the types of its arguments, where a class has several methods of the name
+    * @param known arguments that are whole numbers, by name: which they are
+    * @return or why it cannot be traced
     */
   def of(
       target: AnyRef,
@@ -235,7 +227,9 @@ private final class FormCheck(guards: Vector[Guard]):
     case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
     case number              => value == number
 
-/** Reads numbers inside of objects of one form; those of an array without an object for each, for networks have hundreds. */
+/** Reads numbers inside of objects of one form; those of an array without an object for each, for networks
+  * have hundreds.
+  */
 private final class NumberReader(paths: Vector[Path]):
   private val walk    = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
   private val indices = paths.map(indexOf).toArray

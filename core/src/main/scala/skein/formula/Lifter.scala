@@ -7,11 +7,13 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Runs a method's bytecode on numbers that are not known yet, and notes what it computes of them in a [[Trace]].
+/** Runs a method's bytecode on numbers that are not known yet, and notes what it computes of them in a
+  * [[Trace]].
   *
-  * Where a condition is not known both ways are gone to where they meet again, and what differs there becomes an
-  * [[Op.Where]]. What is known decides at once: loops over it are unrolled, methods called are gone into, objects and
-  * arrays made on the way exist here alone ([[Objects]]). What is not arithmetic is refused ([[Untraceable]]).
+  * Where a condition is not known both ways are gone to where they meet again, and what differs there becomes
+  * an [[Op.Where]]. What is known decides at once: loops over it are unrolled, methods called are gone into,
+  * objects and arrays made on the way exist here alone ([[Objects]]). What is not arithmetic is refused
+  * ([[Untraceable]]).
   */
 private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   import Lifter.*

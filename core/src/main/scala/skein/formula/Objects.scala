@@ -5,9 +5,9 @@ import scala.collection.mutable
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Objects and arrays while a method is traced. Those that it makes exist here alone; those that were there before are
-  * read, never changed. What is read of the object whose method it is becomes a parameter if it is a double, and else
-  * something that another object must have alike ([[guards]]) to share the trace.
+/** Objects and arrays while a method is traced. Those that it makes exist here alone; those that were there
+  * before are read, never changed. What is read of the object whose method it is becomes a parameter if it is
+  * a double, and else something that another object must have alike ([[guards]]) to share the trace.
   */
 private[formula] final class Objects(
     files: ClassFiles,

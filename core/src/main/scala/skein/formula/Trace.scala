@@ -5,10 +5,8 @@ import skein.formula.Op.*
 
 /** One number, or one condition, of an expression.
   *
-  * @param value
-  *   of a [[Op.Const]]
-  * @param index
-  *   of an [[Op.Input]] or [[Op.Param]]
+  * @param value of a [[Op.Const]]
+  * @param index of an [[Op.Input]] or [[Op.Param]]
   */
 final class Node private[formula] (
     val id: Int,
@@ -27,12 +25,11 @@ final class Node private[formula] (
     case Always => "true"
     case _      => args.mkString(s"$op(", ", ", ")")
 
-/** Expressions as a graph in which equal ones are one node, so that nothing is computed twice. What is known already is
-  * computed at once, to the bit as it would be later; nothing is rearranged. A node's arguments have smaller numbers than
-  * itself. Not for several threads.
+/** Expressions as a graph in which equal ones are one node, so that nothing is computed twice. What is known
+  * already is computed at once, to the bit as it would be later; nothing is rearranged. A node's arguments
+  * have smaller numbers than itself. Not for several threads.
   *
-  * @param most
-  *   nodes; more are refused
+  * @param most nodes; more are refused
   */
 final class Trace(most: Int = 200_000):
   private val known = mutable.HashMap.empty[Trace.Key, Node]
@@ -176,8 +173,8 @@ object Trace:
           if seen.add(next.id) then walk.push((next, 0))
     order.result()
 
-  /** Of what a node needs, that at every 256th level, the lowest first. A recursion that remembers what it has done and
-    * goes to these first stays within a thread's stack.
+  /** Of what a node needs, that at every 256th level, the lowest first. A recursion that remembers what it
+    * has done and goes to these first stays within a thread's stack.
     */
   def landings(of: Node): Vector[Node] =
     val level = mutable.HashMap.empty[Int, Int]

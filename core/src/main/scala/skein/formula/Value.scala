@@ -17,15 +17,13 @@ private[formula] object Value:
 
   /** What `dcmpg` and `dcmpl` leave.
     *
-    * @param ifUnordered
-    *   what a NaN counts as, 1 or −1
+    * @param ifUnordered what a NaN counts as, 1 or −1
     */
   final case class Compared(a: Node, b: Node, ifUnordered: Int) extends Value
 
   /** An object that was there before.
     *
-    * @param path
-    *   from the object whose method is traced; none for what every object shares
+    * @param path from the object whose method is traced; none for what every object shares
     */
   final case class Known(what: AnyRef, path: Option[Path]) extends Value
 

@@ -2,21 +2,15 @@ package skein.fusion
 
 import skein.units.*
 
-/** The estimate of a vehicle at a moment: position and velocity in NED, jointly normal. A Kalman filter's state for
-  * constant velocity with white noise as acceleration.
+/** The estimate of a vehicle at a moment: position and velocity in NED, jointly normal. A Kalman filter's
+  * state for constant velocity with white noise as acceleration.
   *
-  * @param at
-  *   on the clock of the measurements
-  * @param positionNed
-  *   mean, m
-  * @param velocityNed
-  *   mean, m/s
-  * @param position
-  *   covariance of the position, m²
-  * @param cross
-  *   of position (rows) and velocity, m²/s
-  * @param velocity
-  *   of the velocity, m²/s²
+  * @param at on the clock of the measurements
+  * @param positionNed mean, m
+  * @param velocityNed mean, m/s
+  * @param position covariance of the position, m²
+  * @param cross of position (rows) and velocity, m²/s
+  * @param velocity of the velocity, m²/s²
   */
 final case class Belief(
     at: Instant,
@@ -29,9 +23,9 @@ final case class Belief(
 
   /** Predicted for a later moment.
     *
-    * @param acceleration
-    *   spectral density of the unknown acceleration along each axis, m²/s³. The noise it adds over Δt is Δt³/3, Δt²/2 and
-    *   Δt times it: Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation (2001), 6.2.2
+    * @param acceleration spectral density of the unknown acceleration along each axis, m²/s³. The noise it
+    *   adds over Δt is Δt³/3, Δt²/2 and Δt times it: Bar-Shalom, Li and Kirubarajan, Estimation with
+    *   Applications to Tracking and Navigation (2001), 6.2.2
     */
   def carriedTo(later: Instant, acceleration: Double): Belief =
     carriedBy(later.since(at).toSeconds, acceleration).copy(at = later)
@@ -82,8 +76,7 @@ final case class Belief(
 object Belief:
   /** From the very first measurement, of a vehicle that may fly as fast as that.
     *
-    * @param speedMps
-    *   standard deviation of the velocity along each axis
+    * @param speedMps standard deviation of the velocity along each axis
     */
   private[fusion] def first(
       at: Instant,

@@ -4,15 +4,11 @@ import skein.units.*
 
 /** Settings of the filter for one vehicle.
   *
-  * @param acceleration
-  *   process noise: spectral density of the vehicle's acceleration, m²/s³. A vehicle that accelerates with a (m/s²) for
-  *   about τ (s) at a time has about a²τ
-  * @param topSpeed
-  *   standard deviation of the velocity before it was measured
-  * @param history
-  *   how much older than the newest one a measurement may be
-  * @param mostMeasurements
-  *   that are kept at most
+  * @param acceleration process noise: spectral density of the vehicle's acceleration, m²/s³. A vehicle that
+  *   accelerates with a (m/s²) for about τ (s) at a time has about a²τ
+  * @param topSpeed standard deviation of the velocity before it was measured
+  * @param history how much older than the newest one a measurement may be
+  * @param mostMeasurements that are kept at most
   */
 final case class FusionSettings(
     acceleration: Double = 10,
@@ -25,9 +21,9 @@ final case class FusionSettings(
     s"fusion needs settings above zero: $this"
   )
 
-/** Estimates one vehicle's state from measurements in any order. Each enters at its valid time, and all later ones are
-  * processed again after it. So the estimate is that of a filter that got all of them in order. Of equally old ones, the one
-  * that arrived first is processed first.
+/** Estimates one vehicle's state from measurements in any order. Each enters at its valid time, and all later
+  * ones are processed again after it. So the estimate is that of a filter that got all of them in order. Of
+  * equally old ones, the one that arrived first is processed first.
   *
   * Immutable. An update costs one step of the filter for each measurement that is newer.
   */

@@ -2,8 +2,8 @@ package skein.fusion
 
 import skein.units.Vector3
 
-/** A 3×3 matrix, row by row; a covariance where it is symmetric and positive. Of positions in m², of velocities in
-  * m²/s².
+/** A 3×3 matrix, row by row; a covariance where it is symmetric and positive. Of positions in m², of
+  * velocities in m²/s².
   */
 final case class Matrix3(
     xx: Double,

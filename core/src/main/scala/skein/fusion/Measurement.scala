@@ -2,17 +2,13 @@ package skein.fusion
 
 import skein.units.*
 
-/** Where a vehicle was at a moment, as something measured it: a reading of its own, or a detection by somebody's camera
-  * or LIDAR.
+/** Where a vehicle was at a moment, as something measured it: a reading of its own, or a detection by
+  * somebody's camera or LIDAR.
   *
-  * @param validAt
-  *   when it was so: physics sampled, the image exposed; all of one vehicle on one clock
-  * @param positionNed
-  *   m
-  * @param covariance
-  *   of the position, NED, m²
-  * @param velocity
-  *   if it was measured too: NED, m/s, with its covariance, m²/s²
+  * @param validAt when it was so: physics sampled, the image exposed; all of one vehicle on one clock
+  * @param positionNed m
+  * @param covariance of the position, NED, m²
+  * @param velocity if it was measured too: NED, m/s, with its covariance, m²/s²
   */
 final case class Measurement(
     validAt: Instant,
@@ -27,14 +23,10 @@ final case class Measurement(
 
 /** What a camera or a LIDAR tells of something it found, in its own frame (front, right, down).
   *
-  * @param azimuth
-  *   to the right of straight ahead
-  * @param elevation
-  *   above straight ahead
-  * @param range
-  *   along the line of sight
-  * @param deviation
-  *   standard deviations of the three, independent of one another
+  * @param azimuth to the right of straight ahead
+  * @param elevation above straight ahead
+  * @param range along the line of sight
+  * @param deviation standard deviations of the three, independent of one another
   */
 final case class PolarMeasurement(
     azimuth: Radians,
@@ -43,14 +35,12 @@ final case class PolarMeasurement(
     deviation: (azimuth: Radians, elevation: Radians, range: Metres)
 ):
 
-  /** Where it was, given where its observer was at the exposure. To first order about what was measured ("converted
-    * measurement"), which is good to where range · angle² is small beside the range's own deviation: Lerro and
-    * Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29 (1993), 1015.
+  /** Where it was, given where its observer was at the exposure. To first order about what was measured
+    * ("converted measurement"), which is good to where range · angle² is small beside the range's own
+    * deviation: Lerro and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29 (1993), 1015.
     *
-    * @param positionNed
-    *   of the sensor, m
-    * @param orientation
-    *   from the sensor's frame to world NED
+    * @param positionNed of the sensor, m
+    * @param orientation from the sensor's frame to world NED
     */
   def seenFrom(validAt: Instant, positionNed: Vector3, orientation: Quaternion): Measurement =
     val (place, covariance) = placedFrom(positionNed, orientation)

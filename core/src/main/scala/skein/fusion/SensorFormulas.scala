@@ -4,15 +4,14 @@ import skein.fusion.SensorFormulas.*
 import skein.policy.CameraPursuer
 import skein.units.{Instant, Vector3}
 
-/** What [[SensorModel]], the filter behind it and [[skein.policy.CameraPursuer]] compute, of numbers alone: formulas, for
-  * compilers. Times are in seconds since the flight's start.
+/** What [[SensorModel]], the filter behind it and [[skein.policy.CameraPursuer]] compute, of numbers alone:
+  * formulas, for compilers. Times are in seconds since the flight's start.
   */
 private[skein] final case class SensorFormulas(model: SensorModel):
 
   /** What comes of an image of an opponent that is found if it is in view.
     *
-    * @param bearing
-    *   and `range`: see [[SensorModel.seen]]
+    * @param bearing and `range`: see [[SensorModel.seen]]
     */
   def detected(
       axisRad: Double,
@@ -59,10 +58,8 @@ private[skein] final case class SensorFormulas(model: SensorModel):
 
   /** What a decision is made upon, and where the camera looks from then on.
     *
-    * @param startNed
-    *   of the opponent
-    * @param aheadS
-    *   until what is decided acts, where the own place is that of then; else −1
+    * @param startNed of the opponent
+    * @param aheadS until what is decided acts, where the own place is that of then; else −1
     */
   def decidedUpon(
       known: Believed,
@@ -89,15 +86,13 @@ private[skein] final case class SensorFormulas(model: SensorModel):
     )
 
 private[skein] object SensorFormulas:
-  /** @param isFound
-    *   1 or 0
+  /** @param isFound 1 or 0
     */
   final case class Detected(isFound: Double, positionNed: Vector3, covariance: Matrix3)
 
   /** A [[Belief]], if there is one.
     *
-    * @param isKnown
-    *   1 or 0
+    * @param isKnown 1 or 0
     */
   final case class Believed(
       isKnown: Double,
@@ -109,8 +104,8 @@ private[skein] object SensorFormulas:
       velocity: Matrix3
   )
 
-  /** The way to the opponent, m, its velocity, m/s, the direction of that, how old what is known is, s, and the direction
-    * in which it is.
+  /** The way to the opponent, m, its velocity, m/s, the direction of that, how old what is known is, s, and
+    * the direction in which it is.
     */
   final case class DecidedUpon(
       northM: Double,

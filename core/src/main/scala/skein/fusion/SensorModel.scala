@@ -3,32 +3,22 @@ package skein.fusion
 import skein.signal.{LatencyDistribution, NormalQuantile}
 import skein.units.*
 
-/** What a vehicle knows that sees its opponent by a camera alone, as formulas of where both are: whether an image shows the
-  * opponent and it is found, where it is seen, and when that is known. `skein.identify` fits it to flights.
-  * Images are taken, sent and recognised as `skein.flow.Frames` and `Recognise` do it; detections enter a
-  * [[Fusion]]. The camera looks to where the opponent was believed at the last decision, as
-  * `skein.policy.CameraPursuer` turns it; that the vehicle turns and tilts takes no time here.
+/** What a vehicle knows that sees its opponent by a camera alone, as formulas of where both are: whether an
+  * image shows the opponent and it is found, where it is seen, and when that is known. `skein.identify` fits
+  * it to flights. Images are taken, sent and recognised as `skein.flow.Frames` and `Recognise` do it;
+  * detections enter a [[Fusion]]. The camera looks to where the opponent was believed at the last decision,
+  * as `skein.policy.CameraPursuer` turns it; that the vehicle turns and tilts takes no time here.
   *
-  * @param everyS
-  *   between images
-  * @param fovRad
-  *   horizontal
-  * @param farthestM
-  *   beyond, nothing is found
-  * @param detection
-  *   probability that what is in view is found
-  * @param bearingSdRad
-  *   standard deviation of the bearing
-  * @param rangeBias
-  *   mean of the measured over the true range
-  * @param rangeSd
-  *   standard deviation of the measured range, as a share of it
-  * @param takes
-  *   how long recognition takes
-  * @param workers
-  *   images that are recognised at the same time
-  * @param deadlineS
-  *   of each; what takes longer is not used
+  * @param everyS between images
+  * @param fovRad horizontal
+  * @param farthestM beyond, nothing is found
+  * @param detection probability that what is in view is found
+  * @param bearingSdRad standard deviation of the bearing
+  * @param rangeBias mean of the measured over the true range
+  * @param rangeSd standard deviation of the measured range, as a share of it
+  * @param takes how long recognition takes
+  * @param workers images that are recognised at the same time
+  * @param deadlineS of each; what takes longer is not used
   */
 final case class SensorModel(
     everyS: Double,
@@ -65,8 +55,7 @@ final case class SensorModel(
 
   /** Where an opponent in view is measured, NED, and the covariance of that, m².
     *
-    * @param bearing
-    *   and `range`: two numbers drawn from the standard normal distribution
+    * @param bearing and `range`: two numbers drawn from the standard normal distribution
     */
   private[fusion] def seen(
       axisRad: Double,
@@ -94,12 +83,9 @@ final case class SensorModel(
 
 /** An image as it is taken, and what chance adds to it.
   *
-  * @param axisRad
-  *   where the camera looks, from north to the east
-  * @param ownNed
-  *   and the opponent's place, m
-  * @param found
-  *   and `bearing`, `range`: three numbers evenly drawn from 0 to 1
+  * @param axisRad where the camera looks, from north to the east
+  * @param ownNed and the opponent's place, m
+  * @param found and `bearing`, `range`: three numbers evenly drawn from 0 to 1
   */
 final case class Exposure(
     axisRad: Double,

@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.*
 
-/** What a vehicle is to do. World frame NED, metres, m/s, radians from north towards east. An action lasts until the next
-  * one, or for the time that it was sent for; then the vehicle holds its position.
+/** What a vehicle is to do. World frame NED, metres, m/s, radians from north towards east. An action lasts
+  * until the next one, or for the time that it was sent for; then the vehicle holds its position.
   */
 enum Action:
   /** Flies with this velocity. */
@@ -11,8 +11,7 @@ enum Action:
 
   /** Flies with this horizontal velocity and holds an altitude.
     *
-    * @param down
-    *   negative above the origin
+    * @param down negative above the origin
     */
   case VelocityAt(northMps: Double, eastMps: Double, down: Metres, yaw: Yaw = Yaw.Still)
 
@@ -24,8 +23,7 @@ enum Action:
 
   /** Keeps roll, pitch and yaw.
     *
-    * @param thrust
-    *   share of the most, 0 to 1
+    * @param thrust share of the most, 0 to 1
     */
   case Attitude(roll: Radians, pitch: Radians, yaw: Radians, thrust: Double)
 

@@ -2,17 +2,18 @@ package skein.policy
 
 import skein.units.*
 
-/** How a vehicle decides: a pure function from observation and memory to action and next memory. It integrates over
-  * measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as often must not act twice as
-  * strongly. It keeps nothing else between decisions, so that a replay can repeat them from the recording alone.
+/** How a vehicle decides: a pure function from observation and memory to action and next memory. It
+  * integrates over measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as
+  * often must not act twice as strongly. It keeps nothing else between decisions, so that a replay can repeat
+  * them from the recording alone.
   */
 trait AgentPolicy:
 
   /** What is kept from one decision to the next. Immutable. */
   type Memory
 
-  /** Names of its vehicle's sensors that are to be read; see [[skein.port.VehiclePort.sensors]]. Their last readings are in
-    * [[Observation.sensed]].
+  /** Names of its vehicle's sensors that are to be read; see [[skein.port.VehiclePort.sensors]]. Their last
+    * readings are in [[Observation.sensed]].
     */
   def sensors: Set[String] = Set.empty
 
@@ -31,7 +32,9 @@ trait AgentPolicy:
   /** The action now, and the next memory. */
   def choose(seen: Observation, memory: Memory): (Action, Memory)
 
-/** A policy that steers in the plane, at the altitude of its vehicle's start: a convenience on top of [[AgentPolicy]]. */
+/** A policy that steers in the plane, at the altitude of its vehicle's start: a convenience on top of
+  * [[AgentPolicy]].
+  */
 trait PlanarPolicy extends AgentPolicy:
 
   final override def isPlanar: Boolean = true
@@ -45,9 +48,7 @@ trait PlanarPolicy extends AgentPolicy:
 
 /** A horizontal velocity to command.
   *
-  * @param heading
-  *   any number of turns
-  * @param speed
-  *   absent: the vehicle's own
+  * @param heading any number of turns
+  * @param speed absent: the vehicle's own
   */
 final case class Planar(heading: Radians, speed: Option[MetresPerSecond])

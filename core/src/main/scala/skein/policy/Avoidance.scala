@@ -2,25 +2,21 @@ package skein.policy
 
 import skein.policy.Avoidance.*
 
-/** Flies to a goal and keeps clear of all others by optimal reciprocal collision avoidance, ORCA: of the velocities that
-  * keep every pair apart for a time if each of the two does its half, the one nearest to that wanted (van den Berg, Guy,
-  * Lin, Manocha: ''Reciprocal n-Body Collision Avoidance'', Robotics Research, STAR 70, 2011). Where there is none, the
-  * one that violates the worst of the bounds least, as there. Both are linear programmes of a fixed size ([[HalfPlanes]]),
-  * so that the rule is a formula: every other vehicle is in them, those out of reach with a bound that always holds.
+/** Flies to a goal and keeps clear of all others by optimal reciprocal collision avoidance, ORCA: of the
+  * velocities that keep every pair apart for a time if each of the two does its half, the one nearest to that
+  * wanted (van den Berg, Guy, Lin, Manocha: ''Reciprocal n-Body Collision Avoidance'', Robotics Research,
+  * STAR 70, 2011). Where there is none, the one that violates the worst of the bounds least, as there. Both
+  * are linear programmes of a fixed size ([[HalfPlanes]]), so that the rule is a formula: every other vehicle
+  * is in them, those out of reach with a bound that always holds.
   *
-  * The rule takes vehicles for discs that have the commanded velocity at once; a multirotor lags behind, so the discs
-  * are wider than the separation to be kept.
+  * The rule takes vehicles for discs that have the commanded velocity at once; a multirotor lags behind, so
+  * the discs are wider than the separation to be kept.
   *
-  * @param goalNorthM
-  *   where it wants to be; nearer than `cruiseMps / arrivePerS` it slows down in proportion
-  * @param minimumM
-  *   the separation that is set
-  * @param marginM
-  *   on top of it: the two discs' radii together are the sum
-  * @param horizonS
-  *   for how long no two shall meet
-  * @param mostMps
-  *   the fastest that is commanded
+  * @param goalNorthM where it wants to be; nearer than `cruiseMps / arrivePerS` it slows down in proportion
+  * @param minimumM the separation that is set
+  * @param marginM on top of it: the two discs' radii together are the sum
+  * @param horizonS for how long no two shall meet
+  * @param mostMps the fastest that is commanded
   */
 final case class Avoidance(
     goalNorthM: Double,
@@ -69,8 +65,9 @@ final case class Avoidance(
       else bounds.put(i, 0, 0, HalfPlanes.Always)
     bounds
 
-  /** The half plane of velocities that is this vehicle's half of keeping clear of another one: the smallest change u of
-    * the relative velocity that leaves the cone of those which lead to a meeting within the horizon, half of it taken on.
+  /** The half plane of velocities that is this vehicle's half of keeping clear of another one: the smallest
+    * change u of the relative velocity that leaves the cone of those which lead to a meeting within the
+    * horizon, half of it taken on.
     */
   private def bound(northM: Double, eastM: Double, own: Velocity, its: Velocity): Bound =
     val relative = own - its

@@ -2,14 +2,13 @@ package skein.policy
 
 import skein.units.*
 
-/** Pursues as another policy does, turns its camera to where the opponent is, and, with a sensor, knows of it by that
-  * alone: what [[skein.scenario.Eye]] believes. Where the own place is predicted, the belief is carried to the same moment,
-  * evenly; else it is used as it was exposed. Before anything was seen, the opponent is taken to be where it started.
+/** Pursues as another policy does, turns its camera to where the opponent is, and, with a sensor, knows of it
+  * by that alone: what [[skein.scenario.Eye]] believes. Where the own place is predicted, the belief is
+  * carried to the same moment, evenly; else it is used as it was exposed. Before anything was seen, the
+  * opponent is taken to be where it started.
   *
-  * @param steers
-  *   by what is believed in the place of readings
-  * @param sensor
-  *   absent for one that is told where its opponent is
+  * @param steers by what is believed in the place of readings
+  * @param sensor absent for one that is told where its opponent is
   */
 final case class CameraPursuer(steers: Policy, sensor: Option[String], opponentStartNed: Vector3)
     extends AgentPolicy:
@@ -65,8 +64,8 @@ object CameraPursuer:
 
   /** Where a policy takes something to be that was believed to be there, m, with this velocity, m/s.
     *
-    * @param aheadS
-    *   since the belief, until what is decided now acts; absent where the own place is not predicted either
+    * @param aheadS since the belief, until what is decided now acts; absent where the own place is not
+    *   predicted either
     */
   private[skein] def carried(placeNed: Vector3, velocityNed: Vector3, aheadS: Option[Double]): Vector3 =
     placeNed + velocityNed * aheadS.fold(0.0)(carriedS)

@@ -1,27 +1,27 @@
 package skein.policy
 
-/** The evader of Isaacs' homicidal chauffeur, who turns freely and is slower than a pursuer of bounded turn rate. With the
-  * evader at (x, y) in the pursuer's frame, y mirrored to the positive side, R the pursuer's turning radius and γ the
-  * evader's over the pursuer's speed:
+/** The evader of Isaacs' homicidal chauffeur, who turns freely and is slower than a pursuer of bounded turn
+  * rate. With the evader at (x, y) in the pursuer's frame, y mirrored to the positive side, R the pursuer's
+  * turning radius and γ the evader's over the pursuer's speed:
   *
-  *   - Ahead and nearer than the dodging distance, it breaks away at a right angle to the pursuer's heading and keeps that
-  *     course while the pursuer turns after it, until the angle between them is arccos γ. This is the barrier's course that
-  *     begins straight ahead of the pursuer: it begins γ·R ahead, the pursuer turns by arcsin γ meanwhile, and the evader
-  *     slips by at R·(√(1 − γ²) + γ·arcsin γ − 1), the least capture radius that captures from everywhere.
-  *   - Else, inside the turning circle on its side, x² + (y − R)² < R², it heads for the circle's centre: there a pursuer
-  *     that turns as hard as it can stays R away, and must first fly off (the swerve).
-  *   - Elsewhere it runs along the line on which the chase will end: the tangent of the turning circle through its place,
-  *     away from the circle. A pursuer who turns as hard as it can and then dashes comes onto that line, whose direction
-  *     stays the same meanwhile.
+  *   - Ahead and nearer than the dodging distance, it breaks away at a right angle to the pursuer's heading
+  *     and keeps that course while the pursuer turns after it, until the angle between them is arccos γ. This
+  *     is the barrier's course that begins straight ahead of the pursuer: it begins γ·R ahead, the pursuer
+  *     turns by arcsin γ meanwhile, and the evader slips by at R·(√(1 − γ²) + γ·arcsin γ − 1), the least
+  *     capture radius that captures from everywhere.
+  *   - Else, inside the turning circle on its side, x² + (y − R)² < R², it heads for the circle's centre:
+  *     there a pursuer that turns as hard as it can stays R away, and must first fly off (the swerve).
+  *   - Elsewhere it runs along the line on which the chase will end: the tangent of the turning circle
+  *     through its place, away from the circle. A pursuer who turns as hard as it can and then dashes comes
+  *     onto that line, whose direction stays the same meanwhile.
   *
-  * Exactly ahead or behind it takes the right side. Source of the game, its barrier and its turn and dash: Isaacs,
-  * Differential Games (1965); the swerve is his, made a strategy here. `GuidanceSuite` holds the first and the last rule to
-  * what is said of them.
+  * Exactly ahead or behind it takes the right side. Source of the game, its barrier and its turn and dash:
+  * Isaacs, Differential Games (1965); the swerve is his, made a strategy here. `GuidanceSuite` holds the
+  * first and the last rule to what is said of them.
   *
-  * @param speedRatio
-  *   γ, in 0 to 1
-  * @param dodgeM
-  *   the dodging distance; 0 never dodges. γ·R = 4 m is the ideal game's; vehicles with a lag need more.
+  * @param speedRatio γ, in 0 to 1
+  * @param dodgeM the dodging distance; 0 never dodges. γ·R = 4 m is the ideal game's; vehicles with a lag
+  *   need more.
   */
 final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Double = 0.5, dodgeM: Double = 4.0)
     extends Policy:
@@ -60,8 +60,7 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
 
   /** From the pursuer's heading to the evader's side.
     *
-    * @param toCentre
-    *   how far the turning circle's centre lies further to the side than the evader
+    * @param toCentre how far the turning circle's centre lies further to the side than the evader
     */
   private def turn(x: Double, toCentre: Double): Double =
     val square = x * x + toCentre * toCentre - turningRadiusM * turningRadiusM

@@ -2,8 +2,7 @@ package skein.policy
 
 /** A network of one output, evaluated as an ordinary loop over arrays, which lanes compile.
   *
-  * @param parameters
-  *   as [[NeuralShape]] lays them out
+  * @param parameters as [[NeuralShape]] lays them out
   */
 private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[Double]):
   require(
@@ -19,8 +18,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
   /** Room for inputs and for what a layer gives. */
   def scratch: Array[Double] = Array.ofDim[Double](widest)
 
-  /** @param inputs
-    *   in [[scratch]], which is overwritten
+  /** @param inputs in [[scratch]], which is overwritten
     */
   def output(inputs: Array[Double]): Double =
     var input  = inputs

@@ -3,22 +3,18 @@ package skein.policy
 import skein.units.*
 import skein.vehicle.FirstOrderLag
 
-/** Flies along a lane past whatever a lidar sees: the dynamic window approach (Fox, Burgard, Thrun: The Dynamic Window
-  * Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4 (1997), 23). Headings and speeds that could be
-  * commanded are each flown forward past the points of the newest scan, by a model in which the velocity follows the
-  * command with a lag, and the one is taken that leads along the lane and keeps clear. Points stay where they were in the
-  * world; nothing is remembered of earlier scans. Without a scan, or upon one too old, the vehicle stands still.
+/** Flies along a lane past whatever a lidar sees: the dynamic window approach (Fox, Burgard, Thrun: The
+  * Dynamic Window Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4 (1997), 23).
+  * Headings and speeds that could be commanded are each flown forward past the points of the newest scan, by
+  * a model in which the velocity follows the command with a lag, and the one is taken that leads along the
+  * lane and keeps clear. Points stay where they were in the world; nothing is remembered of earlier scans.
+  * Without a scan, or upon one too old, the vehicle stands still.
   *
-  * @param sensor
-  *   the lidar, as [[skein.scenario.Equipment.Lidar]] tells what it says
-  * @param laneNorthM
-  *   a place on the lane
-  * @param keepM
-  *   from the vehicle's body, if there is room
-  * @param bodyM
-  *   from its middle to its farthest corner
-  * @param lagS
-  *   of the velocity behind the command
+  * @param sensor the lidar, as [[skein.scenario.Equipment.Lidar]] tells what it says
+  * @param laneNorthM a place on the lane
+  * @param keepM from the vehicle's body, if there is room
+  * @param bodyM from its middle to its farthest corner
+  * @param lagS of the velocity behind the command
   */
 final case class DynamicWindow(
     sensor: String,
@@ -74,7 +70,9 @@ final case class DynamicWindow(
         chosen = Planar(Radians(headingRad), Some(MetresPerSecond(speed)))
     chosen
 
-  /** How clear of all points a command keeps the body, m; after how many instants it touches one; and where it leads. */
+  /** How clear of all points a command keeps the body, m; after how many instants it touches one; and where
+    * it leads.
+    */
   private def flown(
       points: Array[Double],
       position: Vector3,

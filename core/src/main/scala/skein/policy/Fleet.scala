@@ -5,18 +5,13 @@ import skein.vehicle.VehicleKind
 
 /** One vehicle and its policy.
   *
-  * @param name
-  *   the simulator's name of the vehicle; in AirSim, that of `settings.json`
-  * @param speed
-  *   commanded where the policy does not choose one
-  * @param startPositionNed
-  *   m, in the world frame; it also holds this altitude. A car's is 0
-  * @param startHeading
-  *   taken as the last commanded heading before the first decision
-  * @param policy
-  *   a [[Policy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other in three dimensions
-  * @param kind
-  *   of vehicle; a car is steered in the plane, or told to stand still
+  * @param name the simulator's name of the vehicle; in AirSim, that of `settings.json`
+  * @param speed commanded where the policy does not choose one
+  * @param startPositionNed m, in the world frame; it also holds this altitude. A car's is 0
+  * @param startHeading taken as the last commanded heading before the first decision
+  * @param policy a [[Policy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other
+  *   in three dimensions
+  * @param kind of vehicle; a car is steered in the plane, or told to stand still
   */
 final case class Agent(
     name: String,
@@ -29,8 +24,7 @@ final case class Agent(
 ):
   /** The velocity to command for a heading, m/s, horizontal, world NED.
     *
-    * @param chosen
-    *   the speed, where the policy chose one
+    * @param chosen the speed, where the policy chose one
     */
   def velocityNed(headingRad: Double, chosen: Option[MetresPerSecond] = None): Vector3 =
     val commanded = chosen.getOrElse(speed).value
@@ -42,8 +36,8 @@ final case class Agent(
     case _               =>
       throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
 
-/** Who flies: what a loop and forward simulation need of a scenario. Every agent has an opponent: the nearest one of
-  * another role, or, where all have the same role, the nearest; one that flies alone has itself.
+/** Who flies: what a loop and forward simulation need of a scenario. Every agent has an opponent: the nearest
+  * one of another role, or, where all have the same role, the nearest; one that flies alone has itself.
   */
 final case class Fleet(agents: Vector[Agent]):
   private val opponents = agents.indices.toVector.map: self =>
@@ -67,8 +61,7 @@ final case class Fleet(agents: Vector[Agent]):
 
   /** Index of the agent that agent `self` plays against: the nearest of its opponents, the first of equals.
     *
-    * @param positionNed
-    *   position of an agent by its index
+    * @param positionNed position of an agent by its index
     */
   def opponentOf(self: Int, positionNed: Int => Vector3): Int =
     assignment.opponentOf(self, other => positionNed(self).horizontalDistance(positionNed(other)))

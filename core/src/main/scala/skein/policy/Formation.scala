@@ -1,10 +1,9 @@
 package skein.policy
 
-/** Leads round a circuit: flies towards the point a fixed length ahead of its own place on it (pure pursuit; Coulter,
-  * ''Implementation of the Pure Pursuit Path Tracking Algorithm'', CMU-RI-TR-92-01).
+/** Leads round a circuit: flies towards the point a fixed length ahead of its own place on it (pure pursuit;
+  * Coulter, ''Implementation of the Pure Pursuit Path Tracking Algorithm'', CMU-RI-TR-92-01).
   *
-  * @param aheadM
-  *   about as far as the vehicle flies before it follows a command
+  * @param aheadM about as far as the vehicle flies before it follows a command
   */
 final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends GoalPolicy:
   def mostMps: Double = speedMps
@@ -19,17 +18,15 @@ final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Dou
     if direction == 0 then Course(seen.headingRad, speedMps)
     else Course(StrictMath.atan2(toEast - east, toNorth - north), speedMps)
 
-/** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is, the second
-  * to the right; it turns as the leader moves along, and the slot's velocity follows from both: the leader's velocity
-  * plus turn rate × offset, so that the outer vehicles of a turn fly faster and the inner ones slower. What a vehicle
-  * that lags loses in a turn is commanded on top: lag × turn rate × the slot's velocity.
+/** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is,
+  * the second to the right; it turns as the leader moves along, and the slot's velocity follows from both:
+  * the leader's velocity plus turn rate × offset, so that the outer vehicles of a turn fly faster and the
+  * inner ones slower. What a vehicle that lags loses in a turn is commanded on top: lag × turn rate × the
+  * slot's velocity.
   *
-  * @param aheadM
-  *   of the slot before the leader
-  * @param rightM
-  *   of the slot to the right of the leader
-  * @param lagS
-  *   time constant with which vehicles follow their commands
+  * @param aheadM of the slot before the leader
+  * @param rightM of the slot to the right of the leader
+  * @param lagS time constant with which vehicles follow their commands
   */
 final case class KeepSlot(
     leader: Int,
@@ -89,5 +86,7 @@ final case class KeepSlot(
     (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 
 object KeepSlot:
-  /** Near the middle of a turn the place on the circuit moves ever faster; not more than four times as fast here. */
+  /** Near the middle of a turn the place on the circuit moves ever faster; not more than four times as fast
+    * here.
+    */
   private val LeastShare = 0.25

@@ -4,11 +4,11 @@ import skein.policy.HalfPlanes.*
 
 /** Half planes of velocities v, m/s: v·normal ≥ least. A normal may have any length. Filled in by [[put]].
   *
-  * Both questions are answered by linear programming, in the plane and in three dimensions, in [[Rounds]] rounds: each
-  * takes in the half plane that the velocity so far breaks most, and finds the best velocity on its edge, as incremental
-  * programming does (de Berg, Cheong, van Kreveld, Overmars: ''Computational Geometry'', 3rd ed., 2008, chapter 4; van den
-  * Berg and others as in [[Avoidance]], section 5). No more rounds are needed than there are half planes, and hardly ever
-  * more than five.
+  * Both questions are answered by linear programming, in the plane and in three dimensions, in [[Rounds]]
+  * rounds: each takes in the half plane that the velocity so far breaks most, and finds the best velocity on
+  * its edge, as incremental programming does (de Berg, Cheong, van Kreveld, Overmars: ''Computational
+  * Geometry'', 3rd ed., 2008, chapter 4; van den Berg and others as in [[Avoidance]], section 5). No more
+  * rounds are needed than there are half planes, and hardly ever more than five.
   */
 private[policy] final class HalfPlanes(val count: Int):
   private val normalNorth = new Array[Double](count)
@@ -37,8 +37,9 @@ private[policy] final class HalfPlanes(val count: Int):
     if count > Rounds then missing = missing.max(takeMostBroken(found, taken, 0) - Slack)
     Nearest(found, missing)
 
-  /** The velocity that breaks the worst of them least, and of those that do so about equally the one nearest to that
-    * wanted: the minimum of the worst violation + |v − wanted|² / (2 [[Weight]]). Normals have a length of 1, or of 0.
+  /** The velocity that breaks the worst of them least, and of those that do so about equally the one nearest
+    * to that wanted: the minimum of the worst violation + |v − wanted|² / (2 [[Weight]]). Normals have a
+    * length of 1, or of 0.
     */
   def leastBroken(wanted: Velocity, mostMps: Double): Velocity =
     val taken = HalfPlanes(count.min(Rounds))
@@ -59,8 +60,7 @@ private[policy] final class HalfPlanes(val count: Int):
 
   /** Puts the one that a velocity breaks most among those taken.
     *
-    * @return
-    *   by how much
+    * @return by how much
     */
   private def takeMostBroken(of: Velocity, taken: HalfPlanes, at: Int): Double =
     var most      = broken(0, of)
@@ -121,22 +121,23 @@ private[policy] object HalfPlanes:
 
   /** What is nearest to a velocity that is wanted.
     *
-    * @param missing
-    *   0 if it is within all half planes; more if there is no such velocity
+    * @param missing 0 if it is within all half planes; more if there is no such velocity
     */
   final case class Nearest(velocity: Velocity, missing: Double)
 
   /** Of a vehicle's neighbours few bound its velocity. */
   val Rounds = 8
 
-  /** m/s by which a half plane may be broken, far above what floats make of an edge and far below what a vehicle flies. */
+  /** m/s by which a half plane may be broken, far above what floats make of an edge and far below what a
+    * vehicle flies.
+    */
   private val Slack = 1e-4
 
   /** A least that, with a normal of 0, bounds nothing. */
   val Always: Double = -1e6
 
-  /** m/s. A violation counts so much more than the distance from what is wanted that only edges within 10⁻³ rad of one
-    * another are not told apart.
+  /** m/s. A violation counts so much more than the distance from what is wanted that only edges within 10⁻³
+    * rad of one another are not told apart.
     */
   private val Weight = 1e4
 

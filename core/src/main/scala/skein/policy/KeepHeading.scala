@@ -1,6 +1,7 @@
 package skein.policy
 
-/** Goes on in the direction commanded last: what repeats a decision where a policy has not decided in time. */
+/** Goes on in the direction commanded last: what repeats a decision where a policy has not decided in time.
+  */
 object KeepHeading extends Policy:
 
   def heading(

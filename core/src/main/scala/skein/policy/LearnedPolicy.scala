@@ -5,12 +5,9 @@ package skein.policy
   *
   * Allocates two arrays as wide as its widest layer at a decision, and one of what it sees.
   *
-  * @param parameters
-  *   as [[NeuralShape]] lays them out
-  * @param turnRateRadPerS
-  *   the most that it turns until the next decision
-  * @param turnRad
-  *   the most that it turns at once
+  * @param parameters as [[NeuralShape]] lays them out
+  * @param turnRateRadPerS the most that it turns until the next decision
+  * @param turnRad the most that it turns at once
   */
 final case class LearnedPolicy(
     shape: NeuralShape,
@@ -57,16 +54,16 @@ object LearnedPolicy:
   def shape(hidden: Vector[Int]): NeuralShape =
     NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
 
-  /** The most that a policy of a role turns where nothing says otherwise: rad/s until the next decision, and rad at once.
+  /** The most that a policy of a role turns where nothing says otherwise: rad/s until the next decision, and
+    * rad at once.
     *
-    * @param rateRadPerS
-    *   of a pursuer
+    * @param rateRadPerS of a pursuer
     */
   def mostTurn(role: Role, rateRadPerS: Double): Vector[Double] =
     if role == Role.Pursuer then Vector(rateRadPerS, 0.0) else Vector(0.0, math.Pi)
 
-  /** `64x64`: rectifiers, and tanh of the output. What is otherwise is named behind a width, and behind a colon for the
-    * output: `64tanhx64tanh:clip`.
+  /** `64x64`: rectifiers, and tanh of the output. What is otherwise is named behind a width, and behind a
+    * colon for the output: `64tanhx64tanh:clip`.
     */
   def label(shape: NeuralShape): String =
     val hidden = shape.hidden.zip(shape.activations).map: (width, activation) =>

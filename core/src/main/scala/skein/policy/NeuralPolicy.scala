@@ -1,15 +1,13 @@
 package skein.policy
 
-/** A small network of neurons with tanh. It sees the opponent in the own frame (the own heading is ahead): position over
-  * [[NeuralPolicy.LengthM]] and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead and to the right; its one
-  * output, in −1 to 1, times the turn rate is how fast it turns.
+/** A small network of neurons with tanh. It sees the opponent in the own frame (the own heading is ahead):
+  * position over [[NeuralPolicy.LengthM]] and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead
+  * and to the right; its one output, in −1 to 1, times the turn rate is how fast it turns.
   *
   * Allocates two arrays as wide as its widest layer at a decision; by lanes the network has no arrays.
   *
-  * @param parameters
-  *   as [[NeuralShape]] lays them out
-  * @param turnRateRadPerS
-  *   the most that it turns
+  * @param parameters as [[NeuralShape]] lays them out
+  * @param turnRateRadPerS the most that it turns
   */
 final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], turnRateRadPerS: Double = 1.0)
     extends Policy:

@@ -1,12 +1,10 @@
 package skein.policy
 
-/** The layers of a network of one output. Parameters are laid out layer by layer, neuron by neuron: a weight per input,
-  * then the bias.
+/** The layers of a network of one output. Parameters are laid out layer by layer, neuron by neuron: a weight
+  * per input, then the bias.
   *
-  * @param hidden
-  *   how many neurons each hidden layer has
-  * @param activations
-  *   of each hidden layer, and of the output
+  * @param hidden how many neurons each hidden layer has
+  * @param activations of each hidden layer, and of the output
   */
 final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vector[Activation]):
   require(

@@ -5,27 +5,19 @@ import skein.units.*
 
 /** What a policy decides upon.
   *
-  * @param self
-  *   index of the own vehicle in the scenario
-  * @param vehicles
-  *   the estimate of each, the own included, by index
-  * @param opponent
-  *   index of the opponent: of several, the nearest at this moment; the own index where there is none
-  * @param headings
-  *   commanded last to each vehicle, as far as known, by index; before the first command, that of the start
-  * @param elapsed
-  *   since the own last decision; zero at the first
-  * @param decisions
-  *   made for this vehicle before
-  * @param cruise
-  *   the speed that the scenario gives the vehicle
-  * @param startDown
-  *   of the vehicle's start, down, negative above the origin
-  * @param sensed
-  *   last readings of the own vehicle's sensors, by name: those that the policy asks for ([[AgentPolicy.sensors]]) and
-  *   that have answered
-  * @param actsIn
-  *   predicted time until the command acts; zero where nothing is predicted
+  * @param self index of the own vehicle in the scenario
+  * @param vehicles the estimate of each, the own included, by index
+  * @param opponent index of the opponent: of several, the nearest at this moment; the own index where there
+  *   is none
+  * @param headings commanded last to each vehicle, as far as known, by index; before the first command, that
+  *   of the start
+  * @param elapsed since the own last decision; zero at the first
+  * @param decisions made for this vehicle before
+  * @param cruise the speed that the scenario gives the vehicle
+  * @param startDown of the vehicle's start, down, negative above the origin
+  * @param sensed last readings of the own vehicle's sensors, by name: those that the policy asks for
+  *   ([[AgentPolicy.sensors]]) and that have answered
+  * @param actsIn predicted time until the command acts; zero where nothing is predicted
   */
 final case class Observation(
     self: Int,
@@ -43,31 +35,25 @@ final case class Observation(
 
 /** The estimate of one vehicle's state.
   *
-  * @param kinematics
-  *   world NED, in three dimensions with attitude
-  * @param age
-  *   of the reading behind it, since physics was sampled, by the estimated clock offset; before there is one, since the
-  *   answer came
-  * @param isPredicted
-  *   whether it is predicted for the moment at which the command will act, and not just the reading
+  * @param kinematics world NED, in three dimensions with attitude
+  * @param age of the reading behind it, since physics was sampled, by the estimated clock offset; before
+  *   there is one, since the answer came
+  * @param isPredicted whether it is predicted for the moment at which the command will act, and not just the
+  *   reading
   */
 final case class Seen(kinematics: Kinematics, age: Span, isPredicted: Boolean)
 
 /** A sensor's last reading.
   *
-  * @param columns
-  *   names with units, such as `altitudeM`
-  * @param values
-  *   as many
-  * @param age
-  *   since it was measured, as [[Seen.age]]
+  * @param columns names with units, such as `altitudeM`
+  * @param values as many
+  * @param age since it was measured, as [[Seen.age]]
   */
 final case class Sensed(columns: Vector[String], values: Vector[Double], age: Span):
 
   /** The value of a column.
     *
-    * @throws NoSuchElementException
-    *   if there is no such column
+    * @throws NoSuchElementException if there is no such column
     */
   def apply(column: String): Double =
     columns.indexOf(column) match

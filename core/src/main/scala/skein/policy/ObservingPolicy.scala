@@ -2,13 +2,11 @@ package skein.policy
 
 import skein.units.Radians
 
-/** What an [[ObservingPolicy]] sees of its opponent. North and east, m and m/s; the first seven are the arguments of
-  * [[Policy.heading]].
+/** What an [[ObservingPolicy]] sees of its opponent. North and east, m and m/s; the first seven are the
+  * arguments of [[Policy.heading]].
   *
-  * @param ownAgeS
-  *   how old the reading of the own vehicle is, s
-  * @param opponentAgeS
-  *   the same of the opponent's
+  * @param ownAgeS how old the reading of the own vehicle is, s
+  * @param opponentAgeS the same of the opponent's
   */
 final case class PlanarObservation(
     dxM: Double,
@@ -21,9 +19,9 @@ final case class PlanarObservation(
     ownAgeS: Double,
     opponentAgeS: Double
 ):
-  /** What learners see, in the frame whose x-axis is the own heading commanded last: the opponent's place ahead and to
-    * the right, m; its velocity minus the own one, m/s; cosine and sine of its heading from the own one; the time since
-    * the own last decision, the age of the own reading and of the opponent's, s.
+  /** What learners see, in the frame whose x-axis is the own heading commanded last: the opponent's place
+    * ahead and to the right, m; its velocity minus the own one, m/s; cosine and sine of its heading from the
+    * own one; the time since the own last decision, the age of the own reading and of the opponent's, s.
     */
   def fromOwnHeading: Array[Double] =
     val cos     = StrictMath.cos(ownHeadingRad)
@@ -58,17 +56,16 @@ object PlanarObservation:
       opponent.age.toSeconds
     )
 
-/** @param memory
-  *   what the policy is given at its next decision
+/** @param memory what the policy is given at its next decision
   */
 final case class Decided[M](headingRad: Double, memory: M)
 
-/** A policy with a memory of its own, who is told how old what it sees is. As a [[Policy]] it is a pure function.
+/** A policy with a memory of its own, who is told how old what it sees is. As a [[Policy]] it is a pure
+  * function.
   *
   * It flies by lanes if [[decide]] is arithmetic and the memory is a number or a case class of numbers.
   *
-  * @tparam M
-  *   what it remembers
+  * @tparam M what it remembers
   */
 trait ObservingPolicy[M] extends Policy:
 
@@ -103,10 +100,8 @@ object ObservingPolicy:
 
   /** Decides by a policy of either kind.
     *
-    * @param memory
-    *   the policy's own; anything where it has none
-    * @return
-    *   and what it remembers
+    * @param memory the policy's own; anything where it has none
+    * @return and what it remembers
     */
   def decide(policy: Policy, seen: PlanarObservation, memory: Any): Decided[Any] = policy match
     case observing: ObservingPolicy[m] =>

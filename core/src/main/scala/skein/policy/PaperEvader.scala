@@ -1,7 +1,7 @@
 package skein.policy
 
-/** The paper's evader: inside one of the pursuer's two turning circles it heads for safety there; near the pursuer it
-  * breaks away at a right angle; far from it, it runs along the line of sight.
+/** The paper's evader: inside one of the pursuer's two turning circles it heads for safety there; near the
+  * pursuer it breaks away at a right angle; far from it, it runs along the line of sight.
   *
   * With the evader at (x, y) in the pursuer's frame and the pursuer's commanded heading θp:
   *   - in the right circle, x² + (y − R)² < R²: θp + atan2(y + R, x)
@@ -9,8 +9,7 @@ package skein.policy
   *   - within 2R: θp + atan2(y, x) + π/2
   *   - else: θp + atan2(y, x)
   *
-  * @param turningRadiusM
-  *   R, the pursuer's assumed turning radius; the paper's is 8 m
+  * @param turningRadiusM R, the pursuer's assumed turning radius; the paper's is 8 m
   */
 final case class PaperEvader(turningRadiusM: Double = 8.0) extends Policy:
 

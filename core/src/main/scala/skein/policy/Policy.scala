@@ -3,30 +3,23 @@ package skein.policy
 import skein.units.Radians
 
 /** Chooses a heading for one vehicle from what it knows of its opponent. A pure function of its arguments, on
-  * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same object
-  * without allocation.
+  * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same
+  * object without allocation.
   *
-  * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its calls:
-  * deciding twice as often must not turn twice as fast.
+  * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its
+  * calls: deciding twice as often must not turn twice as fast.
   */
 trait Policy extends PlanarPolicy:
 
   /** The heading to command now, rad, from north (+x) towards east (+y); any number of turns.
     *
-    * @param dxM
-    *   opponent's position minus own, north, m
-    * @param dyM
-    *   opponent's position minus own, east, m
-    * @param dvxMps
-    *   opponent's velocity minus own, north, m/s
-    * @param dvyMps
-    *   opponent's velocity minus own, east, m/s
-    * @param ownHeadingRad
-    *   heading commanded last to the own vehicle
-    * @param opponentHeadingRad
-    *   heading commanded last to the opponent, as far as known to this controller
-    * @param elapsedS
-    *   time since the own last decision; 0 at the first
+    * @param dxM opponent's position minus own, north, m
+    * @param dyM opponent's position minus own, east, m
+    * @param dvxMps opponent's velocity minus own, north, m/s
+    * @param dvyMps opponent's velocity minus own, east, m/s
+    * @param ownHeadingRad heading commanded last to the own vehicle
+    * @param opponentHeadingRad heading commanded last to the opponent, as far as known to this controller
+    * @param elapsedS time since the own last decision; 0 at the first
     */
   def heading(
       dxM: Double,
@@ -38,11 +31,10 @@ trait Policy extends PlanarPolicy:
       elapsedS: Double
   ): Double
 
-  /** This policy as somebody may take it to be who knows it roughly, such as a planner against it: its numbers off by
-    * what is drawn. Known exactly unless a policy says otherwise.
+  /** This policy as somebody may take it to be who knows it roughly, such as a planner against it: its
+    * numbers off by what is drawn. Known exactly unless a policy says otherwise.
     *
-    * @param draw
-    *   normal numbers of mean 0 and deviation 1, by place
+    * @param draw normal numbers of mean 0 and deviation 1, by place
     */
   def guessed(draw: Int => Double): Policy = this
 

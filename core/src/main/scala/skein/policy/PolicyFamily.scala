@@ -1,17 +1,13 @@
 package skein.policy
 
-/** Policies of one form that differ in named parameters: what a search chooses from, and what a policy file names.
+/** Policies of one form that differ in named parameters: what a search chooses from, and what a policy file
+  * names.
   *
-  * @param name
-  *   as on the command line and in policy files, for example `paper-pursuer`
-  * @param summary
-  *   one line for people
-  * @param roles
-  *   for whom its policies are meant
-  * @param space
-  *   the parameters, their bounds and defaults
-  * @param make
-  *   a policy of one value per axis; a pure function
+  * @param name as on the command line and in policy files, for example `paper-pursuer`
+  * @param summary one line for people
+  * @param roles for whom its policies are meant
+  * @param space the parameters, their bounds and defaults
+  * @param make a policy of one value per axis; a pure function
   */
 final class PolicyFamily(
     val name: String,
@@ -21,8 +17,8 @@ final class PolicyFamily(
     make: Vector[Double] => Policy
 ):
 
-  /** @param parameters
-    *   one per axis of [[space]], in its order; they may lie outside the bounds, which only limit a search
+  /** @param parameters one per axis of [[space]], in its order; they may lie outside the bounds, which only
+    *   limit a search
     */
   def policy(parameters: Vector[Double]): Policy =
     require(
@@ -111,7 +107,9 @@ object PolicyFamily:
     parameters => ChauffeurEvader(parameters(0), parameters(1), parameters(2))
   )
 
-  /** Networks of one shape, named `neural:8x8` by their hidden layers; the default's weights are all zero: straight on. */
+  /** Networks of one shape, named `neural:8x8` by their hidden layers; the default's weights are all zero:
+    * straight on.
+    */
   def neural(shape: NeuralShape): PolicyFamily = PolicyFamily(
     s"$NeuralPrefix${shape.hidden.mkString("x")}",
     s"a neural network with hidden layers of $shape",
@@ -120,8 +118,8 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  /** What `./skein learn` teaches, named `learned:64x64` as [[LearnedPolicy.label]] says; the default's weights are all
-    * zero.
+  /** What `./skein learn` teaches, named `learned:64x64` as [[LearnedPolicy.label]] says; the default's
+    * weights are all zero.
     */
   def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
     s"$LearnedPrefix${LearnedPolicy.label(shape)}",
@@ -163,10 +161,8 @@ object PolicyFamily:
 
   /** The family of this name.
     *
-    * @param own
-    *   families that a program knows besides
-    * @return
-    *   or what was expected
+    * @param own families that a program knows besides
+    * @return or what was expected
     */
   def parse(text: String, own: Vector[PolicyFamily] = Vector.empty): Either[String, PolicyFamily] =
     def known = all ++ own

@@ -1,8 +1,8 @@
 package skein.policy
 
-/** A closed circuit of two straights joined by two half circles, flown clockwise as seen from above: from the origin
-  * north, a half turn to the right, back south at twice the radius further east, and a half turn to the right again.
-  * Places on it are told by the length flown from the origin.
+/** A closed circuit of two straights joined by two half circles, flown clockwise as seen from above: from the
+  * origin north, a half turn to the right, back south at twice the radius further east, and a half turn to
+  * the right again. Places on it are told by the length flown from the origin.
   */
 final case class Racetrack(straightM: Double, radiusM: Double):
   require(straightM >= 0 && radiusM > 0, s"not a circuit: straights of $straightM m, turns of $radiusM m")

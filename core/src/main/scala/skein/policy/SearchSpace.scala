@@ -2,10 +2,10 @@ package skein.policy
 
 import skein.signal.SplitMix64
 
-/** One parameter of a policy: the bounds within which it is searched, and the value it has when none is given.
+/** One parameter of a policy: the bounds within which it is searched, and the value it has when none is
+  * given.
   *
-  * @param name
-  *   with its unit, for example `turnRateRadPerS`; the same in files and on the command line
+  * @param name with its unit, for example `turnRateRadPerS`; the same in files and on the command line
   */
 final case class Axis(name: String, least: Double, most: Double, default: Double):
   require(least < most, s"axis $name: the least value $least must be below the most, $most")
@@ -39,8 +39,8 @@ final case class SearchSpace(axes: Vector[Axis]):
   def gridSize(perAxis: Int): Long =
     axes.foldLeft(1L)((product, _) => Math.multiplyExact(product, perAxis.toLong))
 
-  /** One of evenly spread candidates, `perAxis` values on each axis, both bounds included; the last axis varies
-    * fastest.
+  /** One of evenly spread candidates, `perAxis` values on each axis, both bounds included; the last axis
+    * varies fastest.
     */
   def gridAt(perAxis: Int, index: Long): Vector[Double] =
     require(perAxis >= 2, s"a grid needs at least 2 values per axis, got $perAxis")
@@ -59,8 +59,8 @@ final case class SearchSpace(axes: Vector[Axis]):
 
   def random(count: Int, seed: Long): Vector[Vector[Double]] = Vector.tabulate(count)(randomAt(seed, _))
 
-  /** The candidate whose place between the bounds is `shares`, from 0 to 1 on each axis. Places outside are mirrored
-    * at the bounds, so that every vector stands for a candidate and neighbours for neighbours.
+  /** The candidate whose place between the bounds is `shares`, from 0 to 1 on each axis. Places outside are
+    * mirrored at the bounds, so that every vector stands for a candidate and neighbours for neighbours.
     */
   def at(shares: Vector[Double]): Vector[Double] =
     shares.zip(axes).map((share, axis) => axis.least + axis.width * SearchSpace.mirrored(share))

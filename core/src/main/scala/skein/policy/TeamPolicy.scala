@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.{MetresPerSecond, Radians}
 
-/** Chooses a velocity for one vehicle from what it knows of its whole team. A pure function of its argument; it
-  * integrates over elapsed time and never counts its calls.
+/** Chooses a velocity for one vehicle from what it knows of its whole team. A pure function of its argument;
+  * it integrates over elapsed time and never counts its calls.
   */
 trait TeamPolicy extends PlanarPolicy:
 
@@ -32,19 +32,14 @@ trait GoalPolicy extends TeamPolicy:
   /** The separation that is set, m; 0: none. */
   def minimumM: Double = 0
 
-/** What one vehicle knows of its team at one moment. Arrays are by the vehicle's place in the scenario, its own
-  * included; world frame NED.
+/** What one vehicle knows of its team at one moment. Arrays are by the vehicle's place in the scenario, its
+  * own included; world frame NED.
   *
-  * @param self
-  *   the own place
-  * @param northM
-  *   positions, m
-  * @param northMps
-  *   velocities, m/s
-  * @param headingRad
-  *   commanded last to the own vehicle
-  * @param elapsedS
-  *   time since the own last decision; 0 at the first
+  * @param self the own place
+  * @param northM positions, m
+  * @param northMps velocities, m/s
+  * @param headingRad commanded last to the own vehicle
+  * @param elapsedS time since the own last decision; 0 at the first
   */
 final case class TeamObservation(
     self: Int,
@@ -78,8 +73,7 @@ object TeamObservation:
 
 /** A horizontal velocity to command.
   *
-  * @param headingRad
-  *   from north towards east
+  * @param headingRad from north towards east
   */
 final case class Course(headingRad: Double, speedMps: Double)
 
@@ -91,13 +85,13 @@ object Course:
     if speed < 1e-9 then Course(headingRad, 0)
     else Course(StrictMath.atan2(eastMps, northMps), speed.min(mostMps))
 
-/** How a vehicle that answers late to its commands follows a point that moves: the point's velocity, and shares of how
-  * far it lags behind in place and in speed (proportional-derivative control with feed-forward).
+/** How a vehicle that answers late to its commands follows a point that moves: the point's velocity, and
+  * shares of how far it lags behind in place and in speed (proportional-derivative control with
+  * feed-forward).
   *
-  * @param perS
-  *   commanded speed per metre behind
-  * @param lead
-  *   commanded speed per speed behind: 1 halves the time constant of a vehicle that follows its command with a lag
+  * @param perS commanded speed per metre behind
+  * @param lead commanded speed per speed behind: 1 halves the time constant of a vehicle that follows its
+  *   command with a lag
   */
 final case class Pursuit(perS: Double = 0.6, lead: Double = 1.0):
 

@@ -4,8 +4,8 @@ import skein.units.Span
 
 /** How AirSim takes moves of a vehicle, and how loops keep to it. */
 object Moves:
-  /** Unanswered moves of one vehicle: the one that flies and the one that replaces it. A third that comes while one
-    * replaces the other waits for its end, not its begin.
+  /** Unanswered moves of one vehicle: the one that flies and the one that replaces it. A third that comes
+    * while one replaces the other waits for its end, not its begin.
     */
   final val MostOutstanding = 2
 

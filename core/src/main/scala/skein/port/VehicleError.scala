@@ -1,7 +1,7 @@
 package skein.port
 
-/** Why a call to a vehicle failed. Expected, so a value. `message` is one line for a person: what was expected, what came,
-  * where.
+/** Why a call to a vehicle failed. Expected, so a value. `message` is one line for a person: what was
+  * expected, what came, where.
   */
 enum VehicleError(val message: String):
 
@@ -13,8 +13,7 @@ enum VehicleError(val message: String):
 
   /** The connection ended before the answer came.
     *
-    * @param mayHaveRun
-    *   whether the call may have reached the vehicle
+    * @param mayHaveRun whether the call may have reached the vehicle
     */
   case Lost(override val message: String, mayHaveRun: Boolean) extends VehicleError(message)
 

@@ -5,22 +5,21 @@ import skein.policy.Action
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** One vehicle as a loop sees it: the interface that an adapter implements for a simulator. Every call ends by itself,
-  * within a time limit of its own, and fails by a [[VehicleError]], never by an exception.
+/** One vehicle as a loop sees it: the interface that an adapter implements for a simulator. Every call ends
+  * by itself, within a time limit of its own, and fails by a [[VehicleError]], never by an exception.
   */
 trait VehiclePort:
 
   /** Position, velocity and attitude, world NED, by the vehicle's own estimate.
     *
-    * @return
-    *   with its valid time, on the vehicles' clock, and with the times of asking and answering, on the controller's. All
-    *   vehicles of a flight share one clock; where they do not, their adapter converts (see
+    * @return with its valid time, on the vehicles' clock, and with the times of asking and answering, on the
+    *   controller's. All vehicles of a flight share one clock; where they do not, their adapter converts (see
     *   [[skein.signal.ClockAlignment]])
     */
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]]
 
-  /** Carries out an action until `lasts` is over or a newer action replaces it. The answer comes then: true if it ran to
-    * its end, false if it was replaced. Actions take effect in the order of the calls.
+  /** Carries out an action until `lasts` is over or a newer action replaces it. The answer comes then: true
+    * if it ran to its end, false if it was replaced. Actions take effect in the order of the calls.
     */
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]]
 

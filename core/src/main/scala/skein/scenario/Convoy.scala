@@ -4,21 +4,16 @@ import skein.policy.*
 import skein.units.*
 import skein.vehicle.{ReducedModel, VehicleKind}
 
-/** Two cars drive round a circuit, one behind the other, and three drones escort them: one ahead of the cars to their
-  * right, one beside them to their left, one behind them. The drones' places turn with the road where the leading car is.
+/** Two cars drive round a circuit, one behind the other, and three drones escort them: one ahead of the cars
+  * to their right, one beside them to their left, one behind them. The drones' places turn with the road
+  * where the leading car is.
   *
-  * @param gapM
-  *   from the leading car to the other, along the circuit
-  * @param carMps
-  *   of the leading car
-  * @param mostMps
-  *   the fastest that anybody is commanded
-  * @param straightM
-  *   of the circuit; its half turns have the radius `radiusM`
-  * @param altitudeM
-  *   of the drones
-  * @param sightM
-  *   within which a drone has a car in view, in the plane
+  * @param gapM from the leading car to the other, along the circuit
+  * @param carMps of the leading car
+  * @param mostMps the fastest that anybody is commanded
+  * @param straightM of the circuit; its half turns have the radius `radiusM`
+  * @param altitudeM of the drones
+  * @param sightM within which a drone has a car in view, in the plane
   */
 final case class Convoy(
     gapM: Double = 12,
@@ -98,7 +93,8 @@ object Convoy:
   private val Drones = 1 to 3
   private val Rear   = 4
 
-  /** Before a car follows a command, s: as long as its driver takes for a turn, and a little for its tyres. */
+  /** Before a car follows a command, s: as long as its driver takes for a turn, and a little for its tyres.
+    */
   private val AheadS = 1.0
 
   /** For the vehicles to get under way; not counted. */

@@ -3,23 +3,17 @@ package skein.scenario
 import skein.policy.*
 import skein.units.Metres
 
-/** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing; everyone avoids all
-  * others.
+/** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing; everyone
+  * avoids all others.
   *
-  * @param streams
-  *   2, northward and eastward; or 4
-  * @param spacingM
-  *   between two vehicles of a stream
-  * @param entryM
-  *   from the first vehicle of a stream to the middle of the crossing
-  * @param laneM
-  *   by which each stream keeps to the right of the middle
-  * @param minimumM
-  *   the separation that is set
-  * @param marginM
-  *   kept on top of it by the avoidance rule, which does not know that vehicles lag behind their commands
-  * @param horizonS
-  *   for which the avoidance rule looks ahead
+  * @param streams 2, northward and eastward; or 4
+  * @param spacingM between two vehicles of a stream
+  * @param entryM from the first vehicle of a stream to the middle of the crossing
+  * @param laneM by which each stream keeps to the right of the middle
+  * @param minimumM the separation that is set
+  * @param marginM kept on top of it by the avoidance rule, which does not know that vehicles lag behind their
+  *   commands
+  * @param horizonS for which the avoidance rule looks ahead
   */
 final case class Crossing(
     vehicles: Int = 20,
@@ -89,8 +83,8 @@ final case class Crossing(
       instant                  <- tracks.instants.find(tracks.distanceM(vehicle, north, east, _) < ArrivedM)
     yield tracks.timeS(instant)
 
-  /** By vehicle: the streams take vehicles in turn, and those of a stream fly one behind the other. The first of a
-    * stream flies furthest, so that all fly equally far and nobody waits in another's way.
+  /** By vehicle: the streams take vehicles in turn, and those of a stream fly one behind the other. The first
+    * of a stream flies furthest, so that all fly equally far and nobody waits in another's way.
     */
   private def routes: Vector[Route] =
     Vector.tabulate(vehicles): vehicle =>

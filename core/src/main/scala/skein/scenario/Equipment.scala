@@ -1,19 +1,18 @@
 package skein.scenario
 
-/** A camera or lidar of a vehicle, besides those that every vehicle has. The built-in simulator gets it from here; another
-  * simulator needs it in its `settings.json`.
+/** A camera or lidar of a vehicle, besides those that every vehicle has. The built-in simulator gets it from
+  * here; another simulator needs it in its `settings.json`.
   */
 enum Equipment:
   def vehicle: String
   def name: String
 
-  /** A lidar that turns around the vehicle's down axis. Policies read it as a sensor of this name: its position `northM`,
-    * `eastM`, `downM`; then, clockwise from north, the distance in the plane to the nearest thing in each of [[Sectors]]
-    * equal sectors of the compass, m. Things more than [[BandM]] above or below do not count; an empty sector has the
-    * lidar's range.
+  /** A lidar that turns around the vehicle's down axis. Policies read it as a sensor of this name: its
+    * position `northM`, `eastM`, `downM`; then, clockwise from north, the distance in the plane to the
+    * nearest thing in each of [[Sectors]] equal sectors of the compass, m. Things more than [[BandM]] above
+    * or below do not count; an empty sector has the lidar's range.
     *
-    * @param verticalFovDeg
-    *   lower, upper; negative looks down
+    * @param verticalFovDeg lower, upper; negative looks down
     */
   case Lidar(
       vehicle: String,
@@ -27,8 +26,7 @@ enum Equipment:
 
   /** A camera in front of the vehicle, which looks ahead.
     *
-    * @param fovDeg
-    *   horizontal
+    * @param fovDeg horizontal
     */
   case Camera(vehicle: String, name: String, width: Int, height: Int, fovDeg: Double)
 

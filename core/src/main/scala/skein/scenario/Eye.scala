@@ -5,27 +5,19 @@ import skein.fusion.{FusionSettings, PolarMeasurement}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** A camera as a policy's source of knowledge: images are taken, a target is recognised in them, and each detection enters
-  * an estimate at the moment of its exposure. The policy reads the estimate as a sensor.
+/** A camera as a policy's source of knowledge: images are taken, a target is recognised in them, and each
+  * detection enters an estimate at the moment of its exposure. The policy reads the estimate as a sensor.
   *
-  * @param vehicle
-  *   whose camera it is
-  * @param sensor
-  *   the name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the newest detection's exposure
-  * @param camera
-  *   of the vehicle: AirSim's, or one of the scenario's equipment
-  * @param target
-  *   the vehicle that is looked for, for reports
-  * @param every
-  *   period of the images
-  * @param recogniser
-  *   makes one for each worker
-  * @param takes
-  *   how long recognition takes: exactly, in virtual time; at least, live
-  * @param workers
-  *   images that are searched at the same time
-  * @param deadline
-  *   for each image
+  * @param vehicle whose camera it is
+  * @param sensor the name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the
+  *   newest detection's exposure
+  * @param camera of the vehicle: AirSim's, or one of the scenario's equipment
+  * @param target the vehicle that is looked for, for reports
+  * @param every period of the images
+  * @param recogniser makes one for each worker
+  * @param takes how long recognition takes: exactly, in virtual time; at least, live
+  * @param workers images that are searched at the same time
+  * @param deadline for each image
   */
 final case class Eye(
     vehicle: String,
@@ -41,10 +33,10 @@ final case class Eye(
 )
 
 object Eye:
-  /** The estimate: the target's position and velocity, world NED, and the largest of the position's standard deviations
-    * along north, east and down. Then the newest detection: its place in the camera's frame, how long recognition took, and
-    * the camera's position and orientation. Last, how many images were searched until then, and in how many the target
-    * was found.
+  /** The estimate: the target's position and velocity, world NED, and the largest of the position's standard
+    * deviations along north, east and down. Then the newest detection: its place in the camera's frame, how
+    * long recognition took, and the camera's position and orientation. Last, how many images were searched
+    * until then, and in how many the target was found.
     */
   val Columns: Vector[String] = Vector(
     "northM",
@@ -72,9 +64,7 @@ object Eye:
 /** Looks for one thing in images. May keep memory of its own; is never called by two threads at once. */
 trait Recogniser:
 
-  /** @param bgr
-    *   blue, green, red of each pixel, in rows from the top
-    * @return
-    *   what was found, in the camera's frame; or why the image cannot be searched
+  /** @param bgr blue, green, red of each pixel, in rows from the top
+    * @return what was found, in the camera's frame; or why the image cannot be searched
     */
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[PolarMeasurement]]

@@ -4,8 +4,7 @@ package skein.scenario
 enum Fence:
   case Circle(northM: Double, eastM: Double, radiusM: Double)
 
-  /** @param corners
-    *   north and east, in turn; at least three
+  /** @param corners north and east, in turn; at least three
     */
   case Polygon(corners: Vector[(Double, Double)])
 
@@ -31,7 +30,9 @@ enum Fence:
         at += 1
       if isInside then -nearest else nearest
 
-  /** The same, counted from another place. Sides are cut off 1,000 km from there, so that floats hold their squares. */
+  /** The same, counted from another place. Sides are cut off 1,000 km from there, so that floats hold their
+    * squares.
+    */
   def from(northM: Double, eastM: Double): Fence =
     def within(value: Double) = value.max(-1e6).min(1e6)
     this match

@@ -3,15 +3,12 @@ package skein.scenario
 import skein.policy.*
 import skein.units.*
 
-/** Vehicles side by side cross a forest, each along a lane of its own, and know of the trees and of one another by lidar
-  * alone.
+/** Vehicles side by side cross a forest, each along a lane of its own, and know of the trees and of one
+  * another by lidar alone.
   *
-  * @param apartM
-  *   from one lane to the next
-  * @param lengthM
-  *   of the way, to beyond the last tree
-  * @param keepM
-  *   kept from everything, where there is room
+  * @param apartM from one lane to the next
+  * @param lengthM of the way, to beyond the last tree
+  * @param keepM kept from everything, where there is room
   */
 final case class Forest(
     vehicles: Int = 5,

@@ -2,19 +2,15 @@ package skein.scenario
 
 import skein.policy.*
 
-/** A wedge flies a circuit, two straights joined by half turns; the leader first, followers behind it to the right and
-  * left in turn.
+/** A wedge flies a circuit, two straights joined by half turns; the leader first, followers behind it to the
+  * right and left in turn.
   *
-  * @param vehicles
-  *   the leader included
-  * @param spacingM
-  *   of the slots, backwards and sideways
-  * @param mostMps
-  *   the fastest a follower is commanded
-  * @param straightM
-  *   of the circuit; its half turns have the radius `radiusM`
-  * @param lagS
-  *   time constant with which vehicles follow their commands; AirSim's at low altitude take about 1.5 s
+  * @param vehicles the leader included
+  * @param spacingM of the slots, backwards and sideways
+  * @param mostMps the fastest a follower is commanded
+  * @param straightM of the circuit; its half turns have the radius `radiusM`
+  * @param lagS time constant with which vehicles follow their commands; AirSim's at low altitude take about
+  *   1.5 s
   */
 final case class Formation(
     vehicles: Int = 5,

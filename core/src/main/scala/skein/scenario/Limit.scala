@@ -4,14 +4,11 @@ import skein.units.*
 
 /** What may not happen: a quantity of some vehicles that must stay at or above a value, or at or below it.
   *
-  * @param name
-  *   what is broken, for example `separation`
-  * @param groups
-  *   whose quantity it is: of so many vehicles in the fleet, every group of places that it holds for
-  * @param kept
-  *   what plans keep of it, if they do
-  * @param quantity
-  *   of a group, by instant
+  * @param name what is broken, for example `separation`
+  * @param groups whose quantity it is: of so many vehicles in the fleet, every group of places that it holds
+  *   for
+  * @param kept what plans keep of it, if they do
+  * @param quantity of a group, by instant
   */
 final class Limit private (
     val name: String,
@@ -84,8 +81,7 @@ object Limit:
 
   /** Every vehicle stays in a polygon, seen from above; the quantity is how far it is outside.
     *
-    * @param corners
-    *   north and east, in turn; at least three
+    * @param corners north and east, in turn; at least three
     */
   def geofence(corners: Vector[(Metres, Metres)]): Limit =
     require(corners.sizeIs >= 3, s"a geofence has at least three corners, came ${corners.size}")
@@ -134,12 +130,9 @@ object Limit:
 
 /** One stretch of time in which a limit was broken.
   *
-  * @param vehicles
-  *   their places
-  * @param fromS
-  *   since all vehicles were first seen
-  * @param worst
-  *   of the quantity, in the limit's unit, and when that was
+  * @param vehicles their places
+  * @param fromS since all vehicles were first seen
+  * @param worst of the quantity, in the limit's unit, and when that was
   */
 final case class Violation(
     limit: Limit,

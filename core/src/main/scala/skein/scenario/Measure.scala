@@ -2,14 +2,10 @@ package skein.scenario
 
 /** A number computed from a flight, for example `Measure("out of sight", "s")(tracks => …)`.
   *
-  * @param unit
-  *   may be empty
-  * @param isCount
-  *   of events: over several flights it is added up
-  * @param of
-  *   the value; absent where the flight has none, for example a time of arrival if it never arrived
-  * @param reduced
-  *   the quantity that it reduces, if it does: then searches can judge by it
+  * @param unit may be empty
+  * @param isCount of events: over several flights it is added up
+  * @param of the value; absent where the flight has none, for example a time of arrival if it never arrived
+  * @param reduced the quantity that it reduces, if it does: then searches can judge by it
   */
 final class Measure private (
     val name: String,
@@ -48,10 +44,8 @@ final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Wind
   * override def measures = Vector(apart.mean("mean distance"), apart.least("closest"))
   * }}}
   *
-  * @param bound
-  *   that the quantity is held to, drawn as a line
-  * @param at
-  *   its value by instant
+  * @param bound that the quantity is held to, drawn as a line
+  * @param at its value by instant
   */
 final class Series private (
     val name: String,
@@ -118,8 +112,7 @@ object Series:
 
 /** A value that a quantity is compared with: a line in its figure.
   *
-  * @param name
-  *   in the legend
+  * @param name in the legend
   */
 final case class Bound(name: String, value: Double)
 

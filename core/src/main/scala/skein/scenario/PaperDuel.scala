@@ -3,15 +3,12 @@ package skein.scenario
 import skein.policy.*
 import skein.units.*
 
-/** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart. Several stand side by side,
-  * 60 m apart, and are measured by the first.
+/** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart. Several stand
+  * side by side, 60 m apart, and are measured by the first.
   *
-  * @param pairs
-  *   how many duels; the vehicles of several are numbered from 1
-  * @param asPublished
-  *   the pursuer turns a fixed angle per decision, as the published code does
-  * @param altitudeM
-  *   at which all fly
+  * @param pairs how many duels; the vehicles of several are numbered from 1
+  * @param asPublished the pursuer turns a fixed angle per decision, as the published code does
+  * @param altitudeM at which all fly
   */
 final case class PaperDuel(
     pairs: Int = 1,

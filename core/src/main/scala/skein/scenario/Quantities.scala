@@ -56,13 +56,11 @@ case object Separation extends Quantity:
       one += 1
     least
 
-/** From each follower to its slot in the frame along the circuit where the leader, the first vehicle, is: root of the mean
-  * square, m.
+/** From each follower to its slot in the frame along the circuit where the leader, the first vehicle, is:
+  * root of the mean square, m.
   *
-  * @param aheadM
-  *   of the leader, by follower
-  * @param rightM
-  *   to the right of the leader
+  * @param aheadM of the leader, by follower
+  * @param rightM to the right of the leader
   */
 final case class OffSlots(circuit: Racetrack, aheadM: IArray[Double], rightM: IArray[Double])
     extends Quantity:

@@ -12,8 +12,9 @@ final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM:
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
-/** A number computed from the positions of all vehicles at one moment. Reports draw and measure it, searches judge by it.
-  * Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are (`docs/guides/formulas.md`).
+/** A number computed from the positions of all vehicles at one moment. Reports draw and measure it, searches
+  * judge by it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
+  * (`docs/guides/formulas.md`).
   */
 trait Quantity:
   def of(positions: Positions): Double

@@ -2,10 +2,8 @@ package skein.scenario
 
 /** The result of a flight.
   *
-  * @param measured
-  *   flights are compared by the first
-  * @param violations
-  *   of all limits, in the order of their times
+  * @param measured flights are compared by the first
+  * @param violations of all limits, in the order of their times
   */
 final case class Result(
     scenario: Scenario,
@@ -32,7 +30,6 @@ object Result:
     scenario.limits.flatMap(_.violations(tracks)).sortBy(_.fromS)
   )
 
-/** @param value
-  *   absent where the flight has none
+/** @param value absent where the flight has none
   */
 final case class Measured(measure: Measure, value: Option[Double])

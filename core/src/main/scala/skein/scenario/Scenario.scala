@@ -4,8 +4,9 @@ import java.util.Locale
 import skein.policy.{Agent, Fleet, Seen}
 import skein.units.*
 
-/** A task for a fleet: who flies, what may not happen, what is measured, and when it ends. A case class; its fields are
-  * the task's settings, and their names end in units (`ringM`, `cruiseMps`). See `docs/guides/own-scenario.md`.
+/** A task for a fleet: who flies, what may not happen, what is measured, and when it ends. A case class; its
+  * fields are the task's settings, and their names end in units (`ringM`, `cruiseMps`). See
+  * `docs/guides/own-scenario.md`.
   */
 trait Scenario extends Product:
 
@@ -24,7 +25,8 @@ trait Scenario extends Product:
   /** Of a flight, unless a command sets another. */
   def duration: Span = Span.ofSeconds(60)
 
-  /** The built-in simulator's scene, unless a command sets another: `empty`, `forest`, `pursuit` or `street`. */
+  /** The built-in simulator's scene, unless a command sets another: `empty`, `forest`, `pursuit` or `street`.
+    */
   def scene: String = "empty"
 
   /** Cameras and lidars of its vehicles. */
@@ -36,8 +38,8 @@ trait Scenario extends Product:
   /** Whether the flight ends before its duration; asked at every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 
-  /** Whether it is the paper's game, beside whose flights the paper's figures stand, and whose policies are searched and
-    * taught against each other.
+  /** Whether it is the paper's game, beside whose flights the paper's figures stand, and whose policies are
+    * searched and taught against each other.
     */
   def isPapersGame: Boolean = false
 
@@ -85,8 +87,7 @@ object Scenario:
 
   /** The mistakes of a scenario's measures (`Double`) that are not above 0.
     *
-    * @param mayBeZero
-    *   names of those that may be 0
+    * @param mayBeZero names of those that may be 0
     */
   def notPositive(scenario: Scenario, mayBeZero: String*): Seq[String] =
     scenario.productElementNames
@@ -98,9 +99,7 @@ object Scenario:
 
 /** What is known of a flight at a decision.
   *
-  * @param elapsed
-  *   since the flight's first decision
-  * @param vehicles
-  *   what is known of each, by its place
+  * @param elapsed since the flight's first decision
+  * @param vehicles what is known of each, by its place
   */
 final case class Known(elapsed: Span, vehicles: Vector[Seen])

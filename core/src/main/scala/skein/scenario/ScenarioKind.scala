@@ -8,8 +8,8 @@ import scala.deriving.Mirror
   * val patrol = ScenarioKind(Patrol())   // of: case class Patrol(scouts: Int = 2, heightM: Double = 30) extends Scenario
   * }}}
   *
-  * @param standard
-  *   with all its defaults; a setting is a `String`, a `Boolean`, a number, and is read as what its default is
+  * @param standard with all its defaults; a setting is a `String`, a `Boolean`, a number, and is read as what
+  *   its default is
   */
 open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.ProductOf[A]):
 
@@ -20,10 +20,8 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   private val readers = settings.zip(standard.productIterator.map(Reader.of(name, _)))
 
-  /** @param values
-    *   settings by name; those that are missing have their defaults
-    * @return
-    *   or every mistake: what was expected, and what came
+  /** @param values settings by name; those that are missing have their defaults
+    * @return or every mistake: what was expected, and what came
     */
   def read(values: Map[String, String]): Either[Seq[String], Scenario] =
     val unknown = values.keys.toSeq.sorted.filterNot(settings.contains).map(name =>
@@ -42,16 +40,15 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
       val scenario = mirror.fromProduct(Tuple.fromArray(right.toArray))
       Either.cond(scenario.mistakes.isEmpty, scenario, scenario.mistakes)
 
-  /** @param parameters
-    *   of a recording, by name. A setting that it does not have was added since, and takes its default
+  /** @param parameters of a recording, by name. A setting that it does not have was added since, and takes its
+    *   default
     */
   def ofRecording(parameters: Map[String, String]): Either[Seq[String], Scenario] =
     read(settings.flatMap(setting => parameters.get(standard.recordedAs(setting)).map(setting -> _)).toMap)
 
 /** How one setting is read.
   *
-  * @param what
-  *   is expected
+  * @param what is expected
   */
 private final class Reader(val what: String, val read: String => Option[Any])
 

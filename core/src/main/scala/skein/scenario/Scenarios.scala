@@ -3,15 +3,12 @@ package skein.scenario
 import skein.forecast.Structure
 import skein.policy.PolicyFamily
 
-/** The kinds of scenarios, the families of policies, and the structures of plants, that a program knows by name; needed wherever settings or
-  * recordings are read.
+/** The kinds of scenarios, the families of policies, and the structures of plants, that a program knows by
+  * name; needed wherever settings or recordings are read.
   *
-  * @param kinds
-  *   the first is flown where none is named
-  * @param families
-  *   of policies, besides Skein's
-  * @param ownStructures
-  *   of plants, besides Skein's
+  * @param kinds the first is flown where none is named
+  * @param families of policies, besides Skein's
+  * @param ownStructures of plants, besides Skein's
   */
 final case class Scenarios(
     kinds: Vector[ScenarioKind[?]],
@@ -42,10 +39,13 @@ final case class Scenarios(
       .find(_.label == label)
       .toRight(s"expected a structure (${labels.mkString(", ")}), came '$label'")
 
-  /** The default scenario of a program without the paper's game, of whose two sides commands ask otherwise. */
+  /** The default scenario of a program without the paper's game, of whose two sides commands ask otherwise.
+    */
   def firstWithoutGame: Option[String] = Option.when(!kinds.exists(_.standard.isPapersGame))(names.head)
 
-  /** Whether a name, with these settings, is that of the paper's game as it is; ours is known to every program. */
+  /** Whether a name, with these settings, is that of the paper's game as it is; ours is known to every
+    * program.
+    */
   def isPapersGame(name: String, set: Map[String, String]): Boolean =
     set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
@@ -61,12 +61,9 @@ final case class Scenarios(
 
   /** The scenario that a recording is of.
     *
-    * @param title
-    *   [[Scenario.title]], and what else stands behind a comma
-    * @param parameters
-    *   of the recording, by name
-    * @return
-    *   or why it is not known here
+    * @param title [[Scenario.title]], and what else stands behind a comma
+    * @param parameters of the recording, by name
+    * @return or why it is not known here
     */
   def ofRecording(title: String, parameters: Map[String, String]): Either[String, Scenario] =
     val name = title.takeWhile(_ != ',')

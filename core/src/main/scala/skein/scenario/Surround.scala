@@ -4,12 +4,9 @@ import skein.policy.*
 
 /** Pursuers close a ring around an evader, which flees from the nearest of them.
   *
-  * @param vehicles
-  *   the evader included
-  * @param ringM
-  *   radius of the ring
-  * @param startM
-  *   from the pursuers' line to the evader, at the start
+  * @param vehicles the evader included
+  * @param ringM radius of the ring
+  * @param startM from the pursuers' line to the evader, at the start
   */
 final case class Surround(
     vehicles: Int = 6,

@@ -6,10 +6,8 @@ import skein.units.*
 
 /** Where one vehicle was, by the simulator's clock; ascending, each instant once, at least one.
   *
-  * @param positionsNed
-  *   by instant, m, world frame
-  * @param velocitiesNed
-  *   by instant, m/s
+  * @param positionsNed by instant, m, world frame
+  * @param velocitiesNed by instant, m/s
   */
 final case class Track private (
     vehicle: String,
@@ -23,8 +21,8 @@ final case class Track private (
 
   def isA(role: Role): Boolean = Role.parse(this.role) == role
 
-  /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, seen every 100 ms, is less than
-    * 2 cm from them. Outside the track's times, its first or last position.
+  /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, seen every 100 ms, is less
+    * than 2 cm from them. Outside the track's times, its first or last position.
     */
   def at(time: Instant): Vector3 = between(time, positionsNed)
 
@@ -41,8 +39,7 @@ final case class Track private (
 
 object Track:
 
-  /** @param samples
-    *   instant, position and velocity, in any order; of one instant the first counts
+  /** @param samples instant, position and velocity, in any order; of one instant the first counts
     */
   def of(vehicle: String, role: String, samples: Vector[(Instant, Vector3, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)

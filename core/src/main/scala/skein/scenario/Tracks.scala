@@ -2,8 +2,8 @@ package skein.scenario
 
 import skein.units.*
 
-/** Where all vehicles of a flight were at equal instants of the simulator's clock, by vehicle and instant; vehicles by
-  * their positions in the scenario. World frame NED, m.
+/** Where all vehicles of a flight were at equal instants of the simulator's clock, by vehicle and instant;
+  * vehicles by their positions in the scenario. World frame NED, m.
   */
 final class Tracks private (
     tracks: Vector[Track],
@@ -59,11 +59,10 @@ final class Tracks private (
   def separationM(one: Int, other: Int, instant: Int): Double =
     (positionNed(one, instant) - positionNed(other, instant)).norm
 
-  /** How far the vehicles were from where those of another flight were at the same time since the start: root of the mean
-    * square over vehicles and instants, m.
+  /** How far the vehicles were from where those of another flight were at the same time since the start: root
+    * of the mean square over vehicles and instants, m.
     *
-    * @param inSpace
-    *   else in the horizontal plane
+    * @param inSpace else in the horizontal plane
     */
   def rmsFrom(other: Tracks, inSpace: Boolean): Double =
     val both    = instants.take(other.instants.size)

@@ -4,10 +4,9 @@ import skein.units.*
 
 /** What one direction of a line lets through, and how much may wait before it.
   *
-  * @param bitsPerSecond
-  *   of payload; the headers of a network's own layers are not counted
-  * @param queueBytes
-  *   what waits before the line at most, first in, first out; what does not fit waits at its sender
+  * @param bitsPerSecond of payload; the headers of a network's own layers are not counted
+  * @param queueBytes what waits before the line at most, first in, first out; what does not fit waits at its
+  *   sender
   */
 final case class Bandwidth(bitsPerSecond: Long, queueBytes: Int):
   require(bitsPerSecond > 0 && queueBytes > 0, s"a line has a rate and a queue above zero: $this")
@@ -19,8 +18,8 @@ object Bandwidth:
   /** Two Ethernet frames. */
   private val LeastQueueBytes = 3000
 
-  /** A line with a queue that it sends in 5 ms, the standing delay that CoDel holds a queue to (RFC 8289, section 4.3),
-    * and of 3,000 bytes at least.
+  /** A line with a queue that it sends in 5 ms, the standing delay that CoDel holds a queue to (RFC 8289,
+    * section 4.3), and of 3,000 bytes at least.
     */
   def ofBitsPerSecond(bitsPerSecond: Long): Bandwidth =
     Bandwidth(bitsPerSecond, (bitsPerSecond / 8 / 200).max(LeastQueueBytes).min(Int.MaxValue).toInt)
@@ -28,8 +27,8 @@ object Bandwidth:
   val form: String =
     "a rate from 1kbit to 100gbit such as 50mbit, or with a queue up to 1GB such as 50mbit/64kB"
 
-  /** Reads `50mbit` (bit, kbit, mbit, gbit a second, in powers of 1000), or `50mbit/64kB` with a queue in B, kB, MB or
-    * GB, from 1 byte to 1 GB. The error says what was expected and what came.
+  /** Reads `50mbit` (bit, kbit, mbit, gbit a second, in powers of 1000), or `50mbit/64kB` with a queue in B,
+    * kB, MB or GB, from 1 byte to 1 GB. The error says what was expected and what came.
     */
   def parse(text: String): Either[String, Bandwidth] =
     val bandwidth = text match

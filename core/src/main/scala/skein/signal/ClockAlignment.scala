@@ -4,36 +4,29 @@ import skein.units.*
 
 /** Estimates the offset between the controller's clock and the simulator's.
   *
-  * Physics was sampled at some moment between request and answer, so each reading bounds the offset (controller minus
-  * simulator) from both sides: `sentAt − validAt ≤ offset ≤ receivedAt − validAt`. The bounds of all readings hold at
-  * once; they narrow with every short delay in either direction, and the offset cannot lie outside as long as neither
-  * clock stops. Between the bounds it is estimated by assuming that the lower quartile of
-  * the latest delays is equal in both directions. (Their minima vary more: over the paper's VPN by 7 ms.)
+  * Physics was sampled at some moment between request and answer, so each reading bounds the offset
+  * (controller minus simulator) from both sides: `sentAt − validAt ≤ offset ≤ receivedAt − validAt`. The
+  * bounds of all readings hold at once; they narrow with every short delay in either direction, and the
+  * offset cannot lie outside as long as neither clock stops. Between the bounds it is estimated by assuming
+  * that the lower quartile of the latest delays is equal in both directions. (Their minima vary more: over
+  * the paper's VPN by 7 ms.)
   *
   * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates neither
-  * contradict themselves nor hold the estimate back. If readings contradict each other all the same, the simulator
-  * was paused or restarted: estimation starts anew, and that is counted. The bounds of the last few runs are kept. A late
-  * answer of a former run contradicts the present bounds and agrees with that run's. It says nothing about the present
-  * clock, and is older than all readings of the present run, whatever its time stamp.
+  * contradict themselves nor hold the estimate back. If readings contradict each other all the same, the
+  * simulator was paused or restarted: estimation starts anew, and that is counted. The bounds of the last few
+  * runs are kept. A late answer of a former run contradicts the present bounds and agrees with that run's. It
+  * says nothing about the present clock, and is older than all readings of the present run, whatever its time
+  * stamp.
   *
-  * @param lower
-  *   the offset is at least this
-  * @param upper
-  *   the offset is at most this
-  * @param latest
-  *   bounds from single readings, the newest last
-  * @param validAt
-  *   the simulator's time of the newest reading
-  * @param receivedAt
-  *   when the newest reading arrived
-  * @param standsStill
-  *   whether the simulator's clock did not advance between the last two readings
-  * @param restarts
-  *   how often estimation started afresh
-  * @param since
-  *   when the first reading of the present run arrived
-  * @param former
-  *   the runs before, the newest last, as estimated at their ends
+  * @param lower the offset is at least this
+  * @param upper the offset is at most this
+  * @param latest bounds from single readings, the newest last
+  * @param validAt the simulator's time of the newest reading
+  * @param receivedAt when the newest reading arrived
+  * @param standsStill whether the simulator's clock did not advance between the last two readings
+  * @param restarts how often estimation started afresh
+  * @param since when the first reading of the present run arrived
+  * @param former the runs before, the newest last, as estimated at their ends
   */
 final case class ClockAlignment private (
     lower: Span,
@@ -60,9 +53,10 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
-  /** Whether one reading was sampled later than another: because it was asked for after the other had arrived, or else
-    * because it is of a later run of the simulator, or else by the simulator's clock. The two readings alone do not
-    * suffice: after a restart with an earlier clock, a late answer of the former run has the later time stamp.
+  /** Whether one reading was sampled later than another: because it was asked for after the other had
+    * arrived, or else because it is of a later run of the simulator, or else by the simulator's clock. The
+    * two readings alone do not suffice: after a restart with an earlier clock, a late answer of the former
+    * run has the later time stamp.
     */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     if one.sentAt > other.receivedAt then true
@@ -100,7 +94,9 @@ final case class ClockAlignment private (
             if standsStill then former else (former :+ copy(former = Vector.empty)).takeRight(FormerRuns)
         )
 
-  /** By place among the runs that are known, the present one last. What was asked for when that had begun is its own. */
+  /** By place among the runs that are known, the present one last. What was asked for when that had begun is
+    * its own.
+    */
   private def runOf(reading: Stamped[?]): Int =
     if reading.sentAt > since || hasTold(reading) then former.size
     else
@@ -108,8 +104,8 @@ final case class ClockAlignment private (
         case -1  => former.size
         case run => run
 
-  /** Whether a reading can be of this run: it came when the run had been heard of, and its bounds and these may hold at
-    * once.
+  /** Whether a reading can be of this run: it came when the run had been heard of, and its bounds and these
+    * may hold at once.
     */
   private def hasTold(reading: Stamped[?]): Boolean =
     val slack = drift(since = receivedAt, until = reading.receivedAt)
@@ -122,12 +118,15 @@ object ClockAlignment:
   /** Bounds of the offset by one reading. */
   final case class Bounds(lower: Span, upper: Span)
 
-  /** Readings that the estimate between the bounds is made from: more of them estimate a quartile better, fewer follow
-    * drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million are followed within 0.5 ms.
+  /** Readings that the estimate between the bounds is made from: more of them estimate a quartile better,
+    * fewer follow drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million are
+    * followed within 0.5 ms.
     */
   val Memory = 384
 
-  /** Runs of the simulator before the present one that are remembered: more cannot end within one answer's time. */
+  /** Runs of the simulator before the present one that are remembered: more cannot end within one answer's
+    * time.
+    */
   val FormerRuns = 4
 
   /** Of one clock against the other, seconds a second: about twice what quartz clocks differ by. */
@@ -155,7 +154,9 @@ object ClockAlignment:
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)
 
-  /** Sorts numbers, not objects: it is asked for at every reading, and would take a tenth of a virtual flight. */
+  /** Sorts numbers, not objects: it is asked for at every reading, and would take a tenth of a virtual
+    * flight.
+    */
   private inline def lowQuartile(latest: Vector[Bounds])(inline leg: Bounds => Span): Span =
     val nanos = new Array[Long](latest.size)
     var index = 0

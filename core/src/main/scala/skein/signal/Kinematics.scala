@@ -4,14 +4,10 @@ import skein.units.*
 
 /** Where a vehicle is and how it moves, in the world frame (NED, one origin for all vehicles).
   *
-  * @param positionNed
-  *   m
-  * @param velocityNed
-  *   m/s
-  * @param orientation
-  *   from body FRD to world NED
-  * @param angularVelocityFrd
-  *   rad/s
+  * @param positionNed m
+  * @param velocityNed m/s
+  * @param orientation from body FRD to world NED
+  * @param angularVelocityFrd rad/s
   */
 final case class Kinematics(
     positionNed: Vector3,

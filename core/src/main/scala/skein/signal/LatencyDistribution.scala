@@ -11,18 +11,19 @@ enum LatencyDistribution:
   /** Evenly spread between two bounds. */
   case Uniform(least: Span, most: Span)
 
-  /** The logarithm is normal with standard deviation `sigma`; half of the round trips are shorter than `median`. */
+  /** The logarithm is normal with standard deviation `sigma`; half of the round trips are shorter than
+    * `median`.
+    */
   case LogNormal(median: Span, sigma: Double)
 
-  /** Straight lines between measured quantiles: `roundTripsMs(i)` ms is the quantile at `probabilities(i)`. Both
-    * ascend; the probabilities run from 0 to 1.
+  /** Straight lines between measured quantiles: `roundTripsMs(i)` ms is the quantile at `probabilities(i)`.
+    * Both ascend; the probabilities run from 0 to 1.
     */
   case Quantiles(probabilities: Vector[Double], roundTripsMs: Vector[Double])
 
   /** The round trip that the share `p` of all does not exceed.
     *
-    * @param p
-    *   in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
+    * @param p in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
     */
   def quantile(p: Double): Span = this match
     case Constant(roundTrip)      => roundTrip
@@ -48,8 +49,8 @@ enum LatencyDistribution:
 
 object LatencyDistribution:
 
-  /** The distribution of measured round trips in ms, at least one, in any order: the least at 0, the largest at 1,
-    * the others evenly between.
+  /** The distribution of measured round trips in ms, at least one, in any order: the least at 0, the largest
+    * at 1, the others evenly between.
     */
   def ofSamples(roundTripsMs: Seq[Double]): LatencyDistribution =
     require(roundTripsMs.nonEmpty, "a latency distribution needs at least one sample")
@@ -60,14 +61,16 @@ object LatencyDistribution:
 
   private val published = Vector(0, 1, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 95, 99, 100).map(_ / 100.0)
 
-  /** Round trips of the paper's direct link: quantiles of its 935 published samples (mean 36.8 ms, sd 10.7 ms). */
+  /** Round trips of the paper's direct link: quantiles of its 935 published samples (mean 36.8 ms, sd 10.7
+    * ms).
+    */
   val Direct: LatencyDistribution = Quantiles(
     published,
     Vector(17.8, 20.8, 22.4, 23.8, 26.1, 28.2, 31.2, 35.9, 40.1, 44.0, 47.6, 51.3, 53.8, 58.3, 85.4)
   )
 
-  /** Round trips of the paper's VPN while it was busy: quantiles of the first 393 of its 935 published samples (mean
-    * 102.8 ms, sd 25.6 ms). The flights over VPN happened in this state.
+  /** Round trips of the paper's VPN while it was busy: quantiles of the first 393 of its 935 published
+    * samples (mean 102.8 ms, sd 25.6 ms). The flights over VPN happened in this state.
     */
   val Vpn: LatencyDistribution = Quantiles(
     published,

@@ -2,17 +2,19 @@ package skein.signal
 
 import skein.units.*
 
-/** How long messages take over one direction of a link, as the distribution of round trips that was measured there.
-  * One direction takes half of a sampled round trip. The two directions sample independently, so that a round trip
-  * spreads less than what was measured, by a factor of √2; under [[LatencyProfile.Correlated]] it spreads as measured.
+/** How long messages take over one direction of a link, as the distribution of round trips that was measured
+  * there. One direction takes half of a sampled round trip. The two directions sample independently, so that
+  * a round trip spreads less than what was measured, by a factor of √2; under [[LatencyProfile.Correlated]]
+  * it spreads as measured.
   */
 enum LatencyProfile:
 
   /** Successive round trips are independent and their distribution never changes. */
   case Steady(name: String, roundTrip: LatencyDistribution)
 
-  /** A link that is busy for a while and then quiet for a while; the lengths of these stretches are exponentially
-    * distributed around `busyLasts` and `quietLasts`. Within a stretch successive round trips are independent.
+  /** A link that is busy for a while and then quiet for a while; the lengths of these stretches are
+    * exponentially distributed around `busyLasts` and `quietLasts`. Within a stretch successive round trips
+    * are independent.
     */
   case Alternating(
       name: String,
@@ -22,10 +24,10 @@ enum LatencyProfile:
       quietLasts: Span
   )
 
-  /** Another profile whose delays hold for a while: the share p at which its distribution is read is drawn anew after
-    * exponentially distributed times of mean `over`, for both directions and all connections of a link at once. Every
-    * delay is distributed as before, and the correlation of p at two moments is e^(−t/over): a round trip much shorter
-    * than `over` takes as long as one that was measured.
+  /** Another profile whose delays hold for a while: the share p at which its distribution is read is drawn
+    * anew after exponentially distributed times of mean `over`, for both directions and all connections of a
+    * link at once. Every delay is distributed as before, and the correlation of p at two moments is
+    * e^(−t/over): a round trip much shorter than `over` takes as long as one that was measured.
     */
   case Correlated(name: String, latency: LatencyProfile, over: Span)
 
@@ -40,8 +42,9 @@ object LatencyProfile:
   val direct: LatencyProfile = Steady("direct", LatencyDistribution.Direct)
   val vpn: LatencyProfile    = Steady("vpn", LatencyDistribution.Vpn)
 
-  /** The paper's VPN over a long time: busy in 393 of 935 samples, else like the direct link. It was measured once,
-    * one stretch of each, so only the shares are its own; that a pair of stretches takes 95 s is our choice.
+  /** The paper's VPN over a long time: busy in 393 of 935 samples, else like the direct link. It was measured
+    * once, one stretch of each, so only the shares are its own; that a pair of stretches takes 95 s is our
+    * choice.
     */
   val vpnMixed: Alternating = new Alternating(
     "vpn-mixed",
@@ -52,13 +55,12 @@ object LatencyProfile:
   )
 
   /** Reads a profile from its text form: `none`, `direct`, `vpn`, `vpn-mixed`, `constant:200ms`,
-    * `uniform:10ms..40ms`, `lognormal:36ms,0.3` (median, standard deviation of the logarithm), `file:PATH` (round
-    * trips in ms, one a line; empty lines and lines that start with # are skipped). All times are round trips; units
-    * are `us`, `ms`, `s`. Before any of them may stand `correlated:250ms,` and before all that `rate:50mbit,` or
-    * `rate:50mbit/64kB,`: see [[Bandwidth.parse]].
+    * `uniform:10ms..40ms`, `lognormal:36ms,0.3` (median, standard deviation of the logarithm), `file:PATH`
+    * (round trips in ms, one a line; empty lines and lines that start with # are skipped). All times are
+    * round trips; units are `us`, `ms`, `s`. Before any of them may stand `correlated:250ms,` and before all
+    * that `rate:50mbit,` or `rate:50mbit/64kB,`: see [[Bandwidth.parse]].
     *
-    * @param read
-    *   gives the text of the file at a path, or says why it cannot
+    * @param read gives the text of the file at a path, or says why it cannot
     */
   def parse(text: String, read: String => Either[String, String]): Either[LatencyError, LatencyProfile] =
     LatencyText.parse(text, read)

@@ -2,13 +2,12 @@ package skein.signal
 
 import skein.units.*
 
-/** Draws the delays of one direction of one connection. Holds mutable state: one per direction and connection.
+/** Draws the delays of one direction of one connection. Holds mutable state: one per direction and
+  * connection.
   *
-  * @param linkSeed
-  *   decides when the link is busy, and what delays hold for a while: equal for all connections and directions of one
-  *   link, so that they agree
-  * @param lineSeed
-  *   decides the delays: different for each
+  * @param linkSeed decides when the link is busy, and what delays hold for a while: equal for all connections
+  *   and directions of one link, so that they agree
+  * @param lineSeed decides the delays: different for each
   */
 final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Long):
   private val random = SplitMix64(lineSeed)
@@ -29,8 +28,7 @@ final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Lo
 
   /** The next message's delay: half of a sampled round trip.
     *
-    * @param sinceStart
-    *   time since the link began; never smaller than at the call before
+    * @param sinceStart time since the link began; never smaller than at the call before
     */
   def oneWay(sinceStart: Span): Span = roundTrip(sinceStart).quantile(share(sinceStart)) / 2
 

@@ -2,7 +2,8 @@ package skein.signal
 
 /** The inverse of the standard normal cumulative distribution function, to a relative error of 1.2 · 10^−9^.
   *
-  * Source: P. J. Acklam's rational approximation (2003); held to tabulated values by `LatencyDistributionSuite`.
+  * Source: P. J. Acklam's rational approximation (2003); held to tabulated values by
+  * `LatencyDistributionSuite`.
   */
 private[skein] object NormalQuantile:
   private val tail = 0.02425

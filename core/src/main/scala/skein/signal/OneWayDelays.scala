@@ -4,14 +4,12 @@ import skein.units.*
 
 /** How long messages take to the simulator and back, as means over the latest readings.
   *
-  * `toSimulator` is a difference between two clocks: it contains the clocks' offset. That is what prediction needs (a
-  * command sent at t acts when the simulator's clock shows t + toSimulator), and it does not suffer from what is
-  * uncertain about the offset. [[ClockAlignment]] tells the offset.
+  * `toSimulator` is a difference between two clocks: it contains the clocks' offset. That is what prediction
+  * needs (a command sent at t acts when the simulator's clock shows t + toSimulator), and it does not suffer
+  * from what is uncertain about the offset. [[ClockAlignment]] tells the offset.
   *
-  * @param toSimulator
-  *   mean of simulator's time of sampling minus controller's time of sending
-  * @param fromSimulator
-  *   mean of controller's time of receipt minus simulator's time of sampling
+  * @param toSimulator mean of simulator's time of sampling minus controller's time of sending
+  * @param fromSimulator mean of controller's time of receipt minus simulator's time of sampling
   */
 final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, readings: Int):
 
@@ -20,8 +18,9 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
   /** The simulator's time at which a message acts that left at this controller's time. */
   def expectedArrival(sentAt: Instant): Instant = sentAt + toSimulator
 
-  /** The same for a message whose answer has come. Its round trip says more than the means do: of two independent,
-    * equally spread delays whose sum is known, each is its own mean plus half of what the sum is off.
+  /** The same for a message whose answer has come. Its round trip says more than the means do: of two
+    * independent, equally spread delays whose sum is known, each is its own mean plus half of what the sum is
+    * off.
     */
   def arrivalGiven(sentAt: Instant, answeredAt: Instant): Instant =
     sentAt + toSimulator + (answeredAt.since(sentAt) - roundTrip) / 2
@@ -38,7 +37,9 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
 
 object OneWayDelays:
 
-  /** Readings that the means remember, about: 1.6 s at 20 a second, so that a link that turns busy is noticed soon. */
+  /** Readings that the means remember, about: 1.6 s at 20 a second, so that a link that turns busy is noticed
+    * soon.
+    */
   val Memory = 32
 
   def of(reading: Stamped[?]): OneWayDelays =

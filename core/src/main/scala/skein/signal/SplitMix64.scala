@@ -1,10 +1,12 @@
 package skein.signal
 
-/** A small seeded source of random numbers with its own state; the same seed gives the same sequence everywhere and
-  * for ever, which a recording's replay relies on. Not for secrets, and not for several threads.
+/** A small seeded source of random numbers with its own state; the same seed gives the same sequence
+  * everywhere and for ever, which a recording's replay relies on. Not for secrets, and not for several
+  * threads.
   *
-  * Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the constants of
-  * Vigna's public-domain `splitmix64.c`; held to its published first outputs by `SplitMix64Suite`.
+  * Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the
+  * constants of Vigna's public-domain `splitmix64.c`; held to its published first outputs by
+  * `SplitMix64Suite`.
   */
 final class SplitMix64(seed: Long):
   import SplitMix64.*

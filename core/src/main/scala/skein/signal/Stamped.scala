@@ -2,20 +2,19 @@ package skein.signal
 
 import skein.units.*
 
-/** A reading with its valid time and the times of asking and answering. The decision that uses it records its own time.
+/** A reading with its valid time and the times of asking and answering. The decision that uses it records its
+  * own time.
   *
-  * @param validAt
-  *   when physics was sampled, on the simulator's clock
-  * @param sentAt
-  *   when the request left, on the controller's clock
-  * @param receivedAt
-  *   when the answer arrived, on the controller's clock
+  * @param validAt when physics was sampled, on the simulator's clock
+  * @param sentAt when the request left, on the controller's clock
+  * @param receivedAt when the answer arrived, on the controller's clock
   */
 final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): Stamped[B] = copy(value = f(value))
 
-  /** Whether this was sampled later, judged by the two readings alone: by the simulator's clock, or because it was asked
-    * for after the other had arrived. Across a restart of the simulator use [[ClockAlignment.isNewer]].
+  /** Whether this was sampled later, judged by the two readings alone: by the simulator's clock, or because
+    * it was asked for after the other had arrived. Across a restart of the simulator use
+    * [[ClockAlignment.isNewer]].
     */
   def isNewerThan(other: Stamped[?]): Boolean =
     Stamped.isNewer(
@@ -28,7 +27,9 @@ final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receiv
   /** The request's round trip on the controller's clock. */
   def roundTrip: Span = receivedAt.since(sentAt)
 
-  /** Age by arrival: time since the answer arrived. The paper's published age; it hides the network's own delay. */
+  /** Age by arrival: time since the answer arrived. The paper's published age; it hides the network's own
+    * delay.
+    */
   def ageByArrival(usedAt: Instant): Span = usedAt.since(receivedAt)
 
 object Stamped:

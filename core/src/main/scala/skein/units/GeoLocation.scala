@@ -1,6 +1,7 @@
 package skein.units
 
-/** Degrees from the equator and from Greenwich, and height above sea level. The Earth is AirSim's: a sphere. */
+/** Degrees from the equator and from Greenwich, and height above sea level. The Earth is AirSim's: a sphere.
+  */
 final case class GeoLocation(latitudeDeg: Double, longitudeDeg: Double, altitude: Metres):
 
   /** The geographic place of a point given in NED, m, around this one. */

@@ -1,7 +1,7 @@
 package skein.units
 
-/** Three components in one frame; the name of the variable ends with the frame: `positionNed` (north, east, down) in
-  * metres, `velocityFrd` (front, right, down) in metres per second.
+/** Three components in one frame; the name of the variable ends with the frame: `positionNed` (north, east,
+  * down) in metres, `velocityFrd` (front, right, down) in metres per second.
   */
 final case class Vector3(x: Double, y: Double, z: Double):
   def +(other: Vector3): Vector3 = Vector3(x + other.x, y + other.y, z + other.z)

@@ -14,7 +14,8 @@ object MetresPerSecond:
   inline def apply(metresPerSecond: Double): MetresPerSecond  = metresPerSecond
   extension (speed: MetresPerSecond) inline def value: Double = speed
 
-/** An angle in radians. Headings are measured from north (+x) towards east (+y), as in NED. A bare `double`. */
+/** An angle in radians. Headings are measured from north (+x) towards east (+y), as in NED. A bare `double`.
+  */
 opaque type Radians = Double
 
 object Radians:

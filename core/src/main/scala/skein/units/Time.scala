@@ -1,8 +1,8 @@
 package skein.units
 
 /** A point in time: nanoseconds since the epoch of the clock that was read. Instants of two clocks (the
-  * controller's and the simulator's) must not be subtracted without the offset between them; field names say whose
-  * clock it is.
+  * controller's and the simulator's) must not be subtracted without the offset between them; field names say
+  * whose clock it is.
   */
 opaque type Instant = Long
 
@@ -42,8 +42,7 @@ object Span:
 
   /** Reads a length of time with its unit, for example `100ms`, `1.5 s`, `2 min`, `1h`; zero or more.
     *
-    * @return
-    *   or what was expected and came
+    * @return or what was expected and came
     */
   def parse(text: String): Either[String, Span] =
     text.trim match

@@ -6,34 +6,21 @@ package skein.vehicle
   * Rotors, in this order: 0 front right (counter-clockwise), 1 rear left (counter-clockwise), 2 front left
   * (clockwise), 3 rear right (clockwise). They lie in one plane on the diagonals.
   *
-  * @param massKg
-  *   all of it, motors included
-  * @param motorKg
-  *   one motor, a point mass at its rotor
-  * @param boxFrontM
-  *   length of the body box along front; `boxRightM` and `boxDownM` likewise
-  * @param armM
-  *   from the centre of mass to a rotor's axis, in the rotor plane
-  * @param rotorDownM
-  *   the rotor plane's down coordinate in the body
-  * @param rotorDiameterM
-  *   GWS 9×5 propeller
-  * @param rotorHeightM
-  *   height of the cylinder the rotor sweeps, which drags sideways
-  * @param maxThrustN
-  *   of one rotor at full control and sea-level density: C_T ρ n² D⁴ with C_T 0.109919 at 6396.667 rpm
-  * @param maxTorqueNm
-  *   of one rotor likewise: C_P ρ n² D⁵ / 2π with C_P 0.040164
-  * @param rotorTimeConstantS
-  *   of the first-order lag from control to thrust
-  * @param dragCoefficient
-  *   1.3 of a blunt body, a quarter of it for a streamlined frame
-  * @param dragMinSpeed
-  *   m/s; a face moving slower along its normal does not drag
-  * @param restitution
-  *   share of the normal speed that a bounce returns
-  * @param friction
-  *   share of the tangential speed that a bounce takes
+  * @param massKg all of it, motors included
+  * @param motorKg one motor, a point mass at its rotor
+  * @param boxFrontM length of the body box along front; `boxRightM` and `boxDownM` likewise
+  * @param armM from the centre of mass to a rotor's axis, in the rotor plane
+  * @param rotorDownM the rotor plane's down coordinate in the body
+  * @param rotorDiameterM GWS 9×5 propeller
+  * @param rotorHeightM height of the cylinder the rotor sweeps, which drags sideways
+  * @param maxThrustN of one rotor at full control and sea-level density: C_T ρ n² D⁴ with C_T 0.109919 at
+  *   6396.667 rpm
+  * @param maxTorqueNm of one rotor likewise: C_P ρ n² D⁵ / 2π with C_P 0.040164
+  * @param rotorTimeConstantS of the first-order lag from control to thrust
+  * @param dragCoefficient 1.3 of a blunt body, a quarter of it for a streamlined frame
+  * @param dragMinSpeed m/s; a face moving slower along its normal does not drag
+  * @param restitution share of the normal speed that a bounce returns
+  * @param friction share of the tangential speed that a bounce takes
   */
 final case class Airframe(
     massKg: Double = 1.0,
@@ -68,8 +55,8 @@ final case class Airframe(
   private val discM2  = 4 * math.Pi * square(rotorDiameterM)
   private val sidesM2 = 4 * math.Pi * rotorDiameterM * rotorHeightM
 
-  /** Drag over density and squared normal speed of the faces across front, right and down, m². AirSim puts π·D² of
-    * each rotor (not a disc's π·D²/4) into the top and bottom faces.
+  /** Drag over density and squared normal speed of the faces across front, right and down, m². AirSim puts
+    * π·D² of each rotor (not a disc's π·D²/4) into the top and bottom faces.
     */
   val dragFront: Double = dragCoefficient / 2 * (boxRightM * boxDownM + sidesM2)
   val dragRight: Double = dragCoefficient / 2 * (boxFrontM * boxDownM + sidesM2)

@@ -1,20 +1,16 @@
 package skein.vehicle
 
-/** Drives a car after a commanded velocity: steers onto the arc that takes the heading's error away within a time, and
-  * approaches the speed with a time constant, slower while it is turning. Told to stand still, it brakes. It never drives
-  * backwards: what is wanted behind it is reached by turning round.
+/** Drives a car after a commanded velocity: steers onto the arc that takes the heading's error away within a
+  * time, and approaches the speed with a time constant, slower while it is turning. Told to stand still, it
+  * brakes. It never drives backwards: what is wanted behind it is reached by turning round.
   *
-  * @param headingS
-  *   within which the heading's error would be gone
-  * @param speedS
-  *   time constant of the speed
-  * @param leastShare
-  *   of the commanded speed, while the heading is far off
+  * @param headingS within which the heading's error would be gone
+  * @param speedS time constant of the speed
+  * @param leastShare of the commanded speed, while the heading is far off
   */
 final case class CarDriver(headingS: Double = 0.8, speedS: Double = 0.5, leastShare: Double = 0.4):
 
-  /** @param northMps
-    *   commanded velocity
+  /** @param northMps commanded velocity
     */
   def controls(
       car: SingleTrack,

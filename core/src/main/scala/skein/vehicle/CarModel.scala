@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts a [[DrivenCar]]. Setpoints that are no velocities are taken as "stand still". What no reading tells, the front
-  * wheels' angle and the tyres' deflection, is simulated along.
+/** Predicts a [[DrivenCar]]. Setpoints that are no velocities are taken as "stand still". What no reading
+  * tells, the front wheels' angle and the tyres' deflection, is simulated along.
   */
 final case class CarModel(driven: DrivenCar = DrivenCar()) extends VehicleModel[CarModel.Driving]:
   import CarModel.*
@@ -45,7 +45,6 @@ final case class CarModel(driven: DrivenCar = DrivenCar()) extends VehicleModel[
 
 object CarModel:
 
-  /** @param seen
-    *   last: what of it the model does not move goes on as it was
+  /** @param seen last: what of it the model does not move goes on as it was
     */
   final case class Driving private[vehicle] (state: CarState, seen: Kinematics)

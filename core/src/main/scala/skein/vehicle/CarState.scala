@@ -2,18 +2,13 @@ package skein.vehicle
 
 /** Everything that changes while a car drives. Place and velocity are those of its centre of mass.
   *
-  * @param headingRad
-  *   from north towards east, any number of turns
-  * @param frontMps
-  *   velocity along the heading, negative backwards
-  * @param rightMps
-  *   across it
-  * @param yawRadPerS
-  *   clockwise seen from above
-  * @param frontSlipRad
-  *   angle by which the front tyres are deflected, positive where they push to the right; `rearSlipRad` likewise
-  * @param steeredRad
-  *   angle of the front wheels, positive to the right
+  * @param headingRad from north towards east, any number of turns
+  * @param frontMps velocity along the heading, negative backwards
+  * @param rightMps across it
+  * @param yawRadPerS clockwise seen from above
+  * @param frontSlipRad angle by which the front tyres are deflected, positive where they push to the right;
+  *   `rearSlipRad` likewise
+  * @param steeredRad angle of the front wheels, positive to the right
   */
 final case class CarState(
     northM: Double,
@@ -31,12 +26,9 @@ final case class CarState(
 
 /** What a driver does.
   *
-  * @param throttle
-  *   −1 to 1; negative drives backwards
-  * @param steering
-  *   −1, full lock to the left, to 1
-  * @param brake
-  *   0 to 1
+  * @param throttle −1 to 1; negative drives backwards
+  * @param steering −1, full lock to the left, to 1
+  * @param brake 0 to 1
   */
 final case class CarControls(throttle: Double, steering: Double, brake: Double)
 

@@ -6,17 +6,15 @@ final case class Pid(p: Double, i: Double = 0, d: Double = 0)
 /** One controller for each of three axes. */
 final case class AxisGains(first: Pid, second: Pid, third: Pid)
 
-/** The gains that AirSim lets a client set, controller by controller (`set…ControllerGains`). The defaults are those of
-  * [[ControllerGains]], whose limits, throttle and discount go on to hold.
+/** The gains that AirSim lets a client set, controller by controller (`set…ControllerGains`). The defaults
+  * are those of [[ControllerGains]], whose limits, throttle and discount go on to hold.
   *
-  * @param rate
-  *   roll, pitch, yaw: torque command per rad/s. AirSim takes the proportional gains only and ignores the others
-  * @param angle
-  *   roll, pitch, yaw: share of the greatest rate per rad
-  * @param velocity
-  *   front, right, down (AirSim says x, y, z): share of the greatest tilt per m/s; down: out of −1 … 1 per m/s
-  * @param position
-  *   north, east, down: share of the greatest speed per m
+  * @param rate roll, pitch, yaw: torque command per rad/s. AirSim takes the proportional gains only and
+  *   ignores the others
+  * @param angle roll, pitch, yaw: share of the greatest rate per rad
+  * @param velocity front, right, down (AirSim says x, y, z): share of the greatest tilt per m/s; down: out of
+  *   −1 … 1 per m/s
+  * @param position north, east, down: share of the greatest speed per m
   */
 final case class CascadeGains(
     rate: AxisGains = CascadeGains.uniform(Pid(0.25)),

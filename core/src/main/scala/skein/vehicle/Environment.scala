@@ -2,15 +2,13 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** What surrounds a vehicle: air and ground. Constant over the steps it is passed to; pass another one when the wind
-  * changes.
+/** What surrounds a vehicle: air and ground. Constant over the steps it is passed to; pass another one when
+  * the wind changes.
   *
-  * @param windNed
-  *   velocity of the air, m/s; acts through drag alone
-  * @param groundDownM
-  *   down (z, NED) coordinate of a flat ground, m; a vehicle's origin touches it when its z reaches this
-  * @param originAltitudeM
-  *   altitude of z = 0 above sea level, m; AirSim's default home lies at 122 m
+  * @param windNed velocity of the air, m/s; acts through drag alone
+  * @param groundDownM down (z, NED) coordinate of a flat ground, m; a vehicle's origin touches it when its z
+  *   reaches this
+  * @param originAltitudeM altitude of z = 0 above sea level, m; AirSim's default home lies at 122 m
   */
 final case class Environment(
     windNed: Vector3 = Vector3.Zero,

@@ -1,10 +1,10 @@
 package skein.vehicle
 
-/** How a velocity's error v − u dies away under v' = (u − v) / lag while u stands still: after t, e^(−t / lag) of it
-  * remains. So the position has come u · t + (v − u) · [[carriesS]](t) on, where v was the velocity at first.
+/** How a velocity's error v − u dies away under v' = (u − v) / lag while u stands still: after t, e^(−t /
+  * lag) of it remains. So the position has come u · t + (v − u) · [[carriesS]](t) on, where v was the
+  * velocity at first.
   *
-  * @param lagS
-  *   0: the velocity jumps
+  * @param lagS 0: the velocity jumps
   */
 final case class FirstOrderLag(lagS: Double):
   require(lagS >= 0, s"a lag must not be negative, came $lagS s")

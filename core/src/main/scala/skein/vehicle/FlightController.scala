@@ -2,33 +2,21 @@ package skein.vehicle
 
 import scala.annotation.unused
 
-/** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that are zero
-  * there (all derivatives, all integrals but the vertical velocity's) have no field here.
+/** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that
+  * are zero there (all derivatives, all integrals but the vertical velocity's) have no field here.
   *
-  * @param rateP
-  *   torque command per rad/s
-  * @param maxRate
-  *   rad/s
-  * @param angleP
-  *   share of `maxRate` per rad
-  * @param maxTilt
-  *   rad; limit of roll and pitch
-  * @param velocityP
-  *   share of `maxTilt` per m/s
-  * @param verticalP
-  *   out of −1 … 1 per m/s, −1 being full and +1 no throttle
-  * @param verticalI
-  *   the same per m/s and second
-  * @param verticalDiscount
-  *   factor on the integral term at every update
-  * @param minThrottle
-  *   what a velocity controller leaves at least, so that a falling vehicle can still tilt
-  * @param positionP
-  *   share of `maxVelocity` per m
-  * @param maxVelocity
-  *   m/s
-  * @param minAnglingThrottle
-  *   below it all rotors get the throttle alone
+  * @param rateP torque command per rad/s
+  * @param maxRate rad/s
+  * @param angleP share of `maxRate` per rad
+  * @param maxTilt rad; limit of roll and pitch
+  * @param velocityP share of `maxTilt` per m/s
+  * @param verticalP out of −1 … 1 per m/s, −1 being full and +1 no throttle
+  * @param verticalI the same per m/s and second
+  * @param verticalDiscount factor on the integral term at every update
+  * @param minThrottle what a velocity controller leaves at least, so that a falling vehicle can still tilt
+  * @param positionP share of `maxVelocity` per m
+  * @param maxVelocity m/s
+  * @param minAnglingThrottle below it all rotors get the throttle alone
   */
 final case class ControllerGains(
     rateP: Double = 0.25,
@@ -45,17 +33,17 @@ final case class ControllerGains(
     minAnglingThrottle: Double = 0.05
 )
 
-/** AirSim's default flight controller: a cascade per axis, position → velocity → angle → rate → torque command, and
-  * the mixer that turns the four commands into rotor controls. It sees the true state.
+/** AirSim's default flight controller: a cascade per axis, position → velocity → angle → rate → torque
+  * command, and the mixer that turns the four commands into rotor controls. It sees the true state.
   *
-  * '''The quirk that shapes every flight.''' In velocity mode roll and pitch rotate the ''whole'' goal triple into the
-  * body frame, whatever its third number means. Under [[Setpoint.velocityZ]] that is an altitude, so a vehicle tilted
-  * by α sees sin α · z as if it were wanted speed and tilts less: the response is slow, the more the higher it flies.
+  * '''The quirk that shapes every flight.''' In velocity mode roll and pitch rotate the ''whole'' goal triple
+  * into the body frame, whatever its third number means. Under [[Setpoint.velocityZ]] that is an altitude, so
+  * a vehicle tilted by α sees sin α · z as if it were wanted speed and tilts less: the response is slow, the
+  * more the higher it flies.
   *
   * [[TunedFlightController]] is the same cascade with gains of every controller's own.
   *
-  * @param stepS
-  *   time between updates, s
+  * @param stepS time between updates, s
   */
 open class FlightController(val gains: ControllerGains, stepS: Double):
   import gains.*
@@ -129,8 +117,8 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
     state.verticalMode = setpoint.vertical
     mix(state, rollCommand, pitchCommand, yawCommand, throttle)
 
-  /** The integral term of a vehicle that hovers at this throttle, and its lasting velocity error, m/s: the discount
-    * takes from the integral at each update what that error adds.
+  /** The integral term of a vehicle that hovers at this throttle, and its lasting velocity error, m/s: the
+    * discount takes from the integral at each update what that error adds.
     */
   private[vehicle] def hoverIntegral(throttle: Double): (Double, Double) =
     val out              = 1 - 2 * throttle
@@ -151,10 +139,8 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
 
   /** What one controller of the cascade makes of its error, −1 to 1.
     *
-    * @param loop
-    *   which one; see the companion
-    * @param gain
-    *   its share of `gains`
+    * @param loop which one; see the companion
+    * @param gain its share of `gains`
     */
   protected def respond(
       @unused state: QuadrotorState,

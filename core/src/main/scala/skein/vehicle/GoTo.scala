@@ -2,8 +2,8 @@ package skein.vehicle
 
 import skein.units.{MetresPerSecond, Vector3}
 
-/** Comes to a place by velocities. A vehicle that follows them with a lag of 0.9 s, as AirSim's does, does not pass it:
-  * 1.5² = 4 · 0.6 · 0.9, nearly.
+/** Comes to a place by velocities. A vehicle that follows them with a lag of 0.9 s, as AirSim's does, does
+  * not pass it: 1.5² = 4 · 0.6 · 0.9, nearly.
   */
 object GoTo:
   private val PerMetre = 0.6
@@ -11,8 +11,7 @@ object GoTo:
 
   /** The velocity to command, NED, m/s, in the frame of the positions.
     *
-    * @param cruise
-    *   the fastest that the vehicle flies
+    * @param cruise the fastest that the vehicle flies
     */
   def velocityNed(
       positionNed: Vector3,

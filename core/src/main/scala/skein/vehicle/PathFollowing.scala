@@ -15,16 +15,14 @@ object PathFollowing:
 
   /** How far ahead it aims where nobody said how far, m.
     *
-    * @param isAdaptive
-    *   whether it aims further, the further the vehicle has strayed from the path
+    * @param isAdaptive whether it aims further, the further the vehicle has strayed from the path
     */
   def lookaheadM(speedMps: Double, isAdaptive: Boolean): Double =
     (speedMps * Period.toSeconds * (if isAdaptive then 30 else 40)).max(DistanceAccuracyM * 1.5)
 
   /** The velocity to command, NED, m/s.
     *
-    * @param wayNed
-    *   from the vehicle to the point it aims at, m
+    * @param wayNed from the vehicle to the point it aims at, m
     */
   def velocityNed(wayNed: Vector3, speedMps: Double): Vector3 =
     val distance = wayNed.norm

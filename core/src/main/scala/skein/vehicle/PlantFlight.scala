@@ -1,7 +1,7 @@
 package skein.vehicle
 
-/** One vehicle that flies by a [[Plant]], from one event to the next. Mutable. How its time is cut into calls of
-  * [[advance]] does not change the flight, but for rounding.
+/** One vehicle that flies by a [[Plant]], from one event to the next. Mutable. How its time is cut into calls
+  * of [[advance]] does not change the flight, but for rounding.
   */
 final class PlantFlight[S](val plant: Plant[S]):
   private var wantedNorthMps, wantedEastMps = 0.0

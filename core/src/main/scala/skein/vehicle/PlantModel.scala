@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts by a plant, horizontally; the altitude goes on as it was seen. Setpoints that are no velocities are taken as
-  * "stand still". Orientation stays as seen.
+/** Predicts by a plant, horizontally; the altitude goes on as it was seen. Setpoints that are no velocities
+  * are taken as "stand still". Orientation stays as seen.
   */
 final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[PlantModel.Flying[S]]:
   import PlantModel.*
@@ -43,12 +43,9 @@ final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[Pla
 
 object PlantModel:
 
-  /** @param acting
-    *   the commanded velocity that acts, m/s
-    * @param told
-    *   the one that came last
-    * @param coming
-    *   what has come and does not act yet, the oldest first
+  /** @param acting the commanded velocity that acts, m/s
+    * @param told the one that came last
+    * @param coming what has come and does not act yet, the oldest first
     */
   final case class Flying[S] private[vehicle] (
       now: Kinematics,
@@ -58,8 +55,7 @@ object PlantModel:
       coming: Vector[Coming]
   )
 
-  /** @param in
-    *   until it acts
+  /** @param in until it acts
     */
   final case class Coming private[vehicle] (velocityNed: Vector3, in: Span)
 

@@ -3,13 +3,11 @@ package skein.vehicle
 import skein.units.Vector3
 
 /** A quadrotor with its flight controller, as AirSim 1.8 simulates it by default (`FastPhysicsEngine`,
-  * `RotorActuator`, SimpleFlight). Immutable: all that changes is in a [[QuadrotorState]], so that one instance
-  * serves any number of vehicles and threads.
+  * `RotorActuator`, SimpleFlight). Immutable: all that changes is in a [[QuadrotorState]], so that one
+  * instance serves any number of vehicles and threads.
   *
-  * @param stepS
-  *   s; AirSim's is 3 ms
-  * @param cascade
-  *   gains that a client has set, which then stand for those of `gains`
+  * @param stepS s; AirSim's is 3 ms
+  * @param cascade gains that a client has set, which then stand for those of `gains`
   */
 final class Quadrotor(
     val airframe: Airframe = Airframe(),
@@ -26,9 +24,9 @@ final class Quadrotor(
   private val halfStep       = stepS / 2
   private val halfStepSquare = halfStep * halfStep
 
-  /** Advances `state` by one step: forces, then the next kinematics, then the rotors' lag, then the controller, which
-    * sees the new kinematics and sets the rotors. Deterministic; allocates nothing in the air; about 0.13 µs.
-    * `QuadrotorGolden` holds it to AirSim's own step responses.
+  /** Advances `state` by one step: forces, then the next kinematics, then the rotors' lag, then the
+    * controller, which sees the new kinematics and sets the rotors. Deterministic; allocates nothing in the
+    * air; about 0.13 µs. `QuadrotorGolden` holds it to AirSim's own step responses.
     */
   def step(state: QuadrotorState, setpoint: Setpoint, environment: Environment = Environment.Calm): Unit =
     val densityRatio = Atmosphere.densityRatio(environment.originAltitudeM - state.z)
@@ -69,7 +67,9 @@ final class Quadrotor(
     state.thrust0 = control; state.thrust1 = control; state.thrust2 = control; state.thrust3 = control
     state
 
-  /** A vehicle that stands on the ground with its motors off. `positionNed` should lie on the environment's ground. */
+  /** A vehicle that stands on the ground with its motors off. `positionNed` should lie on the environment's
+    * ground.
+    */
   def landed(positionNed: Vector3, yawRad: Double = 0.0): QuadrotorState =
     val state = atRest(positionNed, yawRad)
     state.grounded = true
@@ -80,8 +80,8 @@ final class Quadrotor(
   def hover(state: QuadrotorState, goalNed: Vector3, yawRad: Double, environment: Environment): Unit =
     state.copyFrom(hovering(goalNed, yawRad, environment))
 
-  /** How far below the held altitude a hovering vehicle settles, m: the altitude integrator's discount leaves it
-    * there. 2.0 mm for AirSim's vehicle.
+  /** How far below the held altitude a hovering vehicle settles, m: the altitude integrator's discount leaves
+    * it there. 2.0 mm for AirSim's vehicle.
     */
   def hoverSagM(downM: Double, environment: Environment = Environment.Calm): Double =
     hovering(Vector3(0, 0, downM), 0.0, environment).z - downM
@@ -97,8 +97,8 @@ final class Quadrotor(
     state.qw = StrictMath.cos(yawRad / 2); state.qz = StrictMath.sin(yawRad / 2)
     state
 
-  /** AirSim hands a rotor's output on twice, so a control acts two steps after its lag: 6 ms that the step responses
-    * show.
+  /** AirSim hands a rotor's output on twice, so a control acts two steps after its lag: 6 ms that the step
+    * responses show.
     */
   private def spinRotors(state: QuadrotorState): Unit =
     state.thrust0 = state.lagged0; state.thrust1 = state.lagged1
@@ -187,9 +187,9 @@ final class Quadrotor(
   private def drag(factor: Double, speed: Double): Double =
     if math.abs(speed) > dragMinSpeed then -factor * speed * math.abs(speed) else 0.0
 
-  /** AirSim's collision response with flat ground, in place of the step: a vehicle that comes down more than sideways, and
-    * near level, stays; any other bounces. The contact is taken at the centre of mass, so it turns nothing; in AirSim it is
-    * where the engine's shapes meet.
+  /** AirSim's collision response with flat ground, in place of the step: a vehicle that comes down more than
+    * sideways, and near level, stays; any other bounces. The contact is taken at the centre of mass, so it
+    * turns nothing; in AirSim it is where the engine's shapes meet.
     */
   private[skein] def touchGround(
       state: QuadrotorState,

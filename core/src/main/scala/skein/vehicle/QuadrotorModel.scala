@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** The whole vehicle as a model: what a reading does not show, rotors and integrators, is simulated along between
-  * readings. About 0.13 µs per 3 ms of flight.
+/** The whole vehicle as a model: what a reading does not show, rotors and integrators, is simulated along
+  * between readings. About 0.13 µs per 3 ms of flight.
   */
 final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Environment.Calm)
     extends VehicleModel[QuadrotorModel.Flying]:
@@ -52,8 +52,7 @@ object QuadrotorModel:
   /** AirSim's default vehicle in calm air. */
   val AirSim: QuadrotorModel = QuadrotorModel(Quadrotor.AirSim)
 
-  /** @param owed
-    *   time that has passed since the last whole step of physics
+  /** @param owed time that has passed since the last whole step of physics
     */
   final class Flying private[vehicle] (
       private[vehicle] val state: QuadrotorState,

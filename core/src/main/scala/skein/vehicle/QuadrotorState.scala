@@ -3,9 +3,9 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 
-/** Everything that changes while a quadrotor flies: kinematics, rotors and the memory of its flight controller.
-  * Mutable and flat, so that a step allocates nothing; [[copyFrom]] makes it equal to another. Create one with
-  * [[Quadrotor.hovering]] or [[Quadrotor.landed]].
+/** Everything that changes while a quadrotor flies: kinematics, rotors and the memory of its flight
+  * controller. Mutable and flat, so that a step allocates nothing; [[copyFrom]] makes it equal to another.
+  * Create one with [[Quadrotor.hovering]] or [[Quadrotor.landed]].
   *
   * World frame NED, body frame FRD, metres, seconds, radians.
   */
@@ -44,8 +44,8 @@ final class QuadrotorState:
   /** Integral term of the vertical velocity controller, −1 to 1. */
   private[vehicle] var verticalIntegral = 0.0
 
-  /** The vertical mode of the step before, whose change creates the vertical controllers anew; null before the first.
-    * The other axes have no memory, for their integral gains are zero.
+  /** The vertical mode of the step before, whose change creates the vertical controllers anew; null before
+    * the first. The other axes have no memory, for their integral gains are zero.
     */
   private[vehicle] var verticalMode: VerticalMode | Null = null
 

@@ -1,27 +1,24 @@
 package skein.vehicle
 
-/** A few-parameter model of how horizontal velocity v follows a commanded velocity u that stands still between events:
+/** A few-parameter model of how horizontal velocity v follows a commanded velocity u that stands still
+  * between events:
   *
   *   - along u: v' = (gain · |u| − v) / lag − drag · s · v
   *   - across u: v' = −v / turnLag − drag · s · v
   *
-  * A command acts `deadTimeS` after it has come. s is the speed when the present piece of the flight began: pieces begin
-  * when a command begins to act, and every [[ReducedModel.PieceS]] after it. So each piece is linear and has a closed
-  * form, and drag still grows with the square of the speed.
+  * A command acts `deadTimeS` after it has come. s is the speed when the present piece of the flight began:
+  * pieces begin when a command begins to act, and every [[ReducedModel.PieceS]] after it. So each piece is
+  * linear and has a closed form, and drag still grows with the square of the speed.
   *
-  * Why this form: AirSim's flight controller tilts in proportion to the velocity's error, so velocity has a first-order
-  * lag (the tilt itself settles within a dead time); the air's drag is quadratic, so a gain fits one speed only.
+  * Why this form: AirSim's flight controller tilts in proportion to the velocity's error, so velocity has a
+  * first-order lag (the tilt itself settles within a dead time); the air's drag is quadratic, so a gain fits
+  * one speed only.
   *
-  * @param gain
-  *   reached over commanded speed, drag apart
-  * @param lagS
-  *   of the velocity along the command, s
-  * @param deadTimeS
-  *   from a command's arrival until it acts
-  * @param turnLagS
-  *   of the velocity across the command, s: how fast the old direction dies away
-  * @param dragPerM
-  *   deceleration per squared speed, 1/m
+  * @param gain reached over commanded speed, drag apart
+  * @param lagS of the velocity along the command, s
+  * @param deadTimeS from a command's arrival until it acts
+  * @param turnLagS of the velocity across the command, s: how fast the old direction dies away
+  * @param dragPerM deceleration per squared speed, 1/m
   */
 final case class ReducedModel(
     gain: Double,
@@ -59,8 +56,8 @@ final case class ReducedModel(
     )
     if turns then across(alike, wantedVx, wantedVy, offVx, offVy, left, carriesS, drag, spanS) else alike
 
-  /** Of what the velocity is off, the part across the command dies away at its own rate. Told to stand still, all dies
-    * away with the lag along.
+  /** Of what the velocity is off, the part across the command dies away at its own rate. Told to stand still,
+    * all dies away with the lag along.
     */
   private def across(
       alike: PlaneReading,
@@ -95,18 +92,21 @@ object ReducedModel:
   def lag(gain: Double, lagS: Double, deadTimeS: Double): ReducedModel =
     ReducedModel(gain, lagS, deadTimeS, lagS, 0)
 
-  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m. The lag depends on the altitude, since AirSim's
-    * controller mistakes the altitude's goal for a velocity once the vehicle tilts ([[FlightController]]).
+  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m. The lag depends on the altitude, since
+    * AirSim's controller mistakes the altitude's goal for a velocity once the vehicle tilts
+    * ([[FlightController]]).
     *
-    * Source: `./skein identify` on live flights of the paper's duel by four loops over two links, 14 × 60 s: gain ± 0.023,
-    * lag ± 0.09 s, dead time ± 0.018 s, drag ± 0.0004 /m (95 %). The airframe's own drag is 0.0065 /m. Off the full
-    * quadrotor by 0.007 m after 1 s, 0.02 m after 2 s and 0.05 m after 5 s (medians; 95 %: 0.06, 0.13 and 0.43 m).
+    * Source: `./skein identify` on live flights of the paper's duel by four loops over two links, 14 × 60 s:
+    * gain ± 0.023, lag ± 0.09 s, dead time ± 0.018 s, drag ± 0.0004 /m (95 %). The airframe's own drag is
+    * 0.0065 /m. Off the full quadrotor by 0.007 m after 1 s, 0.02 m after 2 s and 0.05 m after 5 s (medians;
+    * 95 %: 0.06, 0.13 and 0.43 m).
     */
   val AirSim: ReducedModel = ReducedModel(1.02, 2.967, 0.037, 2.967, 0.0067)
 
-  /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with
-    * k = 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), which accelerates by g · tilt: so the lag is
-    * (1 + k · |z|) / (k · g), 1.40 s at 5 m and 2.93 s at 20 m, where [[AirSim]] was identified and is kept.
+  /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with k =
+    * 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), which accelerates by g · tilt: so
+    * the lag is (1 + k · |z|) / (k · g), 1.40 s at 5 m and 2.93 s at 20 m, where [[AirSim]] was identified
+    * and is kept.
     */
   def airSimAt(altitudeM: Double): ReducedModel =
     if math.abs(altitudeM) == IdentifiedAtM then AirSim

@@ -4,10 +4,8 @@ import skein.units.Span
 
 /** What a simulator's multirotors are.
   *
-  * @param stepS
-  *   of every one of them, s
-  * @param make
-  *   makes one, for one vehicle
+  * @param stepS of every one of them, s
+  * @param make makes one, for one vehicle
   */
 final class RotorcraftKind(val stepS: Double, val make: () => Rotorcraft)
 

@@ -39,29 +39,24 @@ enum YawMode:
   /** Yaw, rad from north towards east, reached the shorter way. */
   case Angle
 
-/** What a command makes of where its vehicle is: a goal for the flight controller. A [[Setpoint]] is one that never
-  * changes.
+/** What a command makes of where its vehicle is: a goal for the flight controller. A [[Setpoint]] is one that
+  * never changes.
   */
 trait Guidance:
-  /** @param now
-    *   computed only by who asks
+  /** @param now computed only by who asks
     */
   def setpoint(now: => Kinematics): Setpoint
 
   /** Time between two goals; absent where one is enough. */
   def period: Option[Span]
 
-/** What the flight controller is to reach: per axis a mode and its goal, as AirSim's SimpleFlight keeps them. The
-  * constructors in the companion bear the names of AirSim's commands.
+/** What the flight controller is to reach: per axis a mode and its goal, as AirSim's SimpleFlight keeps them.
+  * The constructors in the companion bear the names of AirSim's commands.
   *
-  * @param first
-  *   the goal of `horizontal`: roll (rad, rad/s) or north (m, m/s)
-  * @param second
-  *   pitch or east
-  * @param third
-  *   the goal of `vertical`
-  * @param yawGoal
-  *   the goal of `yaw`
+  * @param first the goal of `horizontal`: roll (rad, rad/s) or north (m, m/s)
+  * @param second pitch or east
+  * @param third the goal of `vertical`
+  * @param yawGoal the goal of `yaw`
   */
 final case class Setpoint(
     horizontal: HorizontalMode,
@@ -86,8 +81,8 @@ object Setpoint:
   /** Motors off. */
   val Disarmed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0)
 
-  /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet, two thirds of the one above which a vehicle
-    * counts as driven.
+  /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet, two thirds of the one above
+    * which a vehicle counts as driven.
     */
   val Armed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0.1 / 1.5)
 
@@ -95,15 +90,16 @@ object Setpoint:
   def velocity(northMps: Double, eastMps: Double, downMps: Double): Setpoint =
     Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Velocity, downMps)
 
-  /** `moveByVelocityZ`: velocity north and east, m/s, at altitude `downM` (NED). Slower to respond than [[velocity]],
-    * the more the higher it flies; [[FlightController]] says why.
+  /** `moveByVelocityZ`: velocity north and east, m/s, at altitude `downM` (NED). Slower to respond than
+    * [[velocity]], the more the higher it flies; [[FlightController]] says why.
     */
   def velocityZ(northMps: Double, eastMps: Double, downM: Double): Setpoint =
     Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Position, downM)
 
-  /** Position hold: AirSim's `hover` at the place given, and what an unrenewed goal turns into. The vehicle settles
-    * 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the yaw turns away from north: each axis
-    * takes only its own coordinate's error into the body frame, so at ±90° it brakes but does not return.
+  /** Position hold: AirSim's `hover` at the place given, and what an unrenewed goal turns into. The vehicle
+    * settles 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the yaw turns away from
+    * north: each axis takes only its own coordinate's error into the body frame, so at ±90° it brakes but
+    * does not return.
     */
   def hold(positionNed: Vector3): Setpoint =
     Setpoint(
@@ -141,7 +137,8 @@ object Setpoint:
       throttle
     ).withYawRate(yawRadps)
 
-  /** `moveByMotorPWMs`: the rotors' controls, 0 to 1, in AirSim's order; the flight controller stands aside. */
+  /** `moveByMotorPWMs`: the rotors' controls, 0 to 1, in AirSim's order; the flight controller stands aside.
+    */
   def rotors(frontRight: Double, rearLeft: Double, frontLeft: Double, rearRight: Double): Setpoint =
     Setpoint(
       HorizontalMode.Rotors,

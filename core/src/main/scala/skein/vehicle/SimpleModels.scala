@@ -14,13 +14,13 @@ object ConstantVelocity extends VehicleModel[Kinematics]:
 
   def kinematics(state: Kinematics): Kinematics = state
 
-/** Goes on at the same speed and turns on as between the last two readings, for vehicles whose commands are unknown. */
+/** Goes on at the same speed and turns on as between the last two readings, for vehicles whose commands are
+  * unknown.
+  */
 object ConstantTurn extends VehicleModel[ConstantTurn.Turning]:
 
-  /** @param turnRateRadps
-    *   of the horizontal velocity, from north towards east
-    * @param seen
-    *   the last reading
+  /** @param turnRateRadps of the horizontal velocity, from north towards east
+    * @param seen the last reading
     */
   final case class Turning(now: Kinematics, turnRateRadps: Double, seen: Kinematics)
 

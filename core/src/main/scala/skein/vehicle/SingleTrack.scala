@@ -2,36 +2,35 @@ package skein.vehicle
 
 import skein.vehicle.Airframe.Gravity
 
-/** How a car moves: the single-track ("bicycle") model, whose two wheels of an axle are one, with tyres that answer late.
+/** How a car moves: the single-track ("bicycle") model, whose two wheels of an axle are one, with tyres that
+  * answer late.
   *
-  * A tyre pushes sideways in proportion to the angle by which it is deflected, up to what friction holds. That angle
-  * follows the slip angle, the direction in which the tyre is drawn over the ground, while it rolls: with a first-order
-  * lag over its relaxation length σ, σ · α' = −(velocity across the wheel) − |v| · α (Pacejka, ''Tyre and Vehicle
-  * Dynamics'', 2nd ed., section 1.2 and chapter 7). The two forces turn the car and move it sideways as in the linear
-  * single-track model (Rajamani, ''Vehicle Dynamics and Control'', 2nd ed., equations 2.31 and 2.32), here with the
-  * sines and cosines of the steering angle. Stiffness is in proportion to an axle's load, F = μ · C_S · F_z · α.
+  * A tyre pushes sideways in proportion to the angle by which it is deflected, up to what friction holds.
+  * That angle follows the slip angle, the direction in which the tyre is drawn over the ground, while it
+  * rolls: with a first-order lag over its relaxation length σ, σ · α' = −(velocity across the wheel) − |v| ·
+  * α (Pacejka, ''Tyre and Vehicle Dynamics'', 2nd ed., section 1.2 and chapter 7). The two forces turn the
+  * car and move it sideways as in the linear single-track model (Rajamani, ''Vehicle Dynamics and Control'',
+  * 2nd ed., equations 2.31 and 2.32), here with the sines and cosines of the steering angle. Stiffness is in
+  * proportion to an axle's load, F = μ · C_S · F_z · α.
   *
-  * Along its way it is driven by as much as its two driven wheels hold or its engine's power gives, and slowed by its
-  * brakes, as far as all four wheels hold, by rolling, by the air and by the steered wheels. That a tyre that brakes holds
-  * less sideways is left out, and so are springs and the shifting of loads.
+  * Along its way it is driven by as much as its two driven wheels hold or its engine's power gives, and
+  * slowed by its brakes, as far as all four wheels hold, by rolling, by the air and by the steered wheels.
+  * That a tyre that brakes holds less sideways is left out, and so are springs and the shifting of loads.
   *
-  * Defaults are a BMW 320i's, the second vehicle of CommonRoad (Althoff, Koschi, Manzinger, ''CommonRoad: Composable
-  * Benchmarks for Motion Planning on Roads'', IV 2017; vehicle models, parameter set 2): 1093.3 kg, 1791.6 kg·m²,
-  * μ 1.0489, C_S 20.89 /rad, steered at 0.4 rad/s; power from 11.5 m/s² up to 7.319 m/s. Not from there: full lock, 40° as
-  * AirSim's car has it (`CarWheelFront`); the relaxation length, 0.5 m, within the 0.3 to 0.6 m of passenger cars' tyres;
-  * the rolling resistance of 0.015 of the weight, and the air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
+  * Defaults are a BMW 320i's, the second vehicle of CommonRoad (Althoff, Koschi, Manzinger, ''CommonRoad:
+  * Composable Benchmarks for Motion Planning on Roads'', IV 2017; vehicle models, parameter set 2): 1093.3
+  * kg, 1791.6 kg·m², μ 1.0489, C_S 20.89 /rad, steered at 0.4 rad/s; power from 11.5 m/s² up to 7.319 m/s.
+  * Not from there: full lock, 40° as AirSim's car has it (`CarWheelFront`); the relaxation length, 0.5 m,
+  * within the 0.3 to 0.6 m of passenger cars' tyres; the rolling resistance of 0.015 of the weight, and the
+  * air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
   *
-  * A pure formula: the simulator, predictions and forward simulation by lanes compute it alike. `SingleTrackSuite` holds it
-  * to its sources.
+  * A pure formula: the simulator, predictions and forward simulation by lanes compute it alike.
+  * `SingleTrackSuite` holds it to its sources.
   *
-  * @param rearM
-  *   from the rear axle to the centre of mass
-  * @param gyrationM
-  *   radius of gyration about the vertical axis: the root of moment of inertia over mass
-  * @param relaxationM
-  *   the way over which tyres answer
-  * @param wattPerKg
-  *   of the engine
+  * @param rearM from the rear axle to the centre of mass
+  * @param gyrationM radius of gyration about the vertical axis: the root of moment of inertia over mass
+  * @param relaxationM the way over which tyres answer
+  * @param wattPerKg of the engine
   */
 final case class SingleTrack(
     wheelbaseM: Double = 2.5789,

@@ -1,12 +1,12 @@
 package skein.vehicle
 
-/** [[FlightController]] with gains, integrals and derivatives of every controller's own, as AirSim's is once a client has
-  * set gains. With [[CascadeGains.Default]] it flies as the plain one does, to the last bit.
+/** [[FlightController]] with gains, integrals and derivatives of every controller's own, as AirSim's is once
+  * a client has set gains. With [[CascadeGains.Default]] it flies as the plain one does, to the last bit.
   *
-  * A controller (`PidController`, `StdPidIntegrator`): out = clip(P·e + I-term + D·de/dt, −1, 1); I-term ← clip(I-term ·
-  * discount + dt·e·I, −1, 1), where only the vertical velocity's is discounted. When the mode of an axis changes, its
-  * controllers start anew: the first update neither integrates nor derives, and the second derives from an error of
-  * zero, which is a kick if D is not zero. So it is in AirSim.
+  * A controller (`PidController`, `StdPidIntegrator`): out = clip(P·e + I-term + D·de/dt, −1, 1); I-term ←
+  * clip(I-term · discount + dt·e·I, −1, 1), where only the vertical velocity's is discounted. When the mode
+  * of an axis changes, its controllers start anew: the first update neither integrates nor derives, and the
+  * second derives from an error of zero, which is a kick if D is not zero. So it is in AirSim.
   */
 final class TunedFlightController(gains: ControllerGains, val cascade: CascadeGains, stepS: Double)
     extends FlightController(gains, stepS):

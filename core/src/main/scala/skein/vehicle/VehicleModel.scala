@@ -3,13 +3,13 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Carries what was read of one vehicle forward in time. Pure: a state is a value, also where the model beneath is
-  * mutable.
+/** Carries what was read of one vehicle forward in time. Pure: a state is a value, also where the model
+  * beneath is mutable.
   *
-  * A state may hold more than a reading tells (rotors, integrators); [[corrected]] keeps that and replaces the rest.
+  * A state may hold more than a reading tells (rotors, integrators); [[corrected]] keeps that and replaces
+  * the rest.
   *
-  * @tparam S
-  *   the state, immutable to its holder
+  * @tparam S the state, immutable to its holder
   */
 trait VehicleModel[S]:
 
@@ -19,7 +19,9 @@ trait VehicleModel[S]:
   /** The state after `span` of flight under a setpoint. */
   def advanced(state: S, setpoint: Setpoint, span: Span): S
 
-  /** The state when its vehicle was seen, `sinceSeen` after the last time, which was the start or a correction. */
+  /** The state when its vehicle was seen, `sinceSeen` after the last time, which was the start or a
+    * correction.
+    */
   def corrected(state: S, seen: Kinematics, sinceSeen: Span): S
 
   def kinematics(state: S): Kinematics

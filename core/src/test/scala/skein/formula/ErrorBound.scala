@@ -2,20 +2,19 @@ package skein.formula
 
 import skein.formula.Op.*
 
-/** How far an expression that is computed in floats, with the polynomials of `skein.simd`, may lie from the same in
-  * doubles: running error analysis, first rounding by rounding, with each function's own error on top.
+/** How far an expression that is computed in floats, with the polynomials of `skein.simd`, may lie from the
+  * same in doubles: running error analysis, first rounding by rounding, with each function's own error on
+  * top.
   *
-  * @param value
-  *   in doubles; a condition is 1 or 0
-  * @param error
-  *   the most that it may be off; of a condition, 1 where floats may decide otherwise
+  * @param value in doubles; a condition is 1 or 0
+  * @param error the most that it may be off; of a condition, 1 where floats may decide otherwise
   */
 final class ErrorBound private (values: Array[Double], errors: Array[Double], margins: Array[Double]):
   def value(of: Node): Double = values(of.id)
   def error(of: Node): Double = errors(of.id)
 
-  /** What floats may decide otherwise, of all that these nodes need: comparisons, and jumps of angles, signs and
-    * whole numbers; with how near to the threshold each is.
+  /** What floats may decide otherwise, of all that these nodes need: comparisons, and jumps of angles, signs
+    * and whole numbers; with how near to the threshold each is.
     */
   def undecided(of: Seq[Node]): Vector[(Node, Double)] =
     Trace.needed(of).filter(node => !margins(node.id).isNaN).map(node => (node, margins(node.id)))
@@ -32,10 +31,9 @@ object ErrorBound:
   /** A turn in floats lies so far from one in doubles. */
   private val Turn = 1.8e-7
 
-  /** @param off
-    *   how far each input may be off before it is rounded
-    * @param sameWay
-    *   whether floats are taken to decide as doubles do, so that the error is that of the way taken
+  /** @param off how far each input may be off before it is rounded
+    * @param sameWay whether floats are taken to decide as doubles do, so that the error is that of the way
+    *   taken
     */
   def of(
       nodes: Seq[Node],

@@ -3,7 +3,9 @@ package skein.formula
 import skein.signal.SplitMix64
 import skein.units.Vector3
 
-/** What is read from a method's bytecode is what the method computes: every operator, and what refuses says why. */
+/** What is read from a method's bytecode is what the method computes: every operator, and what refuses says
+  * why.
+  */
 class FormulaLaws extends munit.FunSuite:
   import FormulaLaws.*
 

@@ -3,7 +3,9 @@ package skein.formula
 import skein.policy.*
 import skein.signal.SplitMix64
 
-/** Every family of policies is a formula, and a formula computes what the policy's own method answers, to the bit. */
+/** Every family of policies is a formula, and a formula computes what the policy's own method answers, to the
+  * bit.
+  */
 class PolicyFormulaLaws extends munit.FunSuite:
   private val seed = 20261122L
 

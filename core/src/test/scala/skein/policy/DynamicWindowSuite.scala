@@ -7,8 +7,7 @@ class DynamicWindowSuite extends munit.FunSuite:
   private val window  = DynamicWindow("lidar", 0, 0, Radians(0), 5)
   private val columns = Vector("northM", "eastM", "downM") ++ Vector.tabulate(120)(i => f"range${i * 3}%03dM")
 
-  /** @param nearM
-    *   by direction in degrees
+  /** @param nearM by direction in degrees
     */
   private def scan(nearM: Double => Double, age: Span = Span.ofMillis(50)) = Map(
     "lidar" -> Sensed(columns, Vector(0.0, 0.0, -4.0) ++ Vector.tabulate(120)(i => nearM(3 * i + 1.5)), age)

@@ -2,7 +2,9 @@ package skein.policy
 
 import skein.signal.SplitMix64
 
-/** The defining properties of pursuers and evaders, with the game's ideal kinematics: the velocity is the command. */
+/** The defining properties of pursuers and evaders, with the game's ideal kinematics: the velocity is the
+  * command.
+  */
 class GuidanceSuite extends munit.FunSuite:
   private val fast = 1e6 // a turn rate that never limits
 

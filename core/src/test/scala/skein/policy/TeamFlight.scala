@@ -1,9 +1,9 @@
 package skein.policy
 
-/** A team flown by its policies without any delay, each velocity following its command with a first-order lag.
+/** A team flown by its policies without any delay, each velocity following its command with a first-order
+  * lag.
   *
-  * @param lagS
-  *   0 for velocities that are at once as commanded
+  * @param lagS 0 for velocities that are at once as commanded
   */
 final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   private val agents  = scenario.agents

@@ -5,8 +5,7 @@ import skein.units.*
 /** Limits and measures of two vehicles that fly where they are told, sampled ten times a second. */
 class LimitSuite extends munit.FunSuite:
 
-  /** @param placeNed
-    *   of a vehicle at a time, s; it moves by the differences
+  /** @param placeNed of a vehicle at a time, s; it moves by the differences
     */
   private def flown(seconds: Int)(placeNed: (Int, Double) => Vector3): Tracks =
     val tracks = Vector.tabulate(2): vehicle =>

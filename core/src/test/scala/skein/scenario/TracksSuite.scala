@@ -3,7 +3,9 @@ package skein.scenario
 import skein.policy.Role
 import skein.units.*
 
-/** Where vehicles were, and what of it is measured, on flights whose numbers are known without computing them. */
+/** Where vehicles were, and what of it is measured, on flights whose numbers are known without computing
+  * them.
+  */
 class TracksSuite extends munit.FunSuite:
 
   private def s(seconds: Double) = Instant.Epoch + Span.ofSeconds(seconds)

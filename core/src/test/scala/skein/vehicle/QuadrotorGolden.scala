@@ -2,8 +2,8 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** Holds the quadrotor to step responses and turns recorded from AirSim 1.8's own flight code (headless, 3 ms, from
-  * rest at hover). Tolerance 3 %; for altitudes 3 % of the excursion or 1 cm, whichever is larger.
+/** Holds the quadrotor to step responses and turns recorded from AirSim 1.8's own flight code (headless, 3
+  * ms, from rest at hover). Tolerance 3 %; for altitudes 3 % of the excursion or 1 cm, whichever is larger.
   */
 class QuadrotorGolden extends munit.FunSuite:
   import QuadrotorGolden.*
@@ -134,8 +134,8 @@ object QuadrotorGolden:
   /** Half of the last printed digit of the reference. */
   private val Printed = 0.005
 
-  /** Length of a reference flight's two parts; the altitudes drift slowly, so it matters. Inferred: all final speeds
-    * and altitudes fit it.
+  /** Length of a reference flight's two parts; the altitudes drift slowly, so it matters. Inferred: all final
+    * speeds and altitudes fit it.
     */
   private val StepSeconds = 14.0
 

@@ -77,11 +77,10 @@ class SingleTrackSuite extends munit.FunSuite:
     assertEqualsDouble(coarse.northM, fine.northM, 0.05)
     assertEqualsDouble(coarse.eastM, fine.eastM, 0.05)
 
-  /** The linear single-track model with two tyres, each with its relaxation length: Rajamani's equations 2.31 and 2.32 in
-    * kilograms and newtons, with slip angles that follow late, in small steps.
+  /** The linear single-track model with two tyres, each with its relaxation length: Rajamani's equations 2.31
+    * and 2.32 in kilograms and newtons, with slip angles that follow late, in small steps.
     *
-    * @return
-    *   heading, rad, after the steering angle has gone to `steerRad` as fast as it can
+    * @return heading, rad, after the steering angle has gone to `steerRad` as fast as it can
     */
   private def linearHeadingRad(speedMps: Double, steerRad: Double, forS: Double): Double =
     val (mass, inertia, rear) = (1093.3, 1791.6, 1.4227)

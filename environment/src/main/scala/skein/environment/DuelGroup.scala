@@ -5,16 +5,14 @@ import skein.lanes.SteppedDuels
 import skein.policy.{Policy, Role}
 import skein.signal.SplitMix64
 
-/** Up to [[SteppedDuels.WORLDS]] environments that fly side by side over one link: what befalls their messages is the
-  * same in all of them. Mutable; one thread at a time.
+/** Up to [[SteppedDuels.WORLDS]] environments that fly side by side over one link: what befalls their
+  * messages is the same in all of them. Mutable; one thread at a time.
   *
-  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends before, by a capture, the next
-  * begins at once in the loop that runs already, and lasts until the run's end.
+  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends before, by a
+  * capture, the next begins at once in the loop that runs already, and lasts until the run's end.
   *
-  * @param first
-  *   of the batch's environments
-  * @param count
-  *   of environments
+  * @param first of the batch's environments
+  * @param count of environments
   */
 private final class DuelGroup(
     config: EnvironmentSettings.Resolved,

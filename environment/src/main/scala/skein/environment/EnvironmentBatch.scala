@@ -10,25 +10,25 @@ import skein.settings.PolicyFile
 import skein.simd.LaneMath
 import skein.units.Expect
 
-/** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for from outside
-  * ([[EnvironmentSettings]]), at the moments at which the loop decides, on readings as old as the link makes them.
-  * Observations and actions are in [[EnvironmentBuffers]].
+/** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for
+  * from outside ([[EnvironmentSettings]]), at the moments at which the loop decides, on readings as old as
+  * the link makes them. Observations and actions are in [[EnvironmentBuffers]].
   *
-  * A step is one decision. Its reward is, for a pursuer, minus the distances scored since the last one (once a period),
-  * divided by 10 m, and 10 for a capture; for an evader the opposite. So the pursuer's rewards of an episode without a
-  * capture sum to minus its mean distance, as `./skein search` has it, times the number of periods, divided by 10 m.
+  * A step is one decision. Its reward is, for a pursuer, minus the distances scored since the last one (once
+  * a period), divided by 10 m, and 10 for a capture; for an evader the opposite. So the pursuer's rewards of
+  * an episode without a capture sum to minus its mean distance, as `./skein search` has it, times the number
+  * of periods, divided by 10 m.
   *
   * In other scenarios something else may be rewarded in the place of the distance.
   *
-  * The duel flies by lanes, [[DuelGroup]]. Other scenarios are flown by the scalar reference, [[ScenarioGroup]]: one vehicle
-  * of each environment is decided for, the others of its role fly their own policies, or what [[fly]] says.
+  * The duel flies by lanes, [[DuelGroup]]. Other scenarios are flown by the scalar reference,
+  * [[ScenarioGroup]]: one vehicle of each environment is decided for, the others of its role fly their own
+  * policies, or what [[fly]] says.
   *
   * One call at a time. A step of the duel allocates nothing, except where many groups share the processors.
   *
-  * @param count
-  *   of environments
-  * @param block
-  *   of [[EnvironmentBuffers.bytes]]
+  * @param count of environments
+  * @param block of [[EnvironmentBuffers.bytes]]
   */
 final class EnvironmentBatch private (
     config: EnvironmentSettings.Resolved | ScenarioSide,
@@ -52,8 +52,8 @@ final class EnvironmentBatch private (
     case _: EnvironmentSettings.Resolved => EnvironmentBatch.EngineOfGame
     case side: ScenarioSide              => EnvironmentBatch.engineOf(side.settings.scenario)
 
-  /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides, from their
-    * next episodes on.
+  /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides,
+    * from their next episodes on.
     */
   def fly(policy: Policy): Unit = groups.foreach:
     case team: ScenarioGroup => team.fly(policy)
@@ -64,8 +64,7 @@ final class EnvironmentBatch private (
 
   /** Every environment begins anew.
     *
-    * @param seeds
-    *   one each; a negative one: the environment goes on with its own
+    * @param seeds one each; a negative one: the environment goes on with its own
     */
   def reset(seeds: Array[Long]): Unit =
     require(seeds.length == count, s"expected $count seeds, came ${seeds.length}")
@@ -80,10 +79,8 @@ final class EnvironmentBatch private (
 
   /** One step of every environment.
     *
-    * @throws IllegalArgumentException
-    *   if an action is not finite; then nothing was done
-    * @throws IllegalStateException
-    *   if an episode has ended, and was not reset
+    * @throws IllegalArgumentException if an action is not finite; then nothing was done
+    * @throws IllegalStateException if an episode has ended, and was not reset
     */
   def step(): Unit =
     if !isReset then throw IllegalStateException("expected reset() before the first step()")
@@ -116,10 +113,8 @@ object EnvironmentBatch:
   def engineOf(scenario: String): String =
     s"scalar: environments of $scenario fly one by one; those of the duel fly by lanes"
 
-  /** @param opponent
-    *   of the side that does not learn; without one, as the settings name it
-    * @return
-    *   or what was expected and came
+  /** @param opponent of the side that does not learn; without one, as the settings name it
+    * @return or what was expected and came
     */
   def of(
       settings: EnvironmentSettings,
@@ -138,10 +133,8 @@ object EnvironmentBatch:
 
   /** The same from names and texts, for callers of other languages.
     *
-    * @param settings
-    *   by the names of [[EnvironmentSettings]] in snake case; what is missing is the default
-    * @throws IllegalArgumentException
-    *   with what was expected and came
+    * @param settings by the names of [[EnvironmentSettings]] in snake case; what is missing is the default
+    * @throws IllegalArgumentException with what was expected and came
     */
   def make(
       settings: java.util.Map[String, String],

@@ -3,20 +3,20 @@ package skein.environment
 import java.nio.{ByteBuffer, ByteOrder, FloatBuffer}
 import skein.lanes.SteppedDuels.FIELDS
 
-/** What an environment batch shares with who steps it: one block of memory, in the machine's byte order. Of A learners
-  * (the evader first) and n environments, one after the other:
+/** What an environment batch shares with who steps it: one block of memory, in the machine's byte order. Of A
+  * learners (the evader first) and n environments, one after the other:
   *
-  * | what | type | shape |
-  * |---|---|---|
-  * | actions, −1 to 1 | f32 | A, n |
-  * | observations | f32 | A, 9, n |
-  * | last observations of episodes that ended, under same-step autoreset | f32 | A, 9, n |
-  * | rewards | f32 | A, n |
-  * | distance at the last score, m | f32 | n |
-  * | time since the episode's beginning, s | f32 | n |
-  * | terminated | u8 | n |
-  * | truncated | u8 | n |
-  * | whether the learner decides now | u8 | A, n |
+  * | what                                                                | type | shape   |
+  * |:--------------------------------------------------------------------|:-----|:--------|
+  * | actions, −1 to 1                                                    | f32  | A, n    |
+  * | observations                                                        | f32  | A, 9, n |
+  * | last observations of episodes that ended, under same-step autoreset | f32  | A, 9, n |
+  * | rewards                                                             | f32  | A, n    |
+  * | distance at the last score, m                                       | f32  | n       |
+  * | time since the episode's beginning, s                               | f32  | n       |
+  * | terminated                                                          | u8   | n       |
+  * | truncated                                                           | u8   | n       |
+  * | whether the learner decides now                                     | u8   | A, n    |
   */
 final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: Int):
   require(

@@ -5,8 +5,7 @@ private trait EnvironmentGroup extends AutoCloseable:
 
   /** Every environment begins anew.
     *
-    * @param newSeeds
-    *   of the whole batch; a negative one: the environment goes on with its own
+    * @param newSeeds of the whole batch; a negative one: the environment goes on with its own
     */
   def reset(newSeeds: Array[Long]): Unit
 

@@ -14,31 +14,22 @@ import skein.units.{Expect, Span}
 
 /** What an environment is, as users name it.
   *
-  * @param learners
-  *   `pursuer`, `evader`, or `both`
-  * @param opponent
-  *   a policy file or a family's name; empty: the paper's. Not asked for where both learn, nor in other scenarios than the
-  *   duel, where all who do not learn fly their own
-  * @param plant
-  *   see [[VehicleChoice.parse]]; empty: `reduced` in the duel, else `drag`
-  * @param captureRadiusM
-  *   a distance of at most this ends an episode; 0: none does
-  * @param startWithinM
-  *   an episode begins with the evader so far from the pursuer, least and most, in any direction, each commanded in any
-  *   direction; both 0: as the paper's duel begins. In other scenarios: every vehicle so far from where it begins
-  * @param movesInFlight
-  *   of one vehicle
-  * @param turnRateRadPerS
-  *   the most that a pursuer who learns turns
-  * @param evaderRateRadPerS
-  *   the most that an evader who learns turns; 0: its actions are turns at once, of up to half a turn
-  * @param scenario
-  *   whose pursuer or evader learns
-  * @param set
-  *   settings of the scenario, by their keys
-  * @param objective
-  *   in other scenarios than the duel: a sum of means of the scenario's measures, which is rewarded; empty: the distance
-  *   to the nearest opponent
+  * @param learners `pursuer`, `evader`, or `both`
+  * @param opponent a policy file or a family's name; empty: the paper's. Not asked for where both learn, nor
+  *   in other scenarios than the duel, where all who do not learn fly their own
+  * @param plant see [[VehicleChoice.parse]]; empty: `reduced` in the duel, else `drag`
+  * @param captureRadiusM a distance of at most this ends an episode; 0: none does
+  * @param startWithinM an episode begins with the evader so far from the pursuer, least and most, in any
+  *   direction, each commanded in any direction; both 0: as the paper's duel begins. In other scenarios:
+  *   every vehicle so far from where it begins
+  * @param movesInFlight of one vehicle
+  * @param turnRateRadPerS the most that a pursuer who learns turns
+  * @param evaderRateRadPerS the most that an evader who learns turns; 0: its actions are turns at once, of up
+  *   to half a turn
+  * @param scenario whose pursuer or evader learns
+  * @param set settings of the scenario, by their keys
+  * @param objective in other scenarios than the duel: a sum of means of the scenario's measures, which is
+  *   rewarded; empty: the distance to the nearest opponent
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -69,8 +60,7 @@ final case class EnvironmentSettings(
   private[environment] def resolved: Either[String, Resolved] =
     resolvedAgainst(None)(using Scenarios.ours)
 
-  /** @param told
-    *   the opponent; without one, as it is named
+  /** @param told the opponent; without one, as it is named
     */
   private[environment] def resolvedAgainst(told: Option[PolicyFile])(using
       Scenarios
@@ -98,8 +88,7 @@ final case class EnvironmentSettings(
 
   /** The loop's timing, the link, and what flies at an altitude.
     *
-    * @param otherwise
-    *   the plant, where none is named
+    * @param otherwise the plant, where none is named
     */
   private[environment] def flown(
       atM: Double,
@@ -146,7 +135,9 @@ object EnvironmentSettings:
   /** A distance of so much costs the pursuer, and earns the evader, 1 a period. */
   val RewardM = 10f
 
-  /** What settings come to. The duel lasts a little longer than an episode: who sees its end must be due once more. */
+  /** What settings come to. The duel lasts a little longer than an episode: who sees its end must be due once
+    * more.
+    */
   private[environment] final case class Resolved(
       settings: EnvironmentSettings,
       learners: Vector[Role],
@@ -164,7 +155,8 @@ object EnvironmentSettings:
     "both"    -> Vector(Role.Evader, Role.Pursuer)
   )
 
-  /** Within this long after its end somebody is due again, unless nothing is heard of the vehicles any more. */
+  /** Within this long after its end somebody is due again, unless nothing is heard of the vehicles any more.
+    */
   private[environment] val SpareS = 3.0
 
   private val MostM = 1000.0

@@ -4,8 +4,8 @@ import java.util.concurrent.ConcurrentHashMap
 import skein.lanes.Timetable
 import skein.simd.WorldRandom
 
-/** What befalls the messages of a run, drawn from a fixed number of flights over the link. Each is told once. Any thread
-  * may ask.
+/** What befalls the messages of a run, drawn from a fixed number of flights over the link. Each is told once.
+  * Any thread may ask.
   */
 private final class EnvironmentTimetables(config: EnvironmentSettings.Resolved):
   import EnvironmentTimetables.*

@@ -2,11 +2,10 @@ package skein.environment
 
 import java.util.concurrent.Semaphore
 
-/** A computation that is suspended and gone on with. It has a virtual thread of its own, which waits in between; only one
-  * of the two runs at a time.
+/** A computation that is suspended and gone on with. It has a virtual thread of its own, which waits in
+  * between; only one of the two runs at a time.
   *
-  * @param body
-  *   is given what suspends it; need not end
+  * @param body is given what suspends it; need not end
   */
 private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   import Resumed.GivenUp
@@ -23,8 +22,7 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
 
   /** Blocks until it is suspended, or has ended.
     *
-    * @throws Throwable
-    *   what it threw
+    * @throws Throwable what it threw
     */
   def await(): Unit =
     waits.acquireUninterruptibly()

@@ -5,8 +5,8 @@ import skein.lanes.SteppedDuels.FIELDS
 import skein.policy.{Policy, Role}
 import skein.signal.SplitMix64
 
-/** Environments of a scenario, each in its own time and over its own link. In environment number n the learner is member n
-  * of its role, counted round.
+/** Environments of a scenario, each in its own time and over its own link. In environment number n the
+  * learner is member n of its role, counted round.
   */
 private final class ScenarioGroup(
     side: ScenarioSide,

@@ -10,13 +10,11 @@ import skein.signal.SplitMix64
 import skein.units.Expect
 import skein.vehicle.VehicleKind
 
-/** A side of a scenario that learns: some vehicle of its role is decided for from outside, the others of the role fly
-  * what is flown beside it, everybody else their own policies.
+/** A side of a scenario that learns: some vehicle of its role is decided for from outside, the others of the
+  * role fly what is flown beside it, everybody else their own policies.
   *
-  * @param members
-  *   of the role, by their places in the scenario
-  * @param objective
-  *   what is rewarded; without one, a small or a great distance to the nearest opponent
+  * @param members of the role, by their places in the scenario
+  * @param objective what is rewarded; without one, a small or a great distance to the nearest opponent
   */
 private[environment] final case class ScenarioSide(
     settings: EnvironmentSettings,
@@ -36,12 +34,9 @@ private[environment] final case class ScenarioSide(
 
   /** What flies in an episode.
     *
-    * @param learner
-    *   its place
-    * @param beside
-    *   of the others of its role; without one, their own
-    * @param seed
-    *   of where the vehicles begin
+    * @param learner its place
+    * @param beside of the others of its role; without one, their own
+    * @param seed of where the vehicles begin
     */
   def engagement(learner: Int, policy: Policy, beside: Option[Policy], seed: Long): Engagement =
     val random = SplitMix64(seed)

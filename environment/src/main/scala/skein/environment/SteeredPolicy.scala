@@ -4,8 +4,7 @@ import skein.policy.Policy
 
 /** Turns at a rate that is set from outside before each decision.
   *
-  * @param rateRadPerS
-  *   to the right
+  * @param rateRadPerS to the right
   */
 private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends Policy:
   def heading(
@@ -20,8 +19,7 @@ private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends
 
 /** Turns at once by an angle that is set from outside before each decision.
   *
-  * @param turnRad
-  *   to the right
+  * @param turnRad to the right
   */
 private[environment] final case class Turned(turnRad: Double) extends Policy:
   def heading(

@@ -5,12 +5,11 @@ import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
-/** Episodes of a scenario, one after the other, that stop whenever one vehicle is to decide, for which somebody outside
-  * does. They are flown by [[Rollout]], whose policy waits for the answer: so whatever scenario, loop and link forward
-  * simulation knows can be learned in. Mutable.
+/** Episodes of a scenario, one after the other, that stop whenever one vehicle is to decide, for which
+  * somebody outside does. They are flown by [[Rollout]], whose policy waits for the answer: so whatever
+  * scenario, loop and link forward simulation knows can be learned in. Mutable.
   *
-  * @param learner
-  *   the vehicle, by its place in the scenario
+  * @param learner the vehicle, by its place in the scenario
   */
 private final class SteppedRollout(side: ScenarioSide, learner: Int) extends AutoCloseable:
   import SteppedRollout.*
@@ -39,8 +38,7 @@ private final class SteppedRollout(side: ScenarioSide, learner: Int) extends Aut
 
   /** With the next [[goOn]] an episode begins, whatever flies now.
     *
-    * @param beside
-    *   the policy of the others of its role, if not their own
+    * @param beside the policy of the others of its role, if not their own
     */
   def begin(seed: Long, beside: Option[Policy]): Unit = next = Some((seed, beside))
 

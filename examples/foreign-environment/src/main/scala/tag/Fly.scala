@@ -19,8 +19,7 @@ val scenario = Surround(vehicles = 4, ringM = 5, pursuerMps = 10, evaderMps = 5)
 
 /** Flies it paused, as its truth, and by four loops over the paper's VPN; writes recordings and a report.
   *
-  * @param path
-  *   of the environment's socket
+  * @param path of the environment's socket
   */
 @main def fly(path: String, folder: String): Unit =
   given system: ActorSystem = ActorSystem("tag")

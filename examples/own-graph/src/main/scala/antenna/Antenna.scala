@@ -7,14 +7,12 @@ import scala.concurrent.Future
 import skein.flow.*
 import skein.units.*
 
-/** Two instruments that answer late, sometimes never: where the balloon is, and where the antenna points; and the motor.
+/** Two instruments that answer late, sometimes never: where the balloon is, and where the antenna points; and
+  * the motor.
   *
-  * @param bearing
-  *   of the balloon, rad
-  * @param azimuth
-  *   of the antenna, rad
-  * @param turn
-  *   turns the antenna at a rate, rad/s; answers when the command has been replaced by the next
+  * @param bearing of the balloon, rad
+  * @param azimuth of the antenna, rad
+  * @param turn turns the antenna at a rate, rad/s; answers when the command has been replaced by the next
   */
 final case class Instruments(
     bearing: () => Future[Either[String, Double]],
@@ -35,8 +33,7 @@ object Antenna:
 
   /** The loop as a graph: two instruments sensed, joined, decided upon, and the motor commanded.
     *
-    * @param note
-    *   told of every answer that was lost
+    * @param note told of every answer that was lost
     */
   def track(instruments: Instruments, clock: Clock, duration: Span, note: String => Unit)(using
       ActorSystem

@@ -7,7 +7,9 @@ import scala.concurrent.{Future, Promise}
 import scala.util.Random
 import skein.units.*
 
-/** The world of the example: a balloon that drifts past, an antenna on a motor, and instruments behind a slow link. */
+/** The world of the example: a balloon that drifts past, an antenna on a motor, and instruments behind a slow
+  * link.
+  */
 final class Field(clock: Clock, seed: Long)(using system: ActorSystem):
   import system.dispatcher
   private val random   = Random(seed)

@@ -5,11 +5,10 @@ import skein.policy.*
 import skein.scenario.*
 import skein.units.*
 
-/** Follows its opponent at a distance, and trusts a reading the less the older it is: where the opponent was seen to go,
-  * it goes too, but only as far as the reading is fresh. Remembers how old readings have been.
+/** Follows its opponent at a distance, and trusts a reading the less the older it is: where the opponent was
+  * seen to go, it goes too, but only as far as the reading is fresh. Remembers how old readings have been.
   *
-  * @param trustS
-  *   at this age a reading's velocity counts half
+  * @param trustS at this age a reading's velocity counts half
   */
 final case class Patient(metres: Double, trustS: Double) extends AgentPolicy:
   type Memory = Double

@@ -4,11 +4,10 @@ import skein.policy.*
 import skein.scenario.*
 import skein.units.*
 
-/** Two scouts climb over a ridge, side by side, and keep each other in view. The ridge runs from west to east; its crest
-  * lies 60 m to the north.
+/** Two scouts climb over a ridge, side by side, and keep each other in view. The ridge runs from west to
+  * east; its crest lies 60 m to the north.
   *
-  * @param sideM
-  *   between the two; the second is told to begin the climb later than the first by `lateM`
+  * @param sideM between the two; the second is told to begin the climb later than the first by `lateM`
   */
 final case class OverTheRidge(
     crestM: Double = 30,
@@ -37,7 +36,9 @@ final case class OverTheRidge(
     )
   )
 
-  /** How far the line between the two is above the ground where it is lowest: below 0 they do not see each other. */
+  /** How far the line between the two is above the ground where it is lowest: below 0 they do not see each
+    * other.
+    */
   private val view = Series("line of sight above the ground", "m", Some(Bound("in view", 0)))(tracks =>
     instant => land.clearanceM(tracks.positionNed(0, instant), tracks.positionNed(1, instant))
   )

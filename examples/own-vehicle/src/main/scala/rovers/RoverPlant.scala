@@ -9,10 +9,8 @@ final case class Driving(northM: Double, eastM: Double, headingRad: Double, spee
 
 /** How a robot moves: it turns towards where it shall go, and drives the slower the more it has to turn.
   *
-  * @param turnPerS
-  *   rate at which it turns, over the angle that is left
-  * @param lagS
-  *   of its speed
+  * @param turnPerS rate at which it turns, over the angle that is left
+  * @param lagS of its speed
   */
 final case class RoverPlant(
     turnPerS: Double = 3,

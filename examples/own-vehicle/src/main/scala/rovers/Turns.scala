@@ -2,7 +2,9 @@ package rovers
 
 import skein.loop.{LoopEvent, OwnLoop, SnapshotGraph}
 
-/** A loop of one's own: once a period all robots say where they are, and one of them decides; they take turns. */
+/** A loop of one's own: once a period all robots say where they are, and one of them decides; they take
+  * turns.
+  */
 val turns = OwnLoop(
   "turns",
   (team, stop) =>

@@ -21,12 +21,9 @@ class UploaderSuite extends munit.FunSuite:
 
 /** Ten samples a second; the server is away from the 10th to the 70th minute.
   *
-  * @param received
-  *   by the server
-  * @param inVain
-  *   how often it was asked so
-  * @param waiting
-  *   minutes, and how many samples the server had not received, as a batch came
+  * @param received by the server
+  * @param inVain how often it was asked so
+  * @param waiting minutes, and how many samples the server had not received, as a batch came
   */
 final case class TwoHours(
     received: Vector[Int],

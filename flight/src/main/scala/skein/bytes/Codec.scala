@@ -13,15 +13,15 @@ import scala.compiletime.{constValue, erasedValue, summonInline}
 import scala.deriving.Mirror
 import skein.units.*
 
-/** How values are written as bytes, and read back to the bit: numbers big-endian, texts in UTF-8 behind their length in
-  * bytes, lists behind their length, what may be absent behind a byte that says whether it is there; a case class by its
-  * fields in their order; an enum by a byte for the case, from 1, then that case's fields.
+/** How values are written as bytes, and read back to the bit: numbers big-endian, texts in UTF-8 behind their
+  * length in bytes, lists behind their length, what may be absent behind a byte that says whether it is
+  * there; a case class by its fields in their order; an enum by a byte for the case, from 1, then that case's
+  * fields.
   */
 trait Codec[A]:
   def write(value: A, out: DataOutputStream): Unit
 
-  /** @throws IOException
-    *   where something else comes; no length is believed that is more than the bytes left
+  /** @throws IOException where something else comes; no length is believed that is more than the bytes left
     */
   def read(in: DataInputStream): A
 
@@ -43,8 +43,7 @@ object Codec:
 
   /** A message that is all of the bytes.
     *
-    * @return
-    *   or what was expected, and what came
+    * @return or what was expected, and what came
     */
   def message[A](bytes: Array[Byte])(using codec: Codec[A]): Either[String, A] =
     val in = DataInputStream(ByteArrayInputStream(bytes))

@@ -14,12 +14,10 @@ import skein.units.Decimals.fixed
 
 /** The vehicles of flights in a simulator that speaks AirSim's wire.
   *
-  * @param startsAirborne
-  *   whether the simulator can put vehicles into the air; otherwise they climb to their starts
-  * @param calledOff
-  *   why a flight, by its name, goes no further while its vehicles are brought to their starts
-  * @param isWatched
-  *   whether images and clouds are offered that are not recorded
+  * @param startsAirborne whether the simulator can put vehicles into the air; otherwise they climb to their
+  *   starts
+  * @param calledOff why a flight, by its name, goes no further while its vehicles are brought to their starts
+  * @param isWatched whether images and clouds are offered that are not recorded
   */
 private[flight] final class AirSimFleet(
     transport: Transport,
@@ -31,7 +29,9 @@ private[flight] final class AirSimFleet(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  /** Brings them to their starts, and connects them over the link of the plan. What is opened for that is to be closed. */
+  /** Brings them to their starts, and connects them over the link of the plan. What is opened for that is to
+    * be closed.
+    */
   def connect(
       plan: FlightPlan,
       address: Address,
@@ -160,11 +160,10 @@ object AirSimFleet:
     case LoopKind.Paused => RpcSettings(controlConnections = 1)
     case _               => RpcSettings()
 
-  /** Whether a simulator has been started again since it let these vehicles be flown: then nobody has api control of
-    * them. Its clock need not tell, since AirSim's begins with the time of day.
+  /** Whether a simulator has been started again since it let these vehicles be flown: then nobody has api
+    * control of them. Its clock need not tell, since AirSim's begins with the time of day.
     *
-    * @return
-    *   `Left` where it did not answer, else why a flight cannot go on
+    * @return `Left` where it did not answer, else why a flight cannot go on
     */
   private def startedAgain(vehicles: Vector[VehicleClient], simulator: Address)(using
       ExecutionContext

@@ -6,8 +6,8 @@ import skein.airsim.{Eyes, Image, Shot}
 import skein.rpc.RpcError
 import skein.signal.{ClockAlignment, Stamped}
 
-/** A camera, and how the simulator's clock stands to ours by the times of its images: which of two is newer, also across
-  * a restart of the simulator. From any thread.
+/** A camera, and how the simulator's clock stands to ours by the times of its images: which of two is newer,
+  * also across a restart of the simulator. From any thread.
   */
 private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
   private val shot   = Shot(camera)

@@ -10,13 +10,14 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.GoTo
 
-/** Brings one vehicle to a place by velocity commands, turns it to the north on the way, and lets it hover there.
+/** Brings one vehicle to a place by velocity commands, turns it to the north on the way, and lets it hover
+  * there.
   *
-  * Not by position commands: AirSim's hold of a position works only while the vehicle looks north, and at more than 90°
-  * of yaw it drives the vehicle away. Each command replaces the one before; at most two are under way.
+  * Not by position commands: AirSim's hold of a position works only while the vehicle looks north, and at
+  * more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two are
+  * under way.
   *
-  * @param calledOff
-  *   why it goes no further, asked at every step
+  * @param calledOff why it goes no further, asked at every step
   */
 private[flight] final class Approach(
     name: String,
@@ -31,10 +32,9 @@ private[flight] final class Approach(
 
   /** Until the vehicle hovers within `limits` of the goal.
     *
-    * @param goalNed
-    *   in the frame of `vehicle`
-    * @return
-    *   how it was seen last; `Left` where a call failed, or the vehicle was not there in twice the time that it needs
+    * @param goalNed in the frame of `vehicle`
+    * @return how it was seen last; `Left` where a call failed, or the vehicle was not there in twice the time
+    *   that it needs
     */
   def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
     look: start =>
@@ -117,7 +117,8 @@ private[flight] object Approach:
   /** On the way. */
   val Passing: Limits = Limits(Metres(1), MetresPerSecond(0.5), Radians(math.toRadians(10)))
 
-  /** At a start. A flight may begin 0.3 m off and at 0.1 m/s; a hover moves a little more before it settles. */
+  /** At a start. A flight may begin 0.3 m off and at 0.1 m/s; a hover moves a little more before it settles.
+    */
   val AtRest: Limits = Limits(Metres(0.15), MetresPerSecond(0.05), Radians(math.toRadians(3)))
 
   private val Cruise = MetresPerSecond(5)

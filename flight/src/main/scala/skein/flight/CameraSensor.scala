@@ -17,16 +17,13 @@ import skein.scenario.Eye
 import skein.signal.{LatencySampler, SplitMix64, Stamped}
 import skein.units.*
 
-/** What an [[Eye]] makes of its vehicle's camera, as a sensor: `frames ~> recognise ~> fuse ~> newest belief`, beside the
-  * loop, which waits for none of it. Images come on connections of their own. Every image of which nothing comes is an
-  * event.
+/** What an [[Eye]] makes of its vehicle's camera, as a sensor:
+  * `frames ~> recognise ~> fuse ~> newest belief`, beside the loop, which waits for none of it. Images come
+  * on connections of their own. Every image of which nothing comes is an event.
   *
-  * @param eyes
-  *   of the vehicle
-  * @param seed
-  *   of how long recognition takes
-  * @param seen
-  *   is shown each image; must not wait for anything
+  * @param eyes of the vehicle
+  * @param seed of how long recognition takes
+  * @param seen is shown each image; must not wait for anything
   */
 private[skein] final class CameraSensor(
     val eye: Eye,
@@ -182,12 +179,10 @@ private[skein] object CameraSensor:
 
   /** What became of the images of an eye. Once it has ended, each that was due is one of the others.
     *
-    * @param missed
-    *   never asked for, since others were on their way
-    * @param lost
-    *   of which nothing came: the call failed, recognition failed or was late, or a newer one came first
-    * @param searched
-    *   whether or not anything was found in them
+    * @param missed never asked for, since others were on their way
+    * @param lost of which nothing came: the call failed, recognition failed or was late, or a newer one came
+    *   first
+    * @param searched whether or not anything was found in them
     */
   final case class Counts(due: Long, missed: Long, lost: Long, searched: Long):
     def asked: Long = due - missed

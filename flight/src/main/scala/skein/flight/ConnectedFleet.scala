@@ -6,16 +6,11 @@ import skein.signal.ClockAlignment
 
 /** The vehicles of a flight, reached over a wire and at their starts.
   *
-  * @param where
-  *   the vehicles are, for a person
-  * @param isOther
-  *   see [[SimulatorWatchdog]]
-  * @param cameras
-  *   what recognises in their cameras' images
-  * @param films
-  *   of their other cameras
-  * @param clocks
-  *   the vehicles' clock against the controller's, where it is known already
+  * @param where the vehicles are, for a person
+  * @param isOther see [[SimulatorWatchdog]]
+  * @param cameras what recognises in their cameras' images
+  * @param films of their other cameras
+  * @param clocks the vehicles' clock against the controller's, where it is known already
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],

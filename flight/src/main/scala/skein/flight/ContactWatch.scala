@@ -8,8 +8,8 @@ import skein.record.{Event, EventKind, Recorder}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Asks the simulator once a period what each vehicle has touched, and records it. It has a connection of its own, without
-  * the link: this is no part of the flight.
+/** Asks the simulator once a period what each vehicle has touched, and records it. It has a connection of its
+  * own, without the link: this is no part of the flight.
   */
 private[flight] final class ContactWatch private (
     client: AirSimClient,

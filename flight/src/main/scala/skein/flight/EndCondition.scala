@@ -8,11 +8,10 @@ import skein.scenario.{Known, Scenario}
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-/** Records as `recorder` does, and upon every decision asks the scenario whether the flight is over. What is known then is
-  * what was read and not yet overtaken.
+/** Records as `recorder` does, and upon every decision asks the scenario whether the flight is over. What is
+  * known then is what was read and not yet overtaken.
   *
-  * @param isPaused
-  *   whether time stands still while is decided: then nothing has an age
+  * @param isPaused whether time stands still while is decided: then nothing has an age
   */
 private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, recorder: Recorder)
     extends Recorder:
@@ -38,8 +37,7 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
 
 private object EndCondition:
 
-  /** @param from
-    *   the first decision
+  /** @param from the first decision
     */
   final case class Heard(
       states: Map[String, Stamped[Kinematics]],

@@ -9,29 +9,27 @@ import skein.signal.Kinematics
 import skein.units.*
 import ujson.{Arr, Num, Obj, Value}
 
-/** An environment in another process, behind a Unix socket: that of Python's `skein_uav.simulators`. Lines of JSON go to
-  * and fro, a question and its answer:
+/** An environment in another process, behind a Unix socket: that of Python's `skein_uav.simulators`. Lines of
+  * JSON go to and fro, a question and its answer:
   *
   * {{{
   * {}                                               begins an episode
   * {"velocities": {"Evader": [1.0, 0.0, 0.0]}}      one step, each vehicle under this velocity, NED, m/s
   * {"stepS": 0.1, "vehicles": {"Evader": {"body": [north, east, down, their velocities, heading], "reward": 0.5,
-  *                                        "terminated": false, "truncated": false}}}
-  * {"error": "ValueError: …"}
+  *                                        "terminated": false, "truncated": false
   * }}}
+  * {"error": "ValueError: …"} }}}
   *
   * It blocks, up to [[EnvironmentProcess.AnswerWithin]] a call. Not thread-safe.
   *
-  * @param names
-  *   of the vehicles
+  * @param names of the vehicles
   */
 final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[String]):
   import EnvironmentProcess.*
 
   /** Begins an episode.
     *
-    * @return
-    *   or what was expected, and what came
+    * @return or what was expected, and what came
     */
   def reset(): Either[String, Moment] = ask(Obj())
 
@@ -74,13 +72,11 @@ final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[Str
     String(bytes.array, 0, bytes.position(), UTF_8)
 
 object EnvironmentProcess:
-  /** @param stepS
-    *   of one step
+  /** @param stepS of one step
     */
   final case class Moment(step: Span, agents: Vector[Agent])
 
-  /** @param reward
-    *   of the step before
+  /** @param reward of the step before
     */
   final case class Agent(kinematics: Kinematics, reward: Double, terminated: Boolean, truncated: Boolean)
 

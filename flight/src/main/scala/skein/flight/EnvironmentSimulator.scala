@@ -9,15 +9,14 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.GoTo
 
-/** An environment of anybody's as a simulator: paused, stepped, or run by the clock. It is stepped as late as possible: when
-  * somebody looks, by as many steps as have become due since, each under the velocities that had come before it. So it
-  * needs no thread of its own, and flies in virtual time as live.
+/** An environment of anybody's as a simulator: paused, stepped, or run by the clock. It is stepped as late as
+  * possible: when somebody looks, by as many steps as have become due since, each under the velocities that
+  * had come before it. So it needs no thread of its own, and flies in virtual time as live.
   *
-  * A reading is of the last step. Every step's rewards and ends are recorded, as measurements of each vehicle by the sensor
-  * [[EnvironmentSimulator.Sensor]].
+  * A reading is of the last step. Every step's rewards and ends are recorded, as measurements of each vehicle
+  * by the sensor [[EnvironmentSimulator.Sensor]].
   *
-  * @param on
-  *   where the environment is asked, which blocks: one thread, in the order in which it is given work
+  * @param on where the environment is asked, which blocks: one thread, in the order in which it is given work
   */
 final class EnvironmentSimulator private (
     process: EnvironmentProcess,
@@ -43,7 +42,9 @@ final class EnvironmentSimulator private (
   private var anchored   = Span.Zero
   private var anchoredAt = Option.empty[Instant]
 
-  /** The vehicles, in the order of their names. Their actions are velocities, places to come to, and to hover. */
+  /** The vehicles, in the order of their names. Their actions are velocities, places to come to, and to
+    * hover.
+    */
   val vehicles: Vector[VehiclePort] = names.indices.toVector.map(Vehicle(_))
 
   def pause(): Future[Either[VehicleError, Unit]] = asked:
@@ -152,10 +153,8 @@ object EnvironmentSimulator:
 
   /** Begins an episode; blocks until it has begun.
     *
-    * @param names
-    *   of the vehicles
-    * @return
-    *   or why there is none
+    * @param names of the vehicles
+    * @return or why there is none
     */
   def start(
       process: EnvironmentProcess,

@@ -14,10 +14,8 @@ private[skein] object Equipped:
 
   /** With what it carries by a scenario.
     *
-    * @param seen
-    *   what its eyes make of its cameras, by name
-    * @param scanned
-    *   is shown each scan of a lidar, with its name
+    * @param seen what its eyes make of its cameras, by name
+    * @param scanned is shown each scan of a lidar, with its name
     */
   def by(
       scenario: Scenario,

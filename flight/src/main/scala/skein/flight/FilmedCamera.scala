@@ -12,11 +12,10 @@ import skein.record.EventKind
 import skein.signal.Stamped
 import skein.units.*
 
-/** A camera whose images nobody decides by: they are taken beside the loop, which waits for none of them. What is missed is
-  * counted, and told once a second.
+/** A camera whose images nobody decides by: they are taken beside the loop, which waits for none of them.
+  * What is missed is counted, and told once a second.
   *
-  * @param seen
-  *   each image, newer than all before; must not wait for anything
+  * @param seen each image, newer than all before; must not wait for anything
   */
 private[skein] final class FilmedCamera(
     camera: String,

@@ -21,22 +21,17 @@ import skein.units.*
 
 /** Puts flights together.
   *
-  * @param simulator
-  *   the address of a simulator that runs already; without one, each flight has a built-in simulator of its own
-  * @param workers
-  *   what a flight that plans searches with
-  * @param tell
-  *   a line for a person, of what goes wrong in flight, as soon as it does
-  * @param learnsOn
-  *   what policies learn on that learn in flight; without it, each on a thread of its own that gives way to all others
-  * @param solvers
-  *   the links to solvers, for flights that are not decided for here
-  * @param calledOff
-  *   why a flight, by its name, goes no further while its vehicles are brought to their starts
-  * @param isWatched
-  *   whether its records are shown, so that images and clouds are offered that are not recorded
-  * @param isMavlinkByTcp
-  *   whether `simulator` is reached by TCP where it speaks MAVLink, and not by datagrams
+  * @param simulator the address of a simulator that runs already; without one, each flight has a built-in
+  *   simulator of its own
+  * @param workers what a flight that plans searches with
+  * @param tell a line for a person, of what goes wrong in flight, as soon as it does
+  * @param learnsOn what policies learn on that learn in flight; without it, each on a thread of its own that
+  *   gives way to all others
+  * @param solvers the links to solvers, for flights that are not decided for here
+  * @param calledOff why a flight, by its name, goes no further while its vehicles are brought to their starts
+  * @param isWatched whether its records are shown, so that images and clouds are offered that are not
+  *   recorded
+  * @param isMavlinkByTcp whether `simulator` is reached by TCP where it speaks MAVLink, and not by datagrams
   */
 final class FlightAssembler(
     transport: Transport,
@@ -94,8 +89,7 @@ final class FlightAssembler(
 
   /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
     *
-    * @return
-    *   or why it cannot be flown
+    * @return or why it cannot be flown
     */
   def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightAssembly]] =
     val opened   = Opened()

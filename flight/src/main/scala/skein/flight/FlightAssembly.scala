@@ -29,7 +29,9 @@ final class FlightAssembly private[skein] (
     monitor.offer(Event(clock.now(), EventKind.Aborted, None, why))
     flight.stop()
 
-  /** Its vehicles hover and nobody decides, until it continues or ends; its time runs on. Who did it is recorded. */
+  /** Its vehicles hover and nobody decides, until it continues or ends; its time runs on. Who did it is
+    * recorded.
+    */
   def pause(who: String): Unit =
     if hold.hold() then monitor.offer(Event(clock.now(), EventKind.Paused, None, who))
 
@@ -64,8 +66,7 @@ private object FlightAssembly:
 
 /** How a flight ended, and what is on record.
   *
-  * @param solverTrips
-  *   the latest round trips to the solver, if one decided
+  * @param solverTrips the latest round trips to the solver, if one decided
   */
 final case class FlightResult(
     plan: FlightPlan,

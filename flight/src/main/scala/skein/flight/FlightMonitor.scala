@@ -28,7 +28,9 @@ final class FlightMonitor(recorder: Recorder) extends Recorder:
   /** When and why a connection was lost last, or could not be opened. */
   def broken: Option[Event] = lastBroken
 
-  /** Distance between a vehicle and its opponent at the newest decision, and how old the newest reading is now. */
+  /** Distance between a vehicle and its opponent at the newest decision, and how old the newest reading is
+    * now.
+    */
   def lastSeen(now: Instant): Option[LastSeen] =
     for
       decision <- newest

@@ -11,8 +11,7 @@ import skein.units.*
 
 /** Records what a vehicle's cameras and lidars see. From any thread; never waits.
   *
-  * @param isWanted
-  *   whether anybody wants to have it
+  * @param isWanted whether anybody wants to have it
   */
 private[skein] final class ImageRecorder(
     vehicle: VehicleClient,
@@ -82,7 +81,9 @@ private[skein] final class ImageRecorder(
           Blob.of(ImageRecorder.bytes(frame.value.points))
         ))
 
-  /** The number of what came; absent where it is what came before: a sensor that has nothing new repeats itself. */
+  /** The number of what came; absent where it is what came before: a sensor that has nothing new repeats
+    * itself.
+    */
   private def next(sensor: ImagingSensor, validAt: Instant): Option[Long] =
     val now = counts.compute(
       sensor,

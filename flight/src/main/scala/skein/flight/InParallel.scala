@@ -2,8 +2,8 @@ package skein.flight
 
 import java.util.concurrent.{Callable, ExecutionException, ExecutorCompletionService, Executors, Future}
 
-/** Work on threads of its own. What one of them throws is thrown here, and nothing more is begun. Blocks. What is shared out in pieces of microseconds is shared out
-  * otherwise; it says why there.
+/** Work on threads of its own. What one of them throws is thrown here, and nothing more is begun. Blocks.
+  * What is shared out in pieces of microseconds is shared out otherwise; it says why there.
   */
 private[skein] object InParallel:
 
@@ -14,8 +14,8 @@ private[skein] object InParallel:
     finally
       val _ = pool.shutdownNow()
 
-  /** Tells what each comes to, as it comes, on the calling thread. `all` may be without end: the next is taken when one has
-    * ended.
+  /** Tells what each comes to, as it comes, on the calling thread. `all` may be without end: the next is
+    * taken when one has ended.
     */
   def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
     val pool                  = Executors.newFixedThreadPool(threads)

@@ -8,11 +8,10 @@ import skein.port.{Sensor, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, LatencyProfile, LatencySampler, Stamped}
 import skein.units.*
 
-/** A vehicle behind an emulated link, where its adapter has no bytes to delay: each call, and each answer, comes as late as
-  * the link's latency says, and none overtakes another.
+/** A vehicle behind an emulated link, where its adapter has no bytes to delay: each call, and each answer,
+  * comes as late as the link's latency says, and none overtakes another.
   *
-  * @param line
-  *   the vehicle's number among those behind this link
+  * @param line the vehicle's number among those behind this link
   */
 final class LinkedVehicle(
     vehicle: VehiclePort,

@@ -21,22 +21,19 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
 
   /** Ends one flight now; its vehicles hover.
     *
-    * @param why
-    *   as it is recorded
+    * @param why as it is recorded
     */
   def stop(id: String, why: String): Unit = of(id).foreach(_.stop(why))
 
   /** One flight's vehicles hover and nobody decides, until it continues or ends; its time runs on.
     *
-    * @param who
-    *   as it is recorded
+    * @param who as it is recorded
     */
   def pause(id: String, who: String): Unit = of(id).foreach(_.pause(who))
 
   /** Lets one flight go on that is paused.
     *
-    * @param who
-    *   as it is recorded
+    * @param who as it is recorded
     */
   def continue(id: String, who: String): Unit = of(id).foreach(_.continue(who))
 
@@ -54,12 +51,10 @@ object LiveFlights:
 
   /** Starts all flights, or none.
     *
-    * @param observe
-    *   is shown every record of a flight that begins with a heading; it must not wait for anything
-    * @param beside
-    *   what takes a flight's rows besides its recording, or why it cannot
-    * @return
-    *   or why they cannot be flown; those that had started were stopped again
+    * @param observe is shown every record of a flight that begins with a heading; it must not wait for
+    *   anything
+    * @param beside what takes a flight's rows besides its recording, or why it cannot
+    * @return or why they cannot be flown; those that had started were stopped again
     */
   def start(
       assembler: FlightAssembler,
@@ -112,7 +107,9 @@ object LiveFlights:
                     Left(s"${plan.id}: $reason")
               case started => Future.successful(started)
 
-  /** Takes away the recording of a flight that was not flown, which would be in the way when it is tried again. */
+  /** Takes away the recording of a flight that was not flown, which would be in the way when it is tried
+    * again.
+    */
   private def unmade(file: Path): Unit =
     for name <- Seq(file.getFileName.toString, s"${file.getFileName}.wal") do
       val _ = Try(Files.deleteIfExists(file.resolveSibling(name)))

@@ -13,10 +13,8 @@ import skein.units.*
 
 /** A scenario's vehicles over MAVLink, system 1 being its first.
   *
-  * @param isDatagrams
-  *   whether `connect` gives datagrams, and not pieces of a stream
-  * @param calledOff
-  *   why vehicles that fly to their starts go no further
+  * @param isDatagrams whether `connect` gives datagrams, and not pieces of a stream
+  * @param calledOff why vehicles that fly to their starts go no further
   */
 private[flight] final class MavlinkFleet(
     fleet: Fleet,
@@ -53,8 +51,7 @@ private[flight] final class MavlinkFleet(
 
   /** Opens the connection that is flown over, and aligns the clocks over it before anything is decided.
     *
-    * @param isStream
-    *   whether what stands between makes a stream of it
+    * @param isStream whether what stands between makes a stream of it
     */
   def open(
       flow: Flow[ByteString, ByteString, ?],

@@ -13,7 +13,9 @@ private[skein] final class Opened(using ExecutionContext):
     val _ = closers.updateAndGet((() => close(resource)) :: _)
     resource
 
-  /** Closes everything, each when the one before has ended, also where one fails; fails with the first failure. */
+  /** Closes everything, each when the one before has ended, also where one fails; fails with the first
+    * failure.
+    */
   def close(): Future[Done] =
     closers.getAndSet(Nil).foldLeft(Future.successful[Done](Done)): (before, close) =>
       before.transformWith(ended => close().transform(closed => ended.flatMap(_ => closed)))

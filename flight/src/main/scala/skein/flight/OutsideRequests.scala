@@ -2,9 +2,9 @@ package skein.flight
 
 import scala.collection.immutable.VectorMap
 
-/** What is asked of flights from outside, from any thread, whether they fly already or not. What is asked of a flight
-  * that does not fly yet holds from its first decision on; one that is asked to end while its vehicles are brought to
-  * their starts goes no further.
+/** What is asked of flights from outside, from any thread, whether they fly already or not. What is asked of
+  * a flight that does not fly yet holds from its first decision on; one that is asked to end while its
+  * vehicles are brought to their starts goes no further.
   */
 final class OutsideRequests:
   import OutsideRequests.*

@@ -9,21 +9,15 @@ import skein.scenario.Scenario
 import skein.settings.ScenarioSettings
 import skein.units.*
 
-/** One flight of a loop with vehicles of any kind that have a [[VehiclePort]], live or in virtual time. The vehicles must
-  * be at their starts already.
+/** One flight of a loop with vehicles of any kind that have a [[VehiclePort]], live or in virtual time. The
+  * vehicles must be at their starts already.
   *
-  * @param id
-  *   its name in tables and figures
-  * @param loop
-  *   one of ours, or a user's own graph
-  * @param scenario
-  *   who flies, by which policies, and what is measured
-  * @param link
-  *   name of the network between loop and vehicles, for the report
-  * @param simulator
-  *   name of the vehicles' simulator, for the report
-  * @param clockKind
-  *   real or virtual time; [[clock]] reads it
+  * @param id its name in tables and figures
+  * @param loop one of ours, or a user's own graph
+  * @param scenario who flies, by which policies, and what is measured
+  * @param link name of the network between loop and vehicles, for the report
+  * @param simulator name of the vehicles' simulator, for the report
+  * @param clockKind real or virtual time; [[clock]] reads it
   */
 final case class PortFlight(
     id: String,
@@ -57,12 +51,9 @@ final case class PortFlight(
 
   /** Starts it. The recorder gets everything down to the last row, and is closed.
     *
-    * @param vehicles
-    *   one for each agent of the scenario, in its order
-    * @param time
-    *   of a simulator that can be stopped and stepped: `paused` needs it
-    * @return
-    *   the flight under way. Its `landed` completes when the vehicles hover and everything is written
+    * @param vehicles one for each agent of the scenario, in its order
+    * @param time of a simulator that can be stopped and stepped: `paused` needs it
+    * @return the flight under way. Its `landed` completes when the vehicles hover and everything is written
     */
   def start(vehicles: Vector[VehiclePort], recorder: Recorder, time: Option[SteppedTime] = None)(using
       system: ActorSystem
@@ -81,8 +72,7 @@ final case class PortFlight(
     PortFlight.UnderWay(flight, landed)
 
 object PortFlight:
-  /** @param landed
-    *   how it ended, and what is on record
+  /** @param landed how it ended, and what is on record
     */
   final case class UnderWay(
       flight: Flight,

@@ -9,11 +9,10 @@ import skein.rpc.RpcError
 import skein.units.*
 import skein.vehicle.CarControls
 
-/** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. Altitudes of a scenario are above
-  * the place where each vehicle's own frame has its origin.
+/** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. Altitudes of a
+  * scenario are above the place where each vehicle's own frame has its origin.
   *
-  * @param calledOff
-  *   why vehicles that fly to their starts go no further
+  * @param calledOff why vehicles that fly to their starts go no further
   */
 final class Preparation(
     client: AirSimClient,
@@ -38,8 +37,9 @@ final class Preparation(
             _ <- call(multirotor.hoverAt(VehiclePose(agent.startPositionNed, Quaternion.Identity)))
           yield vehicle
 
-  /** Flies there by [[StartPositioning]]; cars brake and are put there. For any simulator, in whatever state it is found: what a vehicle has is not taken again,
-    * since a vehicle that flies in AirSim falls if api control is taken anew. Those on the ground take off.
+  /** Flies there by [[StartPositioning]]; cars brake and are put there. For any simulator, in whatever state
+    * it is found: what a vehicle has is not taken again, since a vehicle that flies in AirSim falls if api
+    * control is taken anew. Those on the ground take off.
     */
   def climb(fleet: Fleet): Future[Either[String, Vector[VehicleClient]]] = prepared:
     for

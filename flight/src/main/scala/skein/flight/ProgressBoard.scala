@@ -7,8 +7,7 @@ import skein.units.Decimals.fixed
 
 /** How far a flight is.
   *
-  * @param silentFor
-  *   how long nothing was heard of the simulator, where it is silent
+  * @param silentFor how long nothing was heard of the simulator, where it is silent
   */
 final case class FlightProgress(
     id: String,

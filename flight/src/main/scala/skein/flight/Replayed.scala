@@ -10,12 +10,10 @@ import skein.units.Expect
 
 /** What came of replaying a recording.
   *
-  * @param decisions
-  *   that the recording holds
-  * @param decidedAgain
-  *   the first difference when the recorded readings and moves are decided upon again
-  * @param flownAgain
-  *   for a flight in virtual time, of a loop of ours and with the built-in simulator: what came of flying it again, physics, network and all
+  * @param decisions that the recording holds
+  * @param decidedAgain the first difference when the recorded readings and moves are decided upon again
+  * @param flownAgain for a flight in virtual time, of a loop of ours and with the built-in simulator: what
+  *   came of flying it again, physics, network and all
   */
 final case class Replayed(
     id: String,
@@ -25,8 +23,7 @@ final case class Replayed(
 ):
   def isSame: Boolean = decidedAgain.isEmpty && flownAgain.forall(_.isSame)
 
-/** @param inDecisions
-  *   the first decision that differs
+/** @param inDecisions the first decision that differs
   */
 final case class FlownAgain(recorded: Digest, again: Digest, inDecisions: Option[Difference]):
   def isSame: Boolean = recorded == again

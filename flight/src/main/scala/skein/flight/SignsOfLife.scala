@@ -4,18 +4,14 @@ import skein.units.*
 
 /** Whether a simulator that is asked all the time answers.
   *
-  * @param silentSince
-  *   when the last answer came, while it is silent
+  * @param silentSince when the last answer came, while it is silent
   */
 private[flight] final case class SignsOfLife(silentSince: Option[Instant] = None):
   import SignsOfLife.*
 
-  /** @param heardAt
-    *   when the newest answer came
-    * @param within
-    *   which an answer is to come
-    * @return
-    *   and what is to be told
+  /** @param heardAt when the newest answer came
+    * @param within which an answer is to come
+    * @return and what is to be told
     */
   def look(heardAt: Instant, now: Instant, within: Span): (SignsOfLife, Option[Sign]) = silentSince match
     case None if now.since(heardAt) > within =>

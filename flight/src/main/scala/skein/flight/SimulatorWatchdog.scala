@@ -8,18 +8,14 @@ import skein.record.{Event, EventKind}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Watches over a flight whose simulator may fall silent: that is told and recorded within a second, and so is its
-  * return. After [[SimulatorWatchdog.GivesUp]] the flight ends. It ends, too, where the simulator that answers after a broken
-  * connection or a silence is not the one that the flight began with.
+/** Watches over a flight whose simulator may fall silent: that is told and recorded within a second, and so
+  * is its return. After [[SimulatorWatchdog.GivesUp]] the flight ends. It ends, too, where the simulator that
+  * answers after a broken connection or a silence is not the one that the flight began with.
   *
-  * @param isOther
-  *   asks the simulator that; `Left` where that was not answered, else why it is, if it is
-  * @param within
-  *   which an answer is to come
-  * @param deciding
-  *   whose policy the loop waits for, and since when: then nobody asks the simulator
-  * @param tell
-  *   a line for a person
+  * @param isOther asks the simulator that; `Left` where that was not answered, else why it is, if it is
+  * @param within which an answer is to come
+  * @param deciding whose policy the loop waits for, and since when: then nobody asks the simulator
+  * @param tell a line for a person
   */
 private[flight] final class SimulatorWatchdog(
     monitor: FlightMonitor,
@@ -98,7 +94,8 @@ private[flight] object SimulatorWatchdog:
   /** After so long without an answer a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 
-  /** So that silence is told within a second of the last answer, where decisions are made ten times a second. */
+  /** So that silence is told within a second of the last answer, where decisions are made ten times a second.
+    */
   private val ToldAfter = Span.ofMillis(700)
   private val LookEvery = Span.ofMillis(100)
 

@@ -7,12 +7,9 @@ import skein.units.*
 
 /** How flights reach solvers.
   *
-  * @param build
-  *   of this program; the solver's must be the same
-  * @param link
-  *   to a solver, or why it cannot be had
-  * @param patience
-  *   for how long a flight waits before its start until a solver welcomes it
+  * @param build of this program; the solver's must be the same
+  * @param link to a solver, or why it cannot be had
+  * @param patience for how long a flight waits before its start until a solver welcomes it
   */
 final case class Solvers(
     build: String,

@@ -3,15 +3,14 @@ package skein.flight
 import scala.concurrent.{ExecutionContext, Future}
 import skein.units.Vector3
 
-/** Flies vehicles to their starts, all at once, so that no way crosses another at one altitude: from wherever they are, each
-  * first climbs straight to a layer of its own, above all starts, and crosses over in it when all have come to theirs; when
-  * all have crossed over, they go down.
+/** Flies vehicles to their starts, all at once, so that no way crosses another at one altitude: from wherever
+  * they are, each first climbs straight to a layer of its own, above all starts, and crosses over in it when
+  * all have come to theirs; when all have crossed over, they go down.
   */
 private[flight] object StartPositioning:
   /** A vehicle on its way to its start, world NED.
     *
-    * @param leaveGround
-    *   takes off where it stands, and says where it is then; fails with [[NotReady]]
+    * @param leaveGround takes off where it stands, and says where it is then; fails with [[NotReady]]
     */
   final case class Starting(startNed: Vector3, approach: Approach, leaveGround: () => Future[Vector3])
 

@@ -16,17 +16,15 @@ import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler and the
-  * sockets replaced. Equal settings and plans give equal recordings, byte for byte.
+/** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler
+  * and the sockets replaced. Equal settings and plans give equal recordings, byte for byte.
   */
 object VirtualFlights:
 
   /** Flies all, as many at once as there are cores, and writes a recording of each into `folder`. Blocks.
     *
-    * @param onLanded
-    *   told of each flight as it has ended, and of its recording's contents
-    * @return
-    *   or which of them could not be flown, and why; the recordings of the others are written
+    * @param onLanded told of each flight as it has ended, and of its recording's contents
+    * @return or which of them could not be flown, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
       onLanded: (FlightResult, Digest) => Unit
@@ -40,8 +38,7 @@ object VirtualFlights:
 
   /** Flies all, as many at once as there are cores, and keeps of each what `use` makes of it. Blocks.
     *
-    * @return
-    *   one for each plan, in their order
+    * @return one for each plan, in their order
     */
   def inParallel[A](settings: FlySettings, plans: Vector[FlightPlan])(
       use: VirtualFlightResult => A
@@ -61,8 +58,7 @@ object VirtualFlights:
 
   /** Flies on the calling thread, to the end.
     *
-    * @return
-    *   how it ended and what was recorded, or why it could not be flown
+    * @return how it ended and what was recorded, or why it could not be flown
     */
   def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
     VirtualTime
@@ -100,10 +96,8 @@ object VirtualFlights:
 
   /** What one flight of a scenario comes to, by itself. Flies on the calling thread.
     *
-    * @param duration
-    *   at most; 0 for the scenario's own
-    * @return
-    *   or why it could not be flown to its end, or its vehicles were not all seen
+    * @param duration at most; 0 for the scenario's own
+    * @return or why it could not be flown to its end, or its vehicles were not all seen
     */
   def result(
       scenario: Scenario,

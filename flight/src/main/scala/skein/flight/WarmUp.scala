@@ -10,10 +10,10 @@ import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** Flies what is to be flown live before, so that the compiler has seen the whole way of a decision before the first one
-  * counts: in virtual time, over the links to come, and then over real sockets. At ten decisions a second a flight of a
-  * minute would end before it is compiled: cold, a decision takes many times as long from the reading to the command
-  * (`skein.bench.FrameworkLatency`).
+/** Flies what is to be flown live before, so that the compiler has seen the whole way of a decision before
+  * the first one counts: in virtual time, over the links to come, and then over real sockets. At ten
+  * decisions a second a flight of a minute would end before it is compiled: cold, a decision takes many times
+  * as long from the reading to the command (`skein.bench.FrameworkLatency`).
   */
 object WarmUp:
   /** How many virtual flights it takes. */
@@ -25,17 +25,17 @@ object WarmUp:
   /** Of each virtual flight: short, so that every loop and link has its turn. */
   private val Flown = Span.ofSeconds(5)
 
-  /** Of the rehearsal, of real time: with its period and its vehicles, as many decisions as a duel makes in two minutes. */
+  /** Of the rehearsal, of real time: with its period and its vehicles, as many decisions as a duel makes in
+    * two minutes.
+    */
   private val Rehearsed         = Span.ofSeconds(3)
   private val RehearsalPeriod   = Span.ofMillis(20)
   private val RehearsalVehicles = 20
 
   /** Flies the plans of `settings` in turn in virtual time; blocks.
     *
-    * @param flights
-    *   after which it ends, or with the first flight that ends later than [[AtMost]]
-    * @return
-    *   how many were flown, or why one could not be
+    * @param flights after which it ends, or with the first flight that ends later than [[AtMost]]
+    * @return how many were flown, or why one could not be
     */
   def fly(settings: FlySettings, flights: Int, clock: Clock): Either[String, Int] =
     val short = settings.copy(
@@ -61,12 +61,12 @@ object WarmUp:
 
     next(0)
 
-  /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are, without a link, against
-    * built-in simulators, with more vehicles and more often: what virtual time replaces, sockets and threads, is warm
-    * then too. Afterwards the compiler gives way to what is flown, and [[skein.link.ControlThreads]] go first.
+  /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are, without a
+    * link, against built-in simulators, with more vehicles and more often: what virtual time replaces,
+    * sockets and threads, is warm then too. Afterwards the compiler gives way to what is flown, and
+    * [[skein.link.ControlThreads]] go first.
     *
-    * @return
-    *   how many decisions were made, or why a loop could not be started
+    * @return how many decisions were made, or why a loop could not be started
     */
   def rehearse(settings: FlySettings, transport: Transport, clock: Clock)(using
       system: ActorSystem

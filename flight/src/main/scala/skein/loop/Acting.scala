@@ -4,7 +4,9 @@ import skein.policy.{Action, Fleet, Yaw}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint}
 
-/** What of an action stands for it where headings and speeds are asked for, and what the flight controller makes of it. */
+/** What of an action stands for it where headings and speeds are asked for, and what the flight controller
+  * makes of it.
+  */
 private object Acting:
   import PositionGuidance.turned
 
@@ -43,7 +45,9 @@ private object Acting:
       Setpoint.velocityZ(velocity.x, velocity.y, agent.startPositionNed.z)
     }(guidance)
 
-  /** What a vehicle is told: the action, or for a heading the velocity along it, at the altitude of the start. */
+  /** What a vehicle is told: the action, or for a heading the velocity along it, at the altitude of the
+    * start.
+    */
   def action(fleet: Fleet, decision: Decision): Action =
     decision.action.getOrElse:
       val agent    = fleet.agents(decision.vehicle)

@@ -4,8 +4,8 @@ import skein.policy.{Agent, AgentPolicy, HoldPosition, KeepHeading, PolicyFamily
 import skein.scenario.Scenarios
 import skein.units.Span
 
-/** By when a policy must have decided, and what is done where it has not. The policy then runs beside the loop, on threads
-  * of its own, and what it decides too late is not used.
+/** By when a policy must have decided, and what is done where it has not. The policy then runs beside the
+  * loop, on threads of its own, and what it decides too late is not used.
   */
 final case class Deadline(within: Span, otherwise: Fallback):
   require(within > Span.Zero, "a deadline must be positive")

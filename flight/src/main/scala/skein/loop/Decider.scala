@@ -6,15 +6,13 @@ import skein.units.*
 
 /** What one vehicle's decisions depend on apart from the view.
   *
-  * @param held
-  *   what the policy remembers; of its own type
+  * @param held what the policy remembers; of its own type
   */
 final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long, held: Any = ())
 
 /** Decisions for one vehicle of a scenario: the pure core of every loop.
   *
-  * @param policy
-  *   the agent's own, or one in its place
+  * @param policy the agent's own, or one in its place
   */
 final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
   private val agent = fleet.agents(self)
@@ -25,8 +23,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
 
   /** Decides from a complete view.
     *
-    * @param now
-    *   on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
+    * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val seen = observation(memory, view, now)
@@ -48,7 +45,9 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
           )
         (next.copy(held = held), decision.copy(action = Some(action)))
 
-  /** Decides once in the place of another policy, of which the memory is, and leaves that policy's own part as it was. */
+  /** Decides once in the place of another policy, of which the memory is, and leaves that policy's own part
+    * as it was.
+    */
   def decideInstead(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val (next, decision) = decide(memory.copy(held = policy.start), view, now)
     (next.copy(held = memory.held), decision)
@@ -100,10 +99,8 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
 
   /** The decision for a course that was chosen, however that was done.
     *
-    * @param speed
-    *   absent where the vehicle commands its own
-    * @throws ArithmeticException
-    *   if the heading is no finite number: no vehicle is told such a thing
+    * @param speed absent where the vehicle commands its own
+    * @throws ArithmeticException if the heading is no finite number: no vehicle is told such a thing
     */
   def decided(
       memory: Memory,

@@ -5,22 +5,15 @@ import skein.units.*
 
 /** What was decided for one vehicle, and what from.
   *
-  * @param sequence
-  *   counts the decisions for this vehicle
-  * @param view
-  *   what the controller knew
-  * @param opponent
-  *   whom it was decided against
-  * @param headingBefore
-  *   commanded last to this vehicle
-  * @param elapsed
-  *   since this vehicle's last decision; zero at the first
-  * @param heading
-  *   the one chosen
-  * @param speed
-  *   the one chosen; absent where the vehicle always commands its own
-  * @param action
-  *   what was decided to do; absent where it is told by heading and speed at the altitude of the start
+  * @param sequence counts the decisions for this vehicle
+  * @param view what the controller knew
+  * @param opponent whom it was decided against
+  * @param headingBefore commanded last to this vehicle
+  * @param elapsed since this vehicle's last decision; zero at the first
+  * @param heading the one chosen
+  * @param speed the one chosen; absent where the vehicle always commands its own
+  * @param action what was decided to do; absent where it is told by heading and speed at the altitude of the
+  *   start
   */
 final case class Decision(
     vehicle: Int,

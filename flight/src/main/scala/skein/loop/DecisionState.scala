@@ -21,8 +21,8 @@ private final class DecisionState(decider: Decider, memory: Memory):
   /** With what the policy remembers as it was before the first decision. */
   def begunAnew: DecisionState = DecisionState(decider, memory.copy(held = decider.start.held))
 
-/** What the decisions of vehicles that plan together are made by when they are made again. Immutable but for scratch
-  * memory.
+/** What the decisions of vehicles that plan together are made by when they are made again. Immutable but for
+  * scratch memory.
   */
 private final class JointDecisionState private (
     val planning: JointPlanning,
@@ -32,10 +32,8 @@ private final class JointDecisionState private (
 ):
   def this(planning: JointPlanning, memories: Vector[Memory]) = this(planning, JointPlanner(), memories, None)
 
-  /** @param views
-    *   by vehicle
-    * @param slices
-    *   of each search
+  /** @param views by vehicle
+    * @param slices of each search
     */
   def decide(
       views: Vector[TeamView],

@@ -23,8 +23,8 @@ enum FlightOutcome:
   /** It could not go on; the vehicles were told to hover. */
   case Failed(reason: String)
 
-/** A flight under way. Whatever ends it, the vehicles are told to hover and every call has ended when `outcome`
-  * completes.
+/** A flight under way. Whatever ends it, the vehicles are told to hover and every call has ended when
+  * `outcome` completes.
   */
 final class Flight private (stopping: Promise[FlightOutcome], val outcome: Future[FlightOutcome]):
 
@@ -45,14 +45,12 @@ final class Flight private (stopping: Promise[FlightOutcome], val outcome: Futur
 
 object Flight:
 
-  /** Flies a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the flight.
+  /** Flies a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the
+    * flight.
     *
-    * @param loop
-    *   one of ours, or a user's own
-    * @param time
-    *   what lets the simulator's time pass; only `paused` needs it
-    * @param onTime
-    *   how it has ended when its time is over
+    * @param loop one of ours, or a user's own
+    * @param time what lets the simulator's time pass; only `paused` needs it
+    * @param onTime how it has ended when its time is over
     */
   def start(
       loop: LoopKind | OwnLoop,
@@ -93,7 +91,9 @@ object Flight:
       hovering.transformWith(_ => stopping.future)
     Flight(stopping, landed.map(recorded(recorder, _)))
 
-  /** The last answers come after the flight's time is over; where they could not be kept, it has failed all the same. */
+  /** The last answers come after the flight's time is over; where they could not be kept, it has failed all
+    * the same.
+    */
   private def recorded(recorder: Recorder, outcome: FlightOutcome): FlightOutcome =
     recorder.failure.value.flatMap(_.toOption) match
       case Some(error) if !outcome.isInstanceOf[FlightOutcome.Failed] => FlightOutcome.Failed(error.message)

@@ -2,15 +2,13 @@ package skein.loop
 
 /** Where a part of a graph is drawn.
   *
-  * @param column
-  *   from 0, from left to right
-  * @param row
-  *   from 0, from top to bottom; halves occur, since columns are centred
+  * @param column from 0, from left to right
+  * @param row from 0, from top to bottom; halves occur, since columns are centred
   */
 final case class Spot(column: Int, row: Double)
 
-/** A column for each part: one behind the last of those that lead to it, where nothing turns back. Within a column, parts
-  * stand as those do that lead to them; what turns back stands below.
+/** A column for each part: one behind the last of those that lead to it, where nothing turns back. Within a
+  * column, parts stand as those do that lead to them; what turns back stands below.
   */
 object GraphLayout:
 

@@ -5,12 +5,12 @@ import skein.planning.{Part, PlannerSettings}
 import skein.policy.{Fleet, GoalPolicy}
 import skein.units.*
 
-/** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its replay uses too.
+/** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its
+  * replay uses too.
   *
   * Where nothing was searched for a vehicle for half a horizon, its own policy decides.
   *
-  * @param vehicles
-  *   by their places in the scenario, at least one
+  * @param vehicles by their places in the scenario, at least one
   */
 final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[Planning]):
   val planner: PlannerSettings = plannings.head.planner
@@ -22,8 +22,7 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 
   /** What is planned for, by vehicle.
     *
-    * @param views
-    *   with the estimates of when the commands will act
+    * @param views with the estimates of when the commands will act
     */
   def pose(memories: Vector[Memory], views: Vector[TeamView], now: Instant): Vector[Part] =
     plannings.indices.toVector.map(index => plannings(index).pose(memories(index), views(index), now))
@@ -52,8 +51,7 @@ object JointPlanning:
 
   /** Absent where nobody plans.
     *
-    * @param seed
-    *   of the searches' random numbers
+    * @param seed of the searches' random numbers
     */
   def of(fleet: Fleet, settings: PlanSettings, seed: Long): Option[JointPlanning] =
     val vehicles  = fleet.agents.indices.toVector.filter(vehicle => Planning.plans(fleet.agents(vehicle)))

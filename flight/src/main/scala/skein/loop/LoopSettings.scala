@@ -7,36 +7,24 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
 
 /** How a loop is run.
   *
-  * @param period
-  *   between decisions for one vehicle
-  * @param window
-  *   questions to one vehicle that may be unanswered at once
-  * @param moveDuration
-  *   of every move command; the vehicle holds its position when it hears nothing for so long
-  * @param minCommandInterval
-  *   the rate cap for one vehicle, whatever the loop does
-  * @param paceInterval
-  *   that `stream` keeps at least between two decisions (or commands) for one vehicle; the ticks keep the period
-  * @param movesInFlight
-  *   moves of one vehicle that may be unanswered: see [[skein.flow.Steer]]
-  * @param patience
-  *   how long `stream` waits for the readings of the other vehicles when one has come
-  * @param spread
-  *   over which the ticks of the vehicles are spread
-  * @param early
-  *   what `stream` does with a reading that comes before an older one of the same vehicle
-  * @param decideThenPace
-  *   `stream` decides at every view and paces the commands, instead of pacing first and deciding with the newest
-  *   view
-  * @param model
-  *   by which `predictive` and `plan` carry the readings of a vehicle forward
-  * @param planning
-  *   how `plan` plans
-  * @param seed
-  *   of its searches
-  * @param deadline
-  *   of every decision; without one a policy decides on the loop's own thread and is waited for. `paused` has none: its
-  *   time stands still
+  * @param period between decisions for one vehicle
+  * @param window questions to one vehicle that may be unanswered at once
+  * @param moveDuration of every move command; the vehicle holds its position when it hears nothing for so
+  *   long
+  * @param minCommandInterval the rate cap for one vehicle, whatever the loop does
+  * @param paceInterval that `stream` keeps at least between two decisions (or commands) for one vehicle; the
+  *   ticks keep the period
+  * @param movesInFlight moves of one vehicle that may be unanswered: see [[skein.flow.Steer]]
+  * @param patience how long `stream` waits for the readings of the other vehicles when one has come
+  * @param spread over which the ticks of the vehicles are spread
+  * @param early what `stream` does with a reading that comes before an older one of the same vehicle
+  * @param decideThenPace `stream` decides at every view and paces the commands, instead of pacing first and
+  *   deciding with the newest view
+  * @param model by which `predictive` and `plan` carry the readings of a vehicle forward
+  * @param planning how `plan` plans
+  * @param seed of its searches
+  * @param deadline of every decision; without one a policy decides on the loop's own thread and is waited
+  *   for. `paused` has none: its time stands still
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -58,8 +46,8 @@ final case class LoopSettings(
   require(window > 0, "the window must be at least 1")
   require(movesInFlight > 0, "at least one move must be allowed in flight")
 
-  /** As the published code does: it asks the vehicles in turn, spread over the period, waits for every answer in order,
-    * decides at each, and paces the commands.
+  /** As the published code does: it asks the vehicles in turn, spread over the period, waits for every answer
+    * in order, decides at each, and paces the commands.
     */
   def asPublished: LoopSettings =
     copy(

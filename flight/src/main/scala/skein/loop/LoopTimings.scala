@@ -10,8 +10,7 @@ object LoopTimings:
 
   /** Absent for `plan`, whose decisions are themselves forward simulations.
     *
-    * @param askTimeout
-    *   of every question
+    * @param askTimeout of every question
     */
   def of(kind: LoopKind, settings: LoopSettings, askTimeout: Span): Option[LoopTiming] =
     val periodS = settings.period.toSeconds

@@ -8,14 +8,13 @@ import scala.concurrent.Future
 import skein.record.LoopKind
 import skein.units.Span
 
-/** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, flown in virtual time and
-  * replayed as ours are; [[StreamLoop]] is written with the same operators and shows how.
+/** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, flown in
+  * virtual time and replayed as ours are; [[StreamLoop]] is written with the same operators and shows how.
   *
-  * @param name
-  *   in recordings, tables and pictures; none of ours
-  * @param graph
-  *   ends its sources when the switch is shut down, and completes its future when every command has ended; after
-  *   [[OwnLoop.Grace]] it is broken off. Whatever it does, the vehicles are told to hover afterwards
+  * @param name in recordings, tables and pictures; none of ours
+  * @param graph ends its sources when the switch is shut down, and completes its future when every command
+  *   has ended; after [[OwnLoop.Grace]] it is broken off. Whatever it does, the vehicles are told to hover
+  *   afterwards
   */
 final class OwnLoop(
     val name: String,
@@ -28,8 +27,8 @@ final class OwnLoop(
   require(LoopKind.parse(name).isLeft, s"a loop's name: expected none of Skein's own, came '$name'")
 
 object OwnLoop:
-  /** How long a graph may take to end after its switch was shut down; then it is broken off. More than a vehicle takes to
-    * answer a command or to miss its time.
+  /** How long a graph may take to end after its switch was shut down; then it is broken off. More than a
+    * vehicle takes to answer a command or to miss its time.
     */
   val Grace: Span = Span.ofSeconds(30)
 

@@ -12,12 +12,13 @@ import skein.record.EventKind
 import skein.signal.Stamped
 import skein.units.*
 
-/** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for and
-  * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
+/** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for
+  * and commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
   *
-  * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is verified
-  * against the simulator's clock. However it ends, the simulator is let run again and the vehicles are told to hover;
-  * both are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step begins: nothing moves.
+  * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is
+  * verified against the simulator's clock. However it ends, the simulator is let run again and the vehicles
+  * are told to hover; both are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step
+  * begins: nothing moves.
   */
 object PausedLoop:
 
@@ -30,14 +31,14 @@ object PausedLoop:
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
 
-  /** When all of one step was read: one instant, unless the simulator was started again meanwhile and runs. */
+  /** When all of one step was read: one instant, unless the simulator was started again meanwhile and runs.
+    */
   private[loop] def newest(states: Vector[Stamped[?]]): Instant = states.map(_.validAt).max
 
-  /** What the readings of a step show that must not be, a line each: time that passed while they were read, and a step
-    * that took other than its time.
+  /** What the readings of a step show that must not be, a line each: time that passed while they were read,
+    * and a step that took other than its time.
     *
-    * @param before
-    *   what was read of the step before; empty where there is none
+    * @param before what was read of the step before; empty where there is none
     */
   private[loop] def drift(
       step: Long,
@@ -89,8 +90,9 @@ private final class PausedFlight(
       yield next
     else fly(step)
 
-  /** After the last step or an error. The simulator runs before the vehicles are told to hover: while it stands still,
-    * moves that missed their cancellation never end, and those of four vehicles hold every worker it has.
+  /** After the last step or an error. The simulator runs before the vehicles are told to hover: while it
+    * stands still, moves that missed their cancellation never end, and those of four vehicles hold every
+    * worker it has.
     */
   def landed(flown: Future[Done]): Future[Done] =
     flown.transformWith: ended =>

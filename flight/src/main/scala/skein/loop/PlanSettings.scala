@@ -10,34 +10,21 @@ import skein.vehicle.ReducedModel
 
 /** How `plan` plans.
   *
-  * @param deadline
-  *   from the tick until the command leaves, whatever was found by then
-  * @param horizonSteps
-  *   of `step` each
-  * @param method
-  *   `cross-entropy` or `path-integral`
-  * @param behaviours
-  *   of the opponent, against which every candidate is flown
-  * @param searches
-  *   side by side: as many threads as that in real time
-  * @param slices
-  *   of each search in virtual time, where the clock does not end it; several vehicles share them, and get one each at
-  *   least
-  * @param blocksPerSlice
-  *   128 candidates each; between two slices a search looks whether its time is over
-  * @param turningRadiusM
-  *   of a vehicle at the speed that it commands
-  * @param slowestShare
-  *   of its speed that a vehicle may be commanded; 1: only its heading is planned
-  * @param separationM
-  *   to be kept from vehicles that are not the opponent; 0: none
-  * @param geofenceM
-  *   to be kept to north and south, east and west of the origin; 0: none
-  * @param kept
-  *   of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds [[PlanSettings.SpeedDoubt]]; not in
-  *   the text
-  * @param response
-  *   of the vehicles to their commands
+  * @param deadline from the tick until the command leaves, whatever was found by then
+  * @param horizonSteps of `step` each
+  * @param method `cross-entropy` or `path-integral`
+  * @param behaviours of the opponent, against which every candidate is flown
+  * @param searches side by side: as many threads as that in real time
+  * @param slices of each search in virtual time, where the clock does not end it; several vehicles share
+  *   them, and get one each at least
+  * @param blocksPerSlice 128 candidates each; between two slices a search looks whether its time is over
+  * @param turningRadiusM of a vehicle at the speed that it commands
+  * @param slowestShare of its speed that a vehicle may be commanded; 1: only its heading is planned
+  * @param separationM to be kept from vehicles that are not the opponent; 0: none
+  * @param geofenceM to be kept to north and south, east and west of the origin; 0: none
+  * @param kept of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds
+  *   [[PlanSettings.SpeedDoubt]]; not in the text
+  * @param response of the vehicles to their commands
   */
 final case class PlanSettings(
     deadline: Span = Span.ofMillis(60),
@@ -84,7 +71,9 @@ final case class PlanSettings(
       check("geofenceM", geofenceM, geofenceM >= 0, "0 or more")
     ).flatten
 
-  /** [[response]] of a vehicle at this altitude; the one that AirSim's quadrotor has by default depends on it. */
+  /** [[response]] of a vehicle at this altitude; the one that AirSim's quadrotor has by default depends on
+    * it.
+    */
   def responseAt(altitudeM: Double): ReducedModel =
     if response == ReducedModel.AirSim then ReducedModel.airSimAt(altitudeM) else response
 
@@ -133,8 +122,8 @@ object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
 
-  /** On top of what is set, since vehicles do not follow their models exactly and commands come at other times than
-    * expected, m.
+  /** On top of what is set, since vehicles do not follow their models exactly and commands come at other
+    * times than expected, m.
     */
   val Doubt = 1.0
 

@@ -36,10 +36,8 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
 
   /** The decision for what was found.
     *
-    * @param part
-    *   in whose situation it keeps apart from the planned ways of others too
-    * @param isOld
-    *   whether the vehicle's policy decides in the plan's place
+    * @param part in whose situation it keeps apart from the planned ways of others too
+    * @param isOld whether the vehicle's policy decides in the plan's place
     */
   final def decide(
       memory: Memory,
@@ -78,10 +76,8 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
 
 /** A decision that was planned, and how.
   *
-  * @param byPolicy
-  *   whether the last plan was too old to go on with
-  * @param course
-  *   where the plan leads; absent where the policy decides in its place
+  * @param byPolicy whether the last plan was too old to go on with
+  * @param course where the plan leads; absent where the policy decides in its place
   */
 final case class PlannedDecision(
     decision: Decision,
@@ -90,8 +86,7 @@ final case class PlannedDecision(
     byPolicy: Boolean,
     course: Option[PlannedPath] = None
 ):
-  /** @param slices
-    *   that each search has finished
+  /** @param slices that each search has finished
     */
   def report(slices: Vector[Int]): PlanReport = PlanReport(
     plan.candidates,
@@ -106,20 +101,13 @@ final case class PlannedDecision(
 
 /** What is on record of how a decision was planned.
   *
-  * @param candidates
-  *   flown by all searches together
-  * @param slices
-  *   that each search has finished
-  * @param cost
-  *   of the plan; absent where none was tried
-  * @param isSearched
-  *   whether any search finished a slice for this vehicle
-  * @param byPolicy
-  *   whether the last plan was too old to go on with
-  * @param breaches
-  *   of hard limits within the plan's horizon, of which `breach` is the first
-  * @param course
-  *   where the plan leads; absent where the policy decides in its place
+  * @param candidates flown by all searches together
+  * @param slices that each search has finished
+  * @param cost of the plan; absent where none was tried
+  * @param isSearched whether any search finished a slice for this vehicle
+  * @param byPolicy whether the last plan was too old to go on with
+  * @param breaches of hard limits within the plan's horizon, of which `breach` is the first
+  * @param course where the plan leads; absent where the policy decides in its place
   */
 final case class PlanReport(
     candidates: Long,
@@ -135,13 +123,16 @@ final case class PlanReport(
 /** Which vehicles plan, and how their plans begin. */
 object Planning:
 
-  /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn on the spot. */
+  /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn
+    * on the spot.
+    */
   private[loop] def plans(agent: Agent): Boolean =
     agent.kind == VehicleKind.Multirotor && agent.policy.isPlannedFor(agent.role)
 
-  /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the time to find
-    * every small gain follows the simple model, and guesses of other vehicles, where they are wrong, too; the policy
-    * does not. Vehicles that are where they want to be fly by it, and by plans where these save some 0.1 m for a second.
+  /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the
+    * time to find every small gain follows the simple model, and guesses of other vehicles, where they are
+    * wrong, too; the policy does not. Vehicles that are where they want to be fly by it, and by plans where
+    * these save some 0.1 m for a second.
     */
   private val ClearGain = 0.1
 
@@ -152,7 +143,9 @@ object Planning:
   private[loop] def stream(seed: Long, self: Int, memory: Memory): Long =
     (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
 
-  /** How long the vehicle may turn at once, s. Where a solver decided last, its clock, as far as it is known, may be ahead. */
+  /** How long the vehicle may turn at once, s. Where a solver decided last, its clock, as far as it is known,
+    * may be ahead.
+    */
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
     memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
 

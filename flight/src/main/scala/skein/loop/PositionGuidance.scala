@@ -5,8 +5,9 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{Guidance, PathFollowing, Setpoint}
 
-/** [[skein.policy.Action.Position]] as AirSim flies it, for a prediction: along the straight line from where the vehicle is. AirSim's
-  * line begins where the command arrived; the two differ by what a vehicle has strayed since.
+/** [[skein.policy.Action.Position]] as AirSim flies it, for a prediction: along the straight line from where
+  * the vehicle is. AirSim's line begins where the command arrived; the two differ by what a vehicle has
+  * strayed since.
   */
 final private[loop] case class PositionGuidance(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw)
     extends Guidance:

@@ -7,9 +7,9 @@ import scala.concurrent.Future
 import skein.flow.Newest
 import skein.record.EventKind
 
-/** [[StreamLoop]] that decides upon the future: each observation is carried forward to the moment at which the command
-  * will act, by simulating every vehicle under the commands on their way to it. What the answers to commands tell is
-  * fed back besides the commands themselves.
+/** [[StreamLoop]] that decides upon the future: each observation is carried forward to the moment at which
+  * the command will act, by simulating every vehicle under the commands on their way to it. What the answers
+  * to commands tell is fed back besides the commands themselves.
   */
 object PredictiveLoop:
 

@@ -4,12 +4,12 @@ import skein.planning.*
 import skein.policy.Fleet
 import skein.units.*
 
-/** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
-  * horizon, and to capture it.
+/** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the
+  * end of the horizon, and to capture it.
   *
-  * Its turn rate stays below speed / turning radius. The opponent is taken to fly by its policy, as if it remembered
-  * nothing, where that plays against one vehicle and is a formula ([[OpponentModel]]); else straight on. Of all others,
-  * those that plan fly by their plans, the rest straight on.
+  * Its turn rate stays below speed / turning radius. The opponent is taken to fly by its policy, as if it
+  * remembered nothing, where that plays against one vehicle and is a formula ([[OpponentModel]]); else
+  * straight on. Of all others, those that plan fly by their plans, the rest straight on.
   *
   * In its place the vehicle's own policy decides within the turn limit.
   */

@@ -6,13 +6,14 @@ import skein.scenario.Scenarios
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-/** Decides again what a recorded flight decided, live or virtual, with the pure core of every loop: no stream, no
-  * clock.
+/** Decides again what a recorded flight decided, live or virtual, with the pure core of every loop: no
+  * stream, no clock.
   *
-  * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and moves the
-  * controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its predictions and whom
-  * they are of; for one that plans, how far each search had come. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
-  * against and the heading chosen. The memory from decision to decision is the replay's own.
+  * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and
+  * moves the controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its
+  * predictions and whom they are of; for one that plans, how far each search had come. Decided again, and
+  * compared to the last bit: everything else in a decision, above all whom it was made against and the
+  * heading chosen. The memory from decision to decision is the replay's own.
   */
 final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = PlanSettings())(using
     scenarios: Scenarios = Scenarios.ours
@@ -209,8 +210,8 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
   private def sightingOf(of: DecisionRow, vehicle: String): Option[Sighting] =
     sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
 
-  /** The view with what was known of the vehicles that the decision was not made from. It was drawn at some moment
-    * after the readings used had come, so there is one for each reading that came since.
+  /** The view with what was known of the vehicles that the decision was not made from. It was drawn at some
+    * moment after the readings used had come, so there is one for each reading that came since.
     */
   private def views(known: TeamView, recorded: DecisionRow): Vector[TeamView] =
     val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
@@ -294,10 +295,8 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
   private def where(decision: DecisionRow): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
-  /** @param jointly
-    *   where some plan
-    * @param decided
-    *   together last, by vehicle and number
+  /** @param jointly where some plan
+    * @param decided together last, by vehicle and number
     */
   private final case class Minds(
       single: Vector[DecisionState],

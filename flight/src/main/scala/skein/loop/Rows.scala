@@ -86,7 +86,9 @@ private final class Rows(fleet: Fleet):
       action = decision.action
     )
 
-  /** The other vehicles that a decision was made from besides its opponent, where the whole team was regarded. */
+  /** The other vehicles that a decision was made from besides its opponent, where the whole team was
+    * regarded.
+    */
   def sightings(decision: Decision): Vector[Sighting] =
     for
       other <- fleet.agents.indices.toVector

@@ -6,15 +6,14 @@ import scala.concurrent.Future
 
 /** The parts of a graph and what leads from one to another, both by names.
   *
-  * @param stages
-  *   their names
+  * @param stages their names
   */
 final case class LoopGraph(stages: Vector[String], edges: Vector[(from: String, to: String)])
 
 object LoopGraph:
 
-  /** Operators by number, and what leads from operator to operator: those of one name are one part, and those without a
-    * name are left out; what leads through them leads on.
+  /** Operators by number, and what leads from operator to operator: those of one name are one part, and those
+    * without a name are left out; what leads through them leads on.
     */
   def of(names: Vector[Option[String]], connections: Vector[(from: Int, to: Int)]): LoopGraph =
     val next                            = connections.groupMap(_.from)(_.to).withDefaultValue(Vector.empty)

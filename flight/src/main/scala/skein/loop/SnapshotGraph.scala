@@ -5,10 +5,10 @@ import org.apache.pekko.stream.{ClosedShape, SharedKillSwitch}
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 
-/** What `sequential` and `futures` share, and a user's loop may: each snapshot that comes is decided upon at once.
+/** What `sequential` and `futures` share, and a user's loop may: each snapshot that comes is decided upon at
+  * once.
   *
-  * @param snapshots
-  *   end with the switch
+  * @param snapshots end with the switch
   */
 object SnapshotGraph:
 

@@ -6,11 +6,10 @@ import org.apache.pekko.stream.Attributes
 import scala.jdk.CollectionConverters.*
 import skein.units.*
 
-/** What has passed a named part of a loop's graph. As an attribute of the operators that the part consists of, it names
-  * them in the running graph ([[RunningGraph]]). One thread counts, any reads.
+/** What has passed a named part of a loop's graph. As an attribute of the operators that the part consists
+  * of, it names them in the running graph ([[RunningGraph]]). One thread counts, any reads.
   *
-  * @param of
-  *   the meters of the same graph
+  * @param of the meters of the same graph
   */
 final class StageMeter private[loop] (val name: String, private[loop] val of: StageMeters)
     extends Attributes.Attribute:
@@ -28,7 +27,9 @@ final class StageMeter private[loop] (val name: String, private[loop] val of: St
   /** Calls of the part that are unanswered: questions asked, moves sent. */
   def unanswered: Long = waits.get
 
-  /** How old the oldest reading was that the newest element was made from, when it left; absent where none was. */
+  /** How old the oldest reading was that the newest element was made from, when it left; absent where none
+    * was.
+    */
   def age: Option[Span] = Option.when(aged)(Span.ofNanos(ageNanos))
 
   private[loop] def enter(): Unit = entries.incrementAndGet(): Unit

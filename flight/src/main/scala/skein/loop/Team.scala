@@ -9,12 +9,11 @@ import skein.record.Recorder
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them.
+/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in
+  * them.
   *
-  * @param solver
-  *   decides in the policies' place; the settings then have a deadline
-  * @param clocks
-  *   the vehicles' clock against the controller's, as far as known before the first reading
+  * @param solver decides in the policies' place; the settings then have a deadline
+  * @param clocks the vehicles' clock against the controller's, as far as known before the first reading
   */
 final class Team(
     val fleet: Fleet,

@@ -10,12 +10,11 @@ import skein.loop.planning.{PlanStage, PlanWorkers}
 import skein.policy.{AgentPolicy, Fleet}
 import skein.units.*
 
-/** Carries a team's requests forward to when its commands act, decides or plans upon them, and records the decisions.
+/** Carries a team's requests forward to when its commands act, decides or plans upon them, and records the
+  * decisions.
   *
-  * @param deciders
-  *   by vehicle
-  * @param solver
-  *   decides in the policies' place
+  * @param deciders by vehicle
+  * @param solver decides in the policies' place
   */
 private final class TeamDeciding(
     fleet: Fleet,
@@ -40,8 +39,8 @@ private final class TeamDeciding(
   def underDecision: Option[(vehicle: String, since: Instant)] =
     underWay.map(now => (fleet.agents(now.vehicle).name, now.at))
 
-  /** Carries the requests that are meant for one vehicle forward to when its command will act, and records how earlier
-    * predictions turned out.
+  /** Carries the requests that are meant for one vehicle forward to when its command will act, and records
+    * how earlier predictions turned out.
     */
   def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
@@ -49,11 +48,10 @@ private final class TeamDeciding(
       .via(predicted(Vector(vehicle), delay, parts.meter("predict", vehicle)))
       .addAttributes(parts.named("predict", vehicle))
 
-  /** Carries requests forward to when the commands of some vehicles will act, and records how earlier predictions turned
-    * out.
+  /** Carries requests forward to when the commands of some vehicles will act, and records how earlier
+    * predictions turned out.
     *
-    * @param lead
-    *   how much later that is because of what is done with the request, here or at a solver
+    * @param lead how much later that is because of what is done with the request, here or at a solver
     */
   def predict(deciders: Vector[Int], lead: Span): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     predicted(deciders, lead + delay, parts.meter("predict")).addAttributes(parts.named("predict"))
@@ -77,8 +75,8 @@ private final class TeamDeciding(
         meter.pass(sensing.ageOf(request.view))
         request.copy(view = request.view.copy(estimates = Some(estimates)))
 
-  /** Decides for one vehicle on the requests that are meant for it, within the deadline if there is one, and records the
-    * decision.
+  /** Decides for one vehicle on the requests that are meant for it, within the deadline if there is one, and
+    * records the decision.
     */
   def decide(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     decideInTime(vehicle).addAttributes(parts.named("decide", vehicle))
@@ -109,8 +107,7 @@ private final class TeamDeciding(
 
   /** Asks a solver for vehicles that are decided for together. Missed deadlines are recorded.
     *
-    * @return
-    *   with the decisions the answer; without one, they are the fallback's
+    * @return with the decisions the answer; without one, they are the fallback's
     */
   private def askElsewhere(vehicles: Vector[Int], deadline: Deadline, solver: Solver, searching: Span)(using
       ActorSystem
@@ -158,11 +155,10 @@ private final class TeamDeciding(
 
   /** Decides by a policy that takes its time. A deadline missed is recorded.
     *
-    * @param instead
-    *   decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last decision); without it nothing
-    *   is sent then, and the vehicle flies on under its last move for as long as that lasts
-    * @param policy
-    *   from memory, view and the time of asking
+    * @param instead decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last
+    *   decision); without it nothing is sent then, and the vehicle flies on under its last move for as long
+    *   as that lasts
+    * @param policy from memory, view and the time of asking
     */
   def decideWithin(
       vehicle: Int,
@@ -179,13 +175,11 @@ private final class TeamDeciding(
       .map((made, _) => made.head)
       .via(decided(vehicle))
 
-  /** Decisions for vehicles that are decided for together, with what came with them; without that, they are the
-    * fallback's. Missed deadlines are recorded.
+  /** Decisions for vehicles that are decided for together, with what came with them; without that, they are
+    * the fallback's. Missed deadlines are recorded.
     *
-    * @param instead
-    *   the fallback, by vehicle; without one nothing is decided where a deadline is missed
-    * @param asksAgain
-    *   see [[Decide.within]]
+    * @param instead the fallback, by vehicle; without one nothing is decided where a deadline is missed
+    * @param asksAgain see [[Decide.within]]
     */
   private def inTime[A](
       vehicles: Vector[Int],
@@ -221,7 +215,8 @@ private final class TeamDeciding(
   /** How the decisions of those vehicles are planned that plan. */
   val planning: Option[JointPlanning] = JointPlanning.of(fleet, settings.planning, settings.seed)
 
-  /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned. */
+  /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned.
+    */
   def plan(planning: JointPlanning)(using ActorSystem): Flow[DecisionRequest, Vector[Decision], NotUsed] =
     val meter = parts.meter("plan")
     Flow[DecisionRequest]

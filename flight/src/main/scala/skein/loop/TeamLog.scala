@@ -25,8 +25,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** A policy did not decide in time.
     *
-    * @param instead
-    *   the sequence of the decision that the fallback made, if it made one
+    * @param instead the sequence of the decision that the fallback made, if it made one
     */
   def missed(vehicle: Int, miss: Overrun, instead: Option[Long]): Unit =
     val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")
@@ -59,8 +58,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** Records why a call failed.
     *
-    * @param what
-    *   was called
+    * @param what was called
     */
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
     note(TeamLog.kindOf(error), Some(vehicle), s"$what: ${error.message}")

@@ -4,8 +4,8 @@ import skein.planning.*
 import skein.policy.{Fleet, GoalPolicy, TeamObservation}
 import skein.units.*
 
-/** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from all others.
-  * Those that plan fly by their plans, the rest are taken to fly straight on.
+/** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from
+  * all others. Those that plan fly by their plans, the rest are taken to fly straight on.
   *
   * The separation planned for is wider than the set one by [[PlanSettings.Doubt]].
   */
@@ -71,7 +71,9 @@ private final class TeamPlanning(
     val last = track.steps - 1
     StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
-  /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better at it. */
+  /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better
+    * at it.
+    */
   private def suggested(
       request: TeamObservation,
       situation: Situation,
@@ -87,7 +89,7 @@ private final class TeamPlanning(
     PlannedMove(course.headingRad - memory.headingRad, settings.speedMps(course.speedMps), Vector.empty)
 
 private object TeamPlanning:
-  /** Of a multirotor that turns on the spot, in a step. What is less than its policy turns keeps a vehicle from turning
-    * back in time.
+  /** Of a multirotor that turns on the spot, in a step. What is less than its policy turns keeps a vehicle
+    * from turning back in time.
     */
   val MostTurnRad = 1.0

@@ -53,9 +53,9 @@ private final class TeamSensing(
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
-  /** Asks one vehicle where it is, once a period from a start on; emits answers in order, never an older one after a newer.
-    * All vehicles are asked in phase, as far as the settings do not spread them; a phase of chance between them would make
-    * the data of one older than that of the other.
+  /** Asks one vehicle where it is, once a period from a start on; emits answers in order, never an older one
+    * after a newer. All vehicles are asked in phase, as far as the settings do not spread them; a phase of
+    * chance between them would make the data of one older than that of the other.
     */
   def sense(vehicle: Int, start: Instant): Source[Reading, NotUsed] =
     val offset = settings.spread * vehicle.toLong / ports.size.toLong
@@ -74,7 +74,9 @@ private final class TeamSensing(
       )
       .addAttributes(parts.named("sense", vehicle))
 
-  /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for all to decide upon. */
+  /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for all to
+    * decide upon.
+    */
   def joinLatest: Flow[(Int, Reading), LoopEvent, NotUsed] =
     val everyone = ports.indices.toSet
     Flow
@@ -92,8 +94,8 @@ private final class TeamSensing(
     fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
       TeamSensor(vehicle, name, ports(vehicle).sensors(name), log)
 
-  /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles are asked a
-    * quarter of a period after they were asked where they are.
+  /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles
+    * are asked a quarter of a period after they were asked where they are.
     */
   def sensed(start: Instant): Vector[Source[LoopEvent, NotUsed]] = sensors.map: sensor =>
     Sense

@@ -11,8 +11,8 @@ private final class TeamSensor(val vehicle: Int, val name: String, sensor: Senso
   private val asked   = AtomicLong()
   private val columns = sensor.columns
 
-  /** Asks it; the answer, or the error, is recorded. An answer that is not as many finite numbers as there are columns is
-    * an error.
+  /** Asks it; the answer, or the error, is recorded. An answer that is not as many finite numbers as there
+    * are columns is an error.
     */
   def read(): Future[Either[VehicleError, SensorReading]] =
     val sequence = asked.getAndIncrement()

@@ -42,9 +42,9 @@ private final class TeamSteering(
 
   /** Commands one vehicle; emits what is sent and how it ended.
     *
-    * '''Emits when''' a command is sent or has ended. '''Backpressures when''' [[Steer]] does. '''Completes when'''
-    * upstream has completed, the vehicle was told to hover, and every command has ended. '''Cancels when''' downstream
-    * cancels.
+    * '''Emits when''' a command is sent or has ended. '''Backpressures when''' [[Steer]] does. '''Completes
+    * when''' upstream has completed, the vehicle was told to hover, and every command has ended. '''Cancels
+    * when''' downstream cancels.
     */
   def steer(vehicle: Int): Flow[Decision, SteeringEvent, NotUsed] =
     val meter = parts.meter("steer", vehicle)
@@ -131,8 +131,8 @@ private final class TeamSteering(
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 
-  /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one that never
-    * says that it does is noted. Ends when every move has been answered, too.
+  /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one
+    * that never says that it does is noted. Ends when every move has been answered, too.
     */
   def hoverAll()(using ActorSystem): Future[Unit] =
     Future.traverse(ports.indices.toVector)(hover).map(_ => ())

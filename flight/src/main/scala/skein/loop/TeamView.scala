@@ -7,10 +7,8 @@ import skein.units.*
 
 /** A command that was sent to a vehicle, as the other vehicles' policies see it.
   *
-  * @param speed
-  *   absent where the vehicle always commands its own
-  * @param action
-  *   absent where it is told by heading and speed
+  * @param speed absent where the vehicle always commands its own
+  * @param action absent where it is told by heading and speed
   */
 final case class SentCommand(
     vehicle: Int,
@@ -21,15 +19,13 @@ final case class SentCommand(
     action: Option[Action] = None
 )
 
-/** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
-  * two clocks relate.
+/** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and
+  * how the two clocks relate.
   *
-  * @param sensed
-  *   the newest of each sensor that is read, by vehicle
-  * @param forecast
-  *   present where the loop predicts
-  * @param estimates
-  *   of every vehicle when a command decided upon this view will act; absent where none are made
+  * @param sensed the newest of each sensor that is read, by vehicle
+  * @param forecast present where the loop predicts
+  * @param estimates of every vehicle when a command decided upon this view will act; absent where none are
+  *   made
   */
 final case class TeamView(
     readings: Vector[Option[Reading]],

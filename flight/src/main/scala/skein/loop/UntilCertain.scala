@@ -5,7 +5,9 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.units.*
 
-/** Tells somebody at the end of a flight what must not get lost: again, after a pause, until the answer is certain. */
+/** Tells somebody at the end of a flight what must not get lost: again, after a pause, until the answer is
+  * certain.
+  */
 private[loop] object UntilCertain:
 
   /** How often they are told, at most. */

@@ -1,20 +1,18 @@
 package skein.measure
 
-/** How far the flights of one loop over one link, live or virtual, ended from the paused truth: what stands for them
-  * ([[FlightSummary.headline]]) as a share of the truth's, less one, over the flights.
+/** How far the flights of one loop over one link, live or virtual, ended from the paused truth: what stands
+  * for them ([[FlightSummary.headline]]) as a share of the truth's, less one, over the flights.
   *
-  * @param name
-  *   the loop's, with the policy where it is not the paper's
-  * @param share
-  *   0.02 is 2 % further apart
+  * @param name the loop's, with the policy where it is not the paper's
+  * @param share 0.02 is 2 % further apart
   */
 final case class Deviation(loop: String, name: String, link: String, clock: String, share: Distribution)
 
 object Deviation:
 
-  /** In the order of the flights, scenario by scenario; empty without a paused flight. A flight is held against the truth
-    * of the same policies, and of its own clock where there is one. Without the truth itself, and without those that a
-    * truth of 0 says nothing about.
+  /** In the order of the flights, scenario by scenario; empty without a paused flight. A flight is held
+    * against the truth of the same policies, and of its own clock where there is one. Without the truth
+    * itself, and without those that a truth of 0 says nothing about.
     */
   def of(flights: Seq[FlightSummary]): Vector[Deviation] =
     flights.toVector.map(_.scenario).distinct.flatMap(scenario =>

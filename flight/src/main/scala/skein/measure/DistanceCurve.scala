@@ -5,8 +5,7 @@ import skein.units.*
 
 /** The horizontal distance between two vehicles at equal instants of the simulator's clock.
   *
-  * @param points
-  *   seconds since both were first seen, every 20 ms, and metres; never empty
+  * @param points seconds since both were first seen, every 20 ms, and metres; never empty
   */
 final case class DistanceCurve private (points: Vector[(Double, Double)]):
 

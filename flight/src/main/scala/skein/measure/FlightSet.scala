@@ -4,10 +4,8 @@ import skein.record.LoopKind
 
 /** Flights that are reported together; in the order of the paper: by link, then by loop.
   *
-  * @param flights
-  *   without the virtual twins of live flights
-  * @param twins
-  *   live flights beside their virtual twins
+  * @param flights without the virtual twins of live flights
+  * @param twins live flights beside their virtual twins
   */
 final case class FlightSet private (flights: Vector[FlightSummary], twins: Vector[Twin]):
 
@@ -37,8 +35,8 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   /** By loop and link. */
   def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
 
-  /** What stands for a flight against that of the truth with the same policies, as a share of it; absent for the truth
-    * itself.
+  /** What stands for a flight against that of the truth with the same policies, as a share of it; absent for
+    * the truth itself.
     */
   def deviation(flight: FlightSummary): Option[Double] =
     for

@@ -8,28 +8,20 @@ import skein.units.Decimals.fixed
 
 /** What one recording comes to.
   *
-  * @param roles
-  *   evaders first, as in the paper
-  * @param roundTripsMs
-  *   of the link's own samples where there are any, else of the readings
-  * @param scenario
-  *   absent where it is not known here
-  * @param cutShort
-  *   why it ended before its time, if it did
-  * @param policy
-  *   short name of the policy that was flown in the place of the paper's; the flight's scenario says more
-  * @param planning
-  *   absent where nothing was planned
-  * @param predictions
-  *   absent where nothing was predicted
-  * @param paused
-  *   for how long its vehicles were told to hover: that lies within all times and distances of the flight
-  * @param seeing
-  *   of each eye that saw anything
-  * @param solver
-  *   absent where the flight's own process decided
-  * @param commandAgesMs
-  *   of commands that carry out a decision: from when the vehicle's own physics was sampled to the command's sending
+  * @param roles evaders first, as in the paper
+  * @param roundTripsMs of the link's own samples where there are any, else of the readings
+  * @param scenario absent where it is not known here
+  * @param cutShort why it ended before its time, if it did
+  * @param policy short name of the policy that was flown in the place of the paper's; the flight's scenario
+  *   says more
+  * @param planning absent where nothing was planned
+  * @param predictions absent where nothing was predicted
+  * @param paused for how long its vehicles were told to hover: that lies within all times and distances of
+  *   the flight
+  * @param seeing of each eye that saw anything
+  * @param solver absent where the flight's own process decided
+  * @param commandAgesMs of commands that carry out a decision: from when the vehicle's own physics was
+  *   sampled to the command's sending
   */
 final case class FlightSummary(
     flight: FlightRow,
@@ -51,8 +43,8 @@ final case class FlightSummary(
     commandAgesMs: Option[Distribution]
 ):
 
-  /** Between the first pursuer and the first evader, where all fly against one opponent each; absent if they were not
-    * both seen.
+  /** Between the first pursuer and the first evader, where all fly against one opponent each; absent if they
+    * were not both seen.
     */
   val distance: Option[DistanceCurve] =
     for
@@ -68,8 +60,8 @@ final case class FlightSummary(
       flown <- Tracks.of(tracks)
     yield Result.of(known, flown)
 
-  /** The loop, the policy where it is not the paper's, whether a solver decided, and whether the flight was cut short or
-    * paused.
+  /** The loop, the policy where it is not the paper's, whether a solver decided, and whether the flight was
+    * cut short or paused.
     */
   def name: String =
     flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") + cutShort.fold(
@@ -84,14 +76,14 @@ final case class FlightSummary(
   def flownS: Double =
     distance.map(_.points.last._1).orElse(result.map(_.tracks.lastS)).getOrElse(0.0)
 
-  /** What stands for the flight when it is compared with others: its scenario's first measure. Nothing, where it was cut
-    * short or paused.
+  /** What stands for the flight when it is compared with others: its scenario's first measure. Nothing, where
+    * it was cut short or paused.
     */
   def headline: Option[Double] =
     result.filter(_ => cutShort.isEmpty && paused.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
 
-  /** The paper's flight of this loop over this link, if this is of the paper's game. No flight that was cut short or
-    * paused stands beside it.
+  /** The paper's flight of this loop over this link, if this is of the paper's game. No flight that was cut
+    * short or paused stands beside it.
     */
   def published: Option[Published.Flight] =
     if !scenario.exists(
@@ -105,8 +97,7 @@ final case class FlightSummary(
 
 /** The decisions for all vehicles of one role.
   *
-  * @param ownTrueAgeMs
-  *   from when physics was sampled to the decision
+  * @param ownTrueAgeMs from when physics was sampled to the decision
   */
 final case class RoleSummary(
     role: String,

@@ -10,10 +10,10 @@ object FlownVehicles:
 
   /** One per vehicle with commands. All times are the simulator's, from the recording's first reading.
     *
-    * When a command arrived is known while the simulator stood still (`paused`). Otherwise it is estimated from the mean
-    * delays of the readings around it, and, where the command before was answered as superseded, from that answer's round
-    * trip ([[skein.signal.OneWayDelays.arrivalGiven]]). Commands whose calls failed count only where such an answer shows
-    * that they arrived.
+    * When a command arrived is known while the simulator stood still (`paused`). Otherwise it is estimated
+    * from the mean delays of the readings around it, and, where the command before was answered as
+    * superseded, from that answer's round trip ([[skein.signal.OneWayDelays.arrivalGiven]]). Commands whose
+    * calls failed count only where such an answer shows that they arrived.
     */
   def of(recording: Recording): Vector[TimeHistory] =
     val start = recording.readings.map(_.state.validAt).minOption.getOrElse(Instant.Epoch)

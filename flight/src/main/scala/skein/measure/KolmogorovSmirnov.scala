@@ -3,8 +3,8 @@ package skein.measure
 /** How far two samples of one quantity are from having one distribution. */
 object KolmogorovSmirnov:
 
-  /** The largest difference between the shares of samples up to a value, over all values: 0 for equal samples, 1 for
-    * samples that lie wholly apart (Smirnov, 1948).
+  /** The largest difference between the shares of samples up to a value, over all values: 0 for equal
+    * samples, 1 for samples that lie wholly apart (Smirnov, 1948).
     */
   def distance(one: Distribution, other: Distribution): Double =
     // At values that occur in either sample, counted past all that are equal to them.

@@ -4,16 +4,11 @@ import skein.record.Recording
 
 /** How a flight's decisions were planned.
   *
-  * @param candidates
-  *   per plan
-  * @param slices
-  *   of all vehicles that were planned for together
-  * @param tookMs
-  *   from asking until the decision was there
-  * @param missed
-  *   deadlines at which nothing was ready
-  * @param breached
-  *   plans that could not keep within a hard limit
+  * @param candidates per plan
+  * @param slices of all vehicles that were planned for together
+  * @param tookMs from asking until the decision was there
+  * @param missed deadlines at which nothing was ready
+  * @param breached plans that could not keep within a hard limit
   */
 final case class PlanningSummary(
     candidates: Distribution,

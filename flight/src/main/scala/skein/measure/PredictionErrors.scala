@@ -4,10 +4,9 @@ import skein.record.Recording
 
 /** How far predictions of one kind of vehicle were off, by how far they were carried.
   *
-  * @param made
-  *   predictions made; of those that are no `samples` the moment was never read, or read with too wide a gap around it
-  * @param samples
-  *   of those verified: age of the reading carried forward, ms, and error, m
+  * @param made predictions made; of those that are no `samples` the moment was never read, or read with too
+  *   wide a gap around it
+  * @param samples of those verified: age of the reading carried forward, ms, and error, m
   */
 final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
   def unverified: Int = made - samples.size
@@ -17,7 +16,9 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
 
   def errors: Option[Distribution] = Distribution.of(samples.map(_._2))
 
-  /** Errors of predictions whose age rounds to `ageMs`, to the nearest multiple of [[PredictionErrors.BinMs]]. */
+  /** Errors of predictions whose age rounds to `ageMs`, to the nearest multiple of
+    * [[PredictionErrors.BinMs]].
+    */
   def around(ageMs: Int): Option[Distribution] =
     Distribution.of(samples.collect { case (age, error) if PredictionErrors.bin(age) == ageMs => error })
 
@@ -41,8 +42,7 @@ object PredictionErrors:
 
   /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted.
     *
-    * @param isDuel
-    *   whether all fly against one opponent each
+    * @param isDuel whether all fly against one opponent each
     */
   def of(recording: Recording, isDuel: Boolean): Option[(own: PredictionErrors, others: PredictionErrors)] =
     val predicted = recording.decisions.filter(_.predicted.nonEmpty)

@@ -3,15 +3,14 @@ package skein.measure
 import skein.policy.Role
 import skein.record.LoopKind
 
-/** The paper's results, from its text and its published result files (RoboticsDesignLab/StreamingSimPaper). */
+/** The paper's results, from its text and its published result files (RoboticsDesignLab/StreamingSimPaper).
+  */
 object Published:
 
   /** A flight of the paper.
     *
-    * @param distance
-    *   absent where it was not published
-    * @param observedMs
-    *   means at the decisions for the evader and for the pursuer
+    * @param distance absent where it was not published
+    * @param observedMs means at the decisions for the evader and for the pursuer
     */
   final case class Flight(
       loop: LoopKind,
@@ -29,8 +28,8 @@ object Published:
       closestAtS: Option[Double]
   )
 
-  /** The paper's flight of this loop over this link. Its `paused` flew over the direct link but waits for every
-    * answer, so it stands beside ours over any link.
+  /** The paper's flight of this loop over this link. Its `paused` flew over the direct link but waits for
+    * every answer, so it stands beside ours over any link.
     */
   def flight(loop: LoopKind, link: String): Option[Flight] =
     flights.find(flight => flight.loop == loop && (flight.link == link || loop == LoopKind.Paused))

@@ -6,7 +6,9 @@ import skein.scenario.Track
 /** Where a recording says its vehicles were. */
 object RecordedTracks:
 
-  /** The track of every vehicle that was seen: from the recorded truth, if there is any, else from the readings. */
+  /** The track of every vehicle that was seen: from the recorded truth, if there is any, else from the
+    * readings.
+    */
   def of(recording: Recording): Vector[Track] =
     val truths   = recording.truths.groupBy(_.vehicle)
     val readings = if truths.isEmpty then recording.readings.groupBy(_.vehicle) else Map.empty

@@ -10,8 +10,8 @@ final case class ScenarioFlights(flights: Vector[ScenarioFlights.Flown]):
   /** The flight that the others are measured against. */
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)
 
-  /** The first measure against the truth's, as a share of the truth's; absent for the truth itself, and where that
-    * came to 0.
+  /** The first measure against the truth's, as a share of the truth's; absent for the truth itself, and where
+    * that came to 0.
     */
   def deviation(flight: ScenarioFlights.Flown): Option[Double] =
     for

@@ -6,20 +6,14 @@ import skein.units.*
 
 /** One detection, and what was believed upon it.
   *
-  * @param at
-  *   the exposure, on the simulator's clock
-  * @param sinceStartS
-  *   of the flight's readings
-  * @param cameraNed
-  *   m
-  * @param orientation
-  *   of the camera
-  * @param azimuthRad
-  *   to the right of straight ahead, where it was seen; then above straight ahead, and how far
-  * @param trueNed
-  *   where it was, by its own readings, and how it was turned
-  * @param firstUsedMs
-  *   how old it was when it was first decided upon, if it was
+  * @param at the exposure, on the simulator's clock
+  * @param sinceStartS of the flight's readings
+  * @param cameraNed m
+  * @param orientation of the camera
+  * @param azimuthRad to the right of straight ahead, where it was seen; then above straight ahead, and how
+  *   far
+  * @param trueNed where it was, by its own readings, and how it was turned
+  * @param firstUsedMs how old it was when it was first decided upon, if it was
   */
 final case class Detection(
     at: Instant,
@@ -40,10 +34,8 @@ final case class Detection(
 
 /** What a vehicle saw by one of its scenario's eyes.
   *
-  * @param images
-  *   that were looked at until the last detection
-  * @param agesMs
-  *   of what decisions were made upon, since the exposure
+  * @param images that were looked at until the last detection
+  * @param agesMs of what decisions were made upon, since the exposure
   */
 final case class SeeingSummary(
     eye: Eye,
@@ -54,8 +46,8 @@ final case class SeeingSummary(
   def tookMs: Option[Distribution]  = Distribution.of(detections.map(_.tookMs))
   def errorsM: Option[Distribution] = Distribution.of(detections.map(_.errorM))
 
-  /** Moments worth a look, each with its name: the first detection, the closest, the last before the eye had lost what it
-    * looks for the longest, and the next one.
+  /** Moments worth a look, each with its name: the first detection, the closest, the last before the eye had
+    * lost what it looks for the longest, and the next one.
     */
   def decisive: Vector[(String, Detection)] =
     val gap = detections.zip(detections.drop(1)).maxByOption((before, next) => next.at.since(before.at))

@@ -4,25 +4,16 @@ import skein.record.{EventKind, Recording, SolvedRow}
 
 /** What it came to that a flight's decisions were made in another process.
   *
-  * @param at
-  *   where the solver was
-  * @param roundTripsMs
-  *   from question to answer, of answers that were used: what the way there and back adds to the age of what is decided
-  *   upon; absent where none was used
-  * @param thinkingMs
-  *   of these, what the solver took
-  * @param missed
-  *   decisions that had to be made without an answer
-  * @param late
-  *   answers that came too late
-  * @param repeated
-  *   messages that came more than once
-  * @param left
-  *   questions that the solver left for newer ones
-  * @param lost
-  *   how often the connection was lost
-  * @param restarted
-  *   decisions for which the solver remembered nothing of those before
+  * @param at where the solver was
+  * @param roundTripsMs from question to answer, of answers that were used: what the way there and back adds
+  *   to the age of what is decided upon; absent where none was used
+  * @param thinkingMs of these, what the solver took
+  * @param missed decisions that had to be made without an answer
+  * @param late answers that came too late
+  * @param repeated messages that came more than once
+  * @param left questions that the solver left for newer ones
+  * @param lost how often the connection was lost
+  * @param restarted decisions for which the solver remembered nothing of those before
   */
 final case class SolverSummary(
     at: String,

@@ -9,11 +9,11 @@ import skein.record.{EventKind, FlightRow}
 import skein.scenario.{Scenario, Track}
 import skein.units.*
 
-/** A flight's summary as bytes, and back: every number to the bit. What follows from the rest (distance, result) is
-  * computed again, and the scenario is who reads' own.
+/** A flight's summary as bytes, and back: every number to the bit. What follows from the rest (distance,
+  * result) is computed again, and the scenario is who reads' own.
   *
-  * As [[Codec]] writes it, but numbers of one kind by their bytes, all first bytes first, since these repeat; then
-  * deflated.
+  * As [[Codec]] writes it, but numbers of one kind by their bytes, all first bytes first, since these repeat;
+  * then deflated.
   */
 object SummaryBytes:
   /** Of what is inflated. */
@@ -27,10 +27,8 @@ object SummaryBytes:
     ))
     ArraySeq.unsafeWrapArray(bytes.toByteArray)
 
-  /** @param scenario
-    *   that was flown; absent where it is not known
-    * @return
-    *   or why these bytes are none
+  /** @param scenario that was flown; absent where it is not known
+    * @return or why these bytes are none
     */
   def read(bytes: ArraySeq[Byte], scenario: Option[Scenario]): Either[String, FlightSummary] =
     try Right(Codecs(scenario).all.read(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))))

@@ -5,8 +5,7 @@ import skein.units.Decimals.brief
 
 /** A live flight and its virtual twins: flights in virtual time of the same loop over the same link.
   *
-  * @param virtual
-  *   at least one; their samples are taken together
+  * @param virtual at least one; their samples are taken together
   */
 final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
 

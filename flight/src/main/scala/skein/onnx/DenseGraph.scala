@@ -31,11 +31,10 @@ private[onnx] object DenseGraph:
     "Clip"
   )
 
-  /** A graph as a network of [[LearnedPolicy]]. What it multiplies, adds and divides by between two layers is brought into
-    * their weights, in doubles.
+  /** A graph as a network of [[LearnedPolicy]]. What it multiplies, adds and divides by between two layers is
+    * brought into their weights, in doubles.
     *
-    * @return
-    *   or why it is none
+    * @return or why it is none
     */
   def network(graph: OnnxGraph): Either[String, Network] =
     try
@@ -79,8 +78,7 @@ private[onnx] object DenseGraph:
 
   /** Sums of inputs, each with a bias.
     *
-    * @param weights
-    *   by sum, then by input
+    * @param weights by sum, then by input
     */
   private final case class Affine(weights: Vector[Vector[Double]], biases: Vector[Double]):
     def rows: Int = weights.size
@@ -223,7 +221,9 @@ private[onnx] object DenseGraph:
       case _     =>
         flow.sums.each((weight, row) => quotient(weight, numbers(row)), (bias, row) => bias / numbers(row)))
 
-  /** A file's 32-bit float of a scale is taken for the scale, so that a network of ours comes back to the bit. */
+  /** A file's 32-bit float of a scale is taken for the scale, so that a network of ours comes back to the
+    * bit.
+    */
   private def quotient(one: Double, by: Double): Double = if one.toFloat == by.toFloat then 1 else one / by
 
   /** A policy's network as a graph: scales, then a layer by a `Gemm` and its activation. */

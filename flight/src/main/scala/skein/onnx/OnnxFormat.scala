@@ -12,10 +12,8 @@ object OnnxFormat:
   private val IrVersion = 8L
   private val Opset     = 13L
 
-  /** @param beside
-    *   what stands in another file, by its name, from a byte on, so many
-    * @return
-    *   or why it is no model
+  /** @param beside what stands in another file, by its name, from a byte on, so many
+    * @return or why it is no model
     */
   def read(
       bytes: Array[Byte],
@@ -94,8 +92,7 @@ object OnnxFormat:
 
   /** One number, or many packed: writers do either.
     *
-    * @param size
-    *   in bytes of a number alone; 0 where it varies
+    * @param size in bytes of a number alone; 0 where it varies
     */
   private def several(in: CodedInputStream, size: Int)(one: CodedInputStream => Double): Vector[Double] =
     if WireFormat.getTagWireType(in.getLastTag) != WireFormat.WIRETYPE_LENGTH_DELIMITED then Vector(one(in))

@@ -1,9 +1,9 @@
 package skein.onnx
 
-/** An ONNX model, as far as small dense networks need it. Source: onnx.proto3 of ONNX 1.23, by the numbers of its fields.
+/** An ONNX model, as far as small dense networks need it. Source: onnx.proto3 of ONNX 1.23, by the numbers of
+  * its fields.
   *
-  * @param metadata
-  *   what its maker noted, by key
+  * @param metadata what its maker noted, by key
   */
 final case class OnnxGraph(
     nodes: Vector[OnnxGraph.Node],
@@ -18,10 +18,8 @@ object OnnxGraph:
   val Float32 = 1
   val Float64 = 11
 
-  /** @param inputs
-    *   names of values; an empty one is left out
-    * @param attributes
-    *   by name
+  /** @param inputs names of values; an empty one is left out
+    * @param attributes by name
     */
   final case class Node(
       operator: String,
@@ -37,17 +35,14 @@ object OnnxGraph:
     case Constant(value: Tensor)
     case Other
 
-  /** @param values
-    *   row by row
+  /** @param values row by row
     */
   final case class Tensor(shape: Vector[Int], values: Vector[Double])
 
   /** An input or output of the model.
     *
-    * @param element
-    *   its type
-    * @param shape
-    *   absent where any length goes; none where it is not told
+    * @param element its type
+    * @param shape absent where any length goes; none where it is not told
     */
   final case class Port(name: String, element: Int, shape: Option[Vector[Option[Int]]]):
     /** For a person. */

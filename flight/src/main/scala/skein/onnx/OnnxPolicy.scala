@@ -10,15 +10,13 @@ import skein.onnx.OnnxGraph.{Float32, Port}
 import skein.policy.*
 import skein.units.Expect
 
-/** A policy of an ONNX file. It is shown [[PlanarObservation.fromOwnHeading]], as environments show it, and its one number
-  * says how to turn: as a share, −1 to 1, of the most that it turns until the next decision (pursuer) or at once (evader).
+/** A policy of an ONNX file. It is shown [[PlanarObservation.fromOwnHeading]], as environments show it, and
+  * its one number says how to turn: as a share, −1 to 1, of the most that it turns until the next decision
+  * (pursuer) or at once (evader).
   *
-  * @param role
-  *   as the file notes it
-  * @param family
-  *   `learned:…` where its network is one of ours
-  * @param parameters
-  *   in the order of the family's axes, for a role
+  * @param role as the file notes it
+  * @param family `learned:…` where its network is one of ours
+  * @param parameters in the order of the family's axes, for a role
   */
 final case class OnnxPolicy(role: Option[String], family: PolicyFamily, parameters: Role => Vector[Double])
 
@@ -55,8 +53,7 @@ object OnnxPolicy:
 
   /** The family of a policy that a runtime decided for, as it was recorded.
     *
-    * @return
-    *   or why it is not there any more
+    * @return or why it is not there any more
     */
   def recorded(name: String): Either[String, PolicyFamily] =
     name.stripPrefix(Prefix).split(":", 2) match
@@ -72,10 +69,8 @@ object OnnxPolicy:
 
   /** A network as a file.
     *
-    * @param role
-    *   that it is for
-    * @return
-    *   or why the policy is none
+    * @param role that it is for
+    * @return or why the policy is none
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
     (policy match

@@ -13,8 +13,9 @@ import scala.deriving.Mirror
 import scala.jdk.CollectionConverters.*
 import skein.scenario.{Nearest, Scenarios}
 
-/** The keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every locale (pureconfig's own
-  * mapping turns I into a dotless ı where the machine is Turkish); and those that mean nothing.
+/** The keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every locale
+  * (pureconfig's own mapping turns I into a dotless ı where the machine is Turkish); and those that mean
+  * nothing.
   */
 private[skein] object ConfigKeys:
 
@@ -37,11 +38,10 @@ private[skein] object ConfigKeys:
       with CoproductConfigReaderDerivation(ConfigFieldMapping(ofField), "type")
       with ProductConfigReaderDerivation(ConfigFieldMapping(ofField))
 
-  /** Every key below `path` that `reference.conf` does not know, a line each: where it stands, and the nearest that is
-    * known.
+  /** Every key below `path` that `reference.conf` does not know, a line each: where it stands, and the
+    * nearest that is known.
     *
-    * @return
-    *   None if all are known
+    * @return None if all are known
     */
   def unknown(config: Config, path: String)(using Scenarios): Option[String] =
     lines(config.getConfig(path).root, known.getConfig(path).root, path)

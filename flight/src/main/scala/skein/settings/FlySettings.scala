@@ -16,28 +16,18 @@ import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
-  * @param policies
-  *   with which the scenario is flown too, beside its own
-  * @param predictor
-  *   by which `predictive` predicts multirotors; cars are predicted by their own model
-  * @param movesInFlight
-  *   moves of one vehicle that may be unanswered; more than 2 are for links that never deliver several at once: see
-  *   [[skein.flow.Steer]]
-  * @param deadline
-  *   of every decision; without one, policies are waited for
-  * @param fallback
-  *   what is done where the deadline is missed
-  * @param scene
-  *   what stands in the built-in simulator's world; without one, what the scenario says
-  * @param wire
-  *   what the vehicles are spoken to by
-  * @param solver
-  *   by whom the flights are flown too, beside those that decide in this process; a decision then has a deadline, the
-  *   period where none is set
-  * @param images
-  *   whose images and clouds are recorded
-  * @param plant
-  *   what the built-in simulator's multirotors are
+  * @param policies with which the scenario is flown too, beside its own
+  * @param predictor by which `predictive` predicts multirotors; cars are predicted by their own model
+  * @param movesInFlight moves of one vehicle that may be unanswered; more than 2 are for links that never
+  *   deliver several at once: see [[skein.flow.Steer]]
+  * @param deadline of every decision; without one, policies are waited for
+  * @param fallback what is done where the deadline is missed
+  * @param scene what stands in the built-in simulator's world; without one, what the scenario says
+  * @param wire what the vehicles are spoken to by
+  * @param solver by whom the flights are flown too, beside those that decide in this process; a decision then
+  *   has a deadline, the period where none is set
+  * @param images whose images and clouds are recorded
+  * @param plant what the built-in simulator's multirotors are
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -83,8 +73,9 @@ final case class FlySettings(
   /** What stands in the world. */
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
 
-  /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
-    * vehicle's altitude. They keep the scenario's limits, but for those of quantities of its own.
+  /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by
+    * that of each vehicle's altitude. They keep the scenario's limits, but for those of quantities of its
+    * own.
     */
   def planningByModel: PlanSettings = planning.copy(
     kept = scenario.limits.flatMap(_.kept),
@@ -126,8 +117,9 @@ final case class FlySettings(
     case VehicleKind.Multirotor => predictor.at(-agent.startPositionNed.z)
     case VehicleKind.Car        => CarModel()
 
-  /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
-    * that they do not meet the same delays; flights that differ in the policy alone have the same seed.
+  /** The flights, the truth first, then those with policies of files. The seeds of different loops and links
+    * differ, so that they do not meet the same delays; flights that differ in the policy alone have the same
+    * seed.
     */
   def plans: Vector[FlightPlan] =
     val names = policies.zipWithIndex.map: (policy, index) =>
@@ -159,17 +151,14 @@ final case class FlySettings(
 
 /** A policy that is flown in the place of the scenario's.
   *
-  * @param name
-  *   short, in tables; no two of an experiment share one
-  * @param learning
-  *   where it learns while it flies; then the file is what it begins with, a network
+  * @param name short, in tables; no two of an experiment share one
+  * @param learning where it learns while it flies; then the file is what it begins with, a network
   */
 final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[Learning] = None):
 
   /** The scenario with this policy for all agents of its role, which learns by lessons.
     *
-    * @param note
-    *   told of what is new, with the vehicle and the number of its next decision
+    * @param note told of what is new, with the vehicle and the number of its next decision
     */
   def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long)(
       note: (String, Long, LearnerUpdate) => Unit
@@ -184,10 +173,8 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
 
 /** One flight of an experiment.
   *
-  * @param policy
-  *   without one, the scenario's fly
-  * @param solver
-  *   who decides; without one, this process
+  * @param policy without one, the scenario's fly
+  * @param solver who decides; without one, this process
   */
 final case class FlightPlan(
     id: String,
@@ -204,8 +191,8 @@ final case class FlightPlan(
   /** Where its recording goes. */
   def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
 
-  /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the same seed, then
-    * with the seeds that follow.
+  /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the
+    * same seed, then with the seeds that follow.
     */
   def twins(count: Int): Vector[FlightPlan] =
     Vector.tabulate(count): index =>
@@ -220,8 +207,7 @@ object FlySettings:
 
   /** Reads `skein.fly`.
     *
-    * @return
-    *   or every mistake, with its file, line, and what was expected
+    * @return or every mistake, with its file, line, and what was expected
     */
   def read(config: Config)(using Scenarios): Either[String, FlySettings] =
     for

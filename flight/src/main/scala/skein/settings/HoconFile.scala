@@ -7,13 +7,11 @@ object HoconFile:
 
   /** The file, not resolved.
     *
-    * @return
-    *   or why it cannot be read, in a line
+    * @return or why it cannot be read, in a line
     */
   def read(path: String): Either[String, Config] = TextFile.read(path).flatMap(parse(_, path))
 
-  /** @param path
-    *   of the file that the text is from
+  /** @param path of the file that the text is from
     */
   def parse(text: String, path: String): Either[String, Config] =
     try Right(ConfigFactory.parseString(text, ConfigParseOptions.defaults.setOriginDescription(path)))

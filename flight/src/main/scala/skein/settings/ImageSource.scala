@@ -7,8 +7,7 @@ enum ImageSource:
 
   /** Of a camera of every vehicle, for nobody but who looks at the flight.
     *
-    * @param hz
-    *   images a second
+    * @param hz images a second
     */
   case Camera(name: String, hz: Double)
 

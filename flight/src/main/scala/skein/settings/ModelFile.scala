@@ -8,15 +8,13 @@ import skein.scenario.Scenarios
 import skein.units.Expect
 import skein.vehicle.ObservedPlant
 
-/** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how well.
+/** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how
+  * well.
   *
-  * @param use
-  *   which of them to fly by
-  * @param models
-  *   the values of each one's parameters
-  * @param altitudeM
-  *   at which was flown what it was fitted to, where its plant holds there alone, as AirSim's quadrotor does; files of
-  *   older versions do not say
+  * @param use which of them to fly by
+  * @param models the values of each one's parameters
+  * @param altitudeM at which was flown what it was fitted to, where its plant holds there alone, as AirSim's
+  *   quadrotor does; files of older versions do not say
   */
 final case class ModelFile(
     use: Structure,
@@ -44,10 +42,8 @@ object ModelFile:
 
   /** Where a fit came from.
     *
-    * @param altitudeM
-    *   of all flights, if they had the same
-    * @param recordings
-    *   files, each with what was flown
+    * @param altitudeM of all flights, if they had the same
+    * @param recordings files, each with what was flown
     */
   final case class Provenance(
       recordings: Vector[String],
@@ -109,8 +105,7 @@ object ModelFile:
 
   /** Reads a file.
     *
-    * @return
-    *   or what is wrong, with the line
+    * @return or what is wrong, with the line
     */
   def read(path: String)(using Scenarios): Either[String, ModelFile] =
     TextFile.read(path).flatMap(parse(_, path))
@@ -151,10 +146,9 @@ object ModelFile:
 
 /** A fitted structure and how far it is off over the horizons.
   *
-  * @param againstQuadrotor
-  *   against the built-in quadrotor under the same commands, where a structure of Skein's is to be flown by
-  * @param againstReadings
-  *   against the recordings themselves
+  * @param againstQuadrotor against the built-in quadrotor under the same commands, where a structure of
+  *   Skein's is to be flown by
+  * @param againstReadings against the recordings themselves
   */
 final case class Fit(
     identification: Identification,

@@ -5,10 +5,8 @@ import skein.scene.{Scene, SceneFile}
 
 /** What stands in the world, and what it is called.
   *
-  * @param name
-  *   of a scene that ships, or a file's path
-  * @param text
-  *   of the file; absent for a scene that ships
+  * @param name of a scene that ships, or a file's path
+  * @param text of the file; absent for a scene that ships
   */
 final case class NamedScene private (name: String, text: Option[String], scene: Scene):
   /** Whether there is anything to touch. */
@@ -31,8 +29,7 @@ object NamedScene:
     if flown.name == Empty.name then Nil
     else ParameterRow(Name, flown.name) +: flown.text.toSeq.map(ParameterRow(Text, _))
 
-  /** @param parameters
-    *   of a recording, by name
+  /** @param parameters of a recording, by name
     */
   def ofRecording(parameters: Map[String, String]): Either[String, NamedScene] =
     (parameters.get(Name), parameters.get(Text)) match

@@ -9,27 +9,25 @@ import skein.policy.*
 import skein.units.Span
 
 /** A policy in a process of its own, asked over a Unix socket. It gets the observation of `skein.environment`
-  * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, how to turn; values beyond are clipped.
-  * So a policy that was trained there flies in every loop.
+  * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, how to turn; values beyond
+  * are clipped. So a policy that was trained there flies in every loop.
   *
-  * A question is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is none: a
-  * length in bytes (32 bits) and UTF-8. One question is under way at a time, of all flights together. The clock of a
-  * flight in virtual time stands still meanwhile, so equal answers make equal flights.
+  * A question is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is
+  * none: a length in bytes (32 bits) and UTF-8. One question is under way at a time, of all flights together.
+  * The clock of a flight in virtual time stands still meanwhile, so equal answers make equal flights.
   *
-  * A decision fails if the policy reports an error, if the number is not finite, if anything but one answer comes, or if
-  * none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last two the policy is not asked again,
-  * and every later decision fails at once: a surplus answer would be taken for that to the next question, and all later
-  * answers would be late by one.
+  * A decision fails if the policy reports an error, if the number is not finite, if anything but one answer
+  * comes, or if none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last two the
+  * policy is not asked again, and every later decision fails at once: a surplus answer would be taken for
+  * that to the next question, and all later answers would be late by one.
   *
-  * @param mostTurnRadPerS
-  *   of a pursuer
+  * @param mostTurnRadPerS of a pursuer
   */
 final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: Role, mostTurnRadPerS: Double)
     extends ObservingPolicy[Unit]:
   def initial: Unit = ()
 
-  /** @throws IOException
-    *   if there is no answer
+  /** @throws IOException if there is no answer
     */
   def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
     val share = connection.ask(seen.fromOwnHeading.map(_.toFloat)).toDouble.max(-1).min(1)
@@ -49,10 +47,8 @@ object OutsidePolicy:
 
   /** The policy of a process that answers now.
     *
-    * @param text
-    *   `unix:ROLE:PATH`
-    * @return
-    *   or what was expected, what came, and where
+    * @param text `unix:ROLE:PATH`
+    * @return or what was expected, what came, and where
     */
   def reach(text: String, answerWithin: Span = AnswerWithin): Either[String, PolicyFile] = text match
     case s"unix:$role:$path" =>

@@ -10,11 +10,10 @@ import skein.scenario.Scenarios
 import skein.units.Decimals.significant
 import skein.units.Expect
 
-/** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
-  * how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
+/** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the
+  * objective, how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
   *
-  * @param parameters
-  *   in the order of the family's axes
+  * @param parameters in the order of the family's axes
   */
 final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector[Double]):
   def policy: Policy = family.policy(parameters)
@@ -43,8 +42,7 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
 
   /** As a file, with remarks for people.
     *
-    * @param remarks
-    *   HOCON to stand below
+    * @param remarks HOCON to stand below
     */
   def hocon(remarks: String): String =
     val values = family.space.axes.zip(parameters).map((axis, value) => s"  ${axis.name} = $value")
@@ -73,8 +71,7 @@ object PolicyFile:
 
   /** The role that a family is for, if it is for one alone, or the role asked for.
     *
-    * @return
-    *   or what was expected
+    * @return or what was expected
     */
   def roleOf(family: PolicyFamily, asked: Option[String]): Either[String, Role] = asked match
     case Some(text) =>
@@ -93,8 +90,7 @@ object PolicyFile:
 
   /** A policy for a role: of a file, or of a family with its defaults.
     *
-    * @return
-    *   or what was expected and came
+    * @return or what was expected and came
     */
   def chosen(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
     named(text, Some(role)).filterOrElse(
@@ -104,11 +100,9 @@ object PolicyFile:
 
   /** A policy of a file, or of a family with its defaults.
     *
-    * @param asked
-    *   whose it is where neither file nor family says so; without it, such a family is refused and such a file is a
-    *   pursuer's
-    * @return
-    *   or what was expected and came
+    * @param asked whose it is where neither file nor family says so; without it, such a family is refused and
+    *   such a file is a pursuer's
+    * @return or what was expected and came
     */
   def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =
     summon[Scenarios].family(text) match
@@ -117,10 +111,8 @@ object PolicyFile:
 
   /** Reads a file; `evader:FILE` says whose an ONNX file is that does not note it.
     *
-    * @param asked
-    *   whose it is then; without it, a pursuer's
-    * @return
-    *   or what was expected, what came, and where
+    * @param asked whose it is then; without it, a pursuer's
+    * @return or what was expected, what came, and where
     */
   def read(path: String, asked: Option[Role] = None)(using Scenarios): Either[String, PolicyFile] =
     if path.endsWith(OnnxPolicy.Suffix) then

@@ -12,15 +12,14 @@ enum PredictionModel:
 
   /** A first-order response, identified from flights.
     *
-    * @param flownAtM
-    *   the altitude of these flights, where it is known: no other is flown by it, since AirSim's lag depends on it
+    * @param flownAtM the altitude of these flights, where it is known: no other is flown by it, since
+    *   AirSim's lag depends on it
     */
   case Fitted(model: ReducedModel, flownAtM: Option[Double] = None)
 
   /** A plant of a program's own structure, identified from flights.
     *
-    * @param values
-    *   of its parameters
+    * @param values of its parameters
     */
   case Own(structure: Structure, values: Vector[Double])
 
@@ -83,7 +82,9 @@ object PredictionModel:
     case Fitted(_, flownAtM) => ModelFile.mistake(flownAtM, altitudeM)
     case _                   => None
 
-  /** As a recording keeps it: [[recorded]] reads it back. A double's shortest text reads back as the same double. */
+  /** As a recording keeps it: [[recorded]] reads it back. A double's shortest text reads back as the same
+    * double.
+    */
   def text(model: PredictionModel): String = model match
     case Fitted(model, _) =>
       Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")

@@ -6,8 +6,8 @@ import java.nio.ByteBuffer
 import java.nio.channels.{SelectionKey, Selector, SocketChannel}
 import skein.units.{Clock, Instant, Span}
 
-/** A connection to another process, behind a Unix socket: questions, and an answer to each. Calls block; a question and
-  * its answer together for no longer than `answerWithin` of real time. Not thread-safe.
+/** A connection to another process, behind a Unix socket: questions, and an answer to each. Calls block; a
+  * question and its answer together for no longer than `answerWithin` of real time. Not thread-safe.
   *
   * Every call throws an [[IOException]] where the process has ended or is too late.
   */

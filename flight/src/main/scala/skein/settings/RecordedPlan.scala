@@ -43,8 +43,7 @@ object RecordedPlan:
 
   /** What is recorded of a policy that learns.
     *
-    * @param decision
-    *   the number of the next one
+    * @param decision the number of the next one
     */
   def learned(at: Instant, vehicle: String, decision: Long, news: LearnerUpdate): Seq[Record] =
     news.parameters.map(parameters =>
@@ -82,8 +81,7 @@ object RecordedPlan:
 
   /** Reads it back.
     *
-    * @return
-    *   or what is missing, or is not what `skein fly` records
+    * @return or what is missing, or is not what `skein fly` records
     */
   def of(recording: Recording)(using Scenarios): Either[String, RecordedPlan] =
     val flight     = recording.flight

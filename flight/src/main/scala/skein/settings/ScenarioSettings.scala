@@ -5,15 +5,14 @@ import scala.jdk.CollectionConverters.*
 import skein.record.ParameterRow
 import skein.scenario.{Scenario, ScenarioKind, Scenarios}
 
-/** A scenario in configurations and recordings. `skein.fly.scenario` names it, and what is set of it stands under its
-  * name: `skein.fly { scenario = crossing, crossing { vehicles = 8, lane-m = 6 } }`.
+/** A scenario in configurations and recordings. `skein.fly.scenario` names it, and what is set of it stands
+  * under its name: `skein.fly { scenario = crossing, crossing { vehicles = 8, lane-m = 6 } }`.
   */
 object ScenarioSettings:
 
   /** Reads it from `skein.fly`. Where none is named, the first that is known is flown.
     *
-    * @return
-    *   or every mistake: where it stands, what was expected, and what came
+    * @return or every mistake: where it stands, what was expected, and what came
     */
   def read(config: Config)(using Scenarios): Either[String, Scenario] =
     for
@@ -29,8 +28,7 @@ object ScenarioSettings:
 
   /** A scenario of these settings, by their keys.
     *
-    * @return
-    *   or every mistake
+    * @return or every mistake
     */
   def ofKeys(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
     val names = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap

@@ -11,8 +11,7 @@ object SensorFile:
 
   /** The text of a file.
     *
-    * @param recordings
-    *   it was fitted to
+    * @param recordings it was fitted to
     */
   def render(fit: SensorFit, recordings: Vector[String]): String =
     import fit.model
@@ -41,8 +40,7 @@ object SensorFile:
 
   /** Reads a file.
     *
-    * @return
-    *   or what is wrong
+    * @return or what is wrong
     */
   def read(path: String): Either[String, SensorModel] = TextFile.read(path).flatMap(parse(_, path))
 

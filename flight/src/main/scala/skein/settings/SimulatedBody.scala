@@ -7,8 +7,7 @@ import skein.vehicle.RotorcraftKind
 
 /** What the multirotors of the built-in simulator are, as users name it.
   *
-  * @param text
-  *   `airsim`, or `mujoco:FILE`
+  * @param text `airsim`, or `mujoco:FILE`
   */
 final class SimulatedBody private (val text: String, read: => Either[String, Option[MujocoModel]]):
   private lazy val model = read
@@ -38,8 +37,7 @@ object SimulatedBody:
 
   val forms: String = s"${AirSim.text}, or mujoco:FILE"
 
-  /** @return
-    *   or what was expected, or why the model cannot be flown
+  /** @return or what was expected, or why the model cannot be flown
     */
   def parse(text: String): Either[String, SimulatedBody] =
     val named = recorded(text)

@@ -16,11 +16,10 @@ import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
 import skein.vehicle.{DrivenCar, ReducedModel}
 
-/** Models of vehicles by the names that users give: one list for what flies (`--plant`) and, as far as they predict, for
-  * what carries readings forward (`--predictor`, [[PredictionModel]]).
+/** Models of vehicles by the names that users give: one list for what flies (`--plant`) and, as far as they
+  * predict, for what carries readings forward (`--predictor`, [[PredictionModel]]).
   *
-  * @param description
-  *   one line that says what flies
+  * @param description one line that says what flies
   */
 final case class VehicleChoice(name: String, description: String, response: VelocityResponse):
   /** Whether an episode costs as much as physics in steps of milliseconds. */
@@ -68,8 +67,7 @@ object VehicleChoice:
 
   /** Of these names, that of the vehicle itself without a file.
     *
-    * @param altitudeM
-    *   at which it flies
+    * @param altitudeM at which it flies
     */
   def named(name: String, altitudeM: Double): Option[VehicleChoice] = all(altitudeM).find(_.name == name)
 
@@ -79,13 +77,11 @@ object VehicleChoice:
     s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, " +
       "mujoco:FILE, a FILE of ./skein identify, or reduced:FILE"
 
-  /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the file's model of
-    * three parameters, which flies by lanes.
+  /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the
+    * file's model of three parameters, which flies by lanes.
     *
-    * @param altitudeM
-    *   at which it will fly: the lag of AirSim's vehicles depends on it
-    * @return
-    *   or what was expected
+    * @param altitudeM at which it will fly: the lag of AirSim's vehicles depends on it
+    * @return or what was expected
     */
   def parse(text: String, altitudeM: Double)(using
       Scenarios

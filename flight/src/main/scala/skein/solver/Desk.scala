@@ -2,24 +2,21 @@ package skein.solver
 
 import skein.units.Instant
 
-/** A solver's side of one flight's questions: which is decided next, and from which memory. Immutable. Vehicles that are
-  * decided for together count as the first of them.
+/** A solver's side of one flight's questions: which is decided next, and from which memory. Immutable.
+  * Vehicles that are decided for together count as the first of them.
   *
-  * Of each vehicle one question is decided at a time. Of those that come meanwhile the newest waits; the others, and those
-  * that come behind a newer one, are left.
+  * Of each vehicle one question is decided at a time. Of those that come meanwhile the newest waits; the
+  * others, and those that come behind a newer one, are left.
   *
-  * @param overtaken
-  *   questions that were left
-  * @param repeated
-  *   questions that came more than once
+  * @param overtaken questions that were left
+  * @param repeated questions that came more than once
   */
 final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, repeated: Long):
   import Desk.*
 
   /** A question has come.
     *
-    * @param at
-    *   on the solver's clock
+    * @param at on the solver's clock
     */
   def offered(question: Question, at: Instant): Desk =
     val known = vehicles(question.vehicle)
@@ -50,8 +47,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
 
   /** A question was decided.
     *
-    * @param held
-    *   what the policy remembers since, if that went well
+    * @param held what the policy remembers since, if that went well
     */
   def done(question: Question, held: Option[Any]): Desk =
     val known = vehicles(question.vehicle)
@@ -73,14 +69,11 @@ object Desk:
 
   def of(vehicles: Int): Desk = Desk(Vector.fill(vehicles)(Vehicle(-1, None, false, Map.empty)), 0, 0)
 
-  /** @param takenAt
-    *   when it came, on the solver's clock
+  /** @param takenAt when it came, on the solver's clock
     */
   final case class Waiting(question: Question, takenAt: Instant)
 
-  /** @param newest
-    *   number of the newest question that came
-    * @param memories
-    *   by the question that they were there after
+  /** @param newest number of the newest question that came
+    * @param memories by the question that they were there after
     */
   final case class Vehicle(newest: Long, waiting: Option[Waiting], isBusy: Boolean, memories: Map[Long, Any])

@@ -3,20 +3,18 @@ package skein.solver
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** A flight's side of its questions: which answer counts. Immutable. Vehicles that are decided for together count as the
-  * first of them.
+/** A flight's side of its questions: which answer counts. Immutable. Vehicles that are decided for together
+  * count as the first of them.
   *
-  * An answer counts if it is to the newest question for its vehicle, comes before that one's deadline, and comes for the
-  * first time. So nothing overtakes: an answer that was held up is not used once something newer was asked.
+  * An answer counts if it is to the newest question for its vehicle, comes before that one's deadline, and
+  * comes for the first time. So nothing overtakes: an answer that was held up is not used once something
+  * newer was asked.
   *
-  * @param solver
-  *   the start of the solver that was heard of last
-  * @param clocks
-  *   how its clock stands to the controller's
-  * @param trips
-  *   the latest round trips of answers that counted, without what was meant for searching, the newest last
-  * @param told
-  *   what that start of the solver has counted, as told last
+  * @param solver the start of the solver that was heard of last
+  * @param clocks how its clock stands to the controller's
+  * @param trips the latest round trips of answers that counted, without what was meant for searching, the
+  *   newest last
+  * @param told what that start of the solver has counted, as told last
   */
 final case class Exchange private (
     vehicles: Vector[Exchange.Vehicle],
@@ -35,17 +33,14 @@ final case class Exchange private (
   /** Expected from a question to its answer: the mean of late; zero before the first. */
   def delay: Span = if trips.isEmpty then Span.Zero else trips.reduce(_ + _) / trips.size.toLong
 
-  /** @param searching
-    *   for how long the solver is to look for its answer
-    * @return
-    *   with the question's number
+  /** @param searching for how long the solver is to look for its answer
+    * @return with the question's number
     */
   def asked(vehicle: Int, at: Instant, until: Instant, searching: Span = Span.Zero): (Exchange, Long) =
     val (next, number) = vehicles(vehicle).asked(at, until, searching)
     (copy(vehicles = vehicles.updated(vehicle, next), counts = counts.copy(asked = counts.asked + 1)), number)
 
-  /** @param at
-    *   when the answer came
+  /** @param at when the answer came
     */
   def heard(answer: Answer, at: Instant): (Exchange, Verdict) =
     val known = if answer.vehicle < vehicles.size then vehicles(answer.vehicle) else Vehicle.silent
@@ -108,25 +103,18 @@ object Exchange:
     /** Nobody asked that. */
     case Foreign
 
-  /** @param overtaken
-    *   questions that the solver left for newer ones
-    * @param repeated
-    *   questions that came there more than once
+  /** @param overtaken questions that the solver left for newer ones
+    * @param repeated questions that came there more than once
     */
   final case class Told(overtaken: Long, repeated: Long)
 
   /** How often what has happened.
     *
-    * @param used
-    *   answers that counted
-    * @param repeated
-    *   answers that came more than once
-    * @param foreign
-    *   answers to nothing that was asked
-    * @param overtaken
-    *   questions that the solver left for newer ones
-    * @param repeatedThere
-    *   questions that came to the solver more than once
+    * @param used answers that counted
+    * @param repeated answers that came more than once
+    * @param foreign answers to nothing that was asked
+    * @param overtaken questions that the solver left for newer ones
+    * @param repeatedThere questions that came to the solver more than once
     */
   final case class Counts(
       asked: Long = 0,
@@ -138,11 +126,9 @@ object Exchange:
       repeatedThere: Long = 0
   )
 
-  /** @param next
-    *   number of the next question
-    * @param open
-    *   those without an answer, the newest of them: when they were asked, until when an answer counts, and how much of
-    *   that is for searching
+  /** @param next number of the next question
+    * @param open those without an answer, the newest of them: when they were asked, until when an answer
+    *   counts, and how much of that is for searching
     */
   final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant, searching: Span)]):
     private[Exchange] def asked(at: Instant, until: Instant, searching: Span): (Vehicle, Long) =

@@ -9,11 +9,10 @@ import skein.policy.Fleet
 import skein.settings.RecordedPlan
 import skein.units.*
 
-/** Who decides for one flight elsewhere, as its own process would: the vehicles' policies, and, where its loop plans, a
-  * planner for those that plan.
+/** Who decides for one flight elsewhere, as its own process would: the vehicles' policies, and, where its
+  * loop plans, a planner for those that plan.
   *
-  * @param plans
-  *   absent where nobody plans
+  * @param plans absent where nobody plans
   */
 final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans] = None):
 
@@ -26,12 +25,9 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
 
   /** Decides on this thread, or plans until the deadline of plans.
     *
-    * @param held
-    *   what is remembered of the answer that the question goes on from; absent where nothing is
-    * @param now
-    *   on the controller's clock
-    * @return
-    *   for each vehicle that is asked for, with what is to be remembered
+    * @param held what is remembered of the answer that the question goes on from; absent where nothing is
+    * @param now on the controller's clock
+    * @return for each vehicle that is asked for, with what is to be remembered
     */
   def decide(question: Question, held: Option[Any], now: Instant)(using
       ActorSystem
@@ -70,15 +66,13 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
 
 object FlightDeciders:
 
-  /** @param deadline
-    *   from a question until its plans are used, whatever was found by then
+  /** @param deadline from a question until its plans are used, whatever was found by then
     */
   final case class Plans(planning: JointPlanning, deadline: Span, workers: PlanWorkers)
 
   /** Those of a flight.
     *
-    * @param workers
-    *   what a flight that plans searches with
+    * @param workers what a flight that plans searches with
     */
   def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): FlightDeciders =
     val fleet = flown.plan.fleet(flown.settings)

@@ -8,14 +8,13 @@ import skein.record.EventKind
 import skein.solver.Exchange.{Counts, Verdict}
 import skein.units.*
 
-/** A flight's side: asks a solver elsewhere over a link, and says hello again whenever that is lost or starts again.
+/** A flight's side: asks a solver elsewhere over a link, and says hello again whenever that is lost or starts
+  * again.
   *
-  * @param flight
-  *   a number that no other flight has
-  * @param vehicles
-  *   how many fly
-  * @param note
-  *   told of what is to be recorded: what was late, repeated, left or lost, with the vehicle if it concerns one
+  * @param flight a number that no other flight has
+  * @param vehicles how many fly
+  * @param note told of what is to be recorded: what was late, repeated, left or lost, with the vehicle if it
+  *   concerns one
   */
 final class SolverClient(
     link: MessageLink,
@@ -47,8 +46,8 @@ final class SolverClient(
   private val timer =
     system.scheduler.scheduleWithFixedDelay(GreetEvery.toDuration, GreetEvery.toDuration)(() => greet())
 
-  /** Completes when a solver has welcomed the flight, with how; fails with [[SolverClient.NoSolver]] where one refuses, or none
-    * answers within the patience.
+  /** Completes when a solver has welcomed the flight, with how; fails with [[SolverClient.NoSolver]] where
+    * one refuses, or none answers within the patience.
     */
   def ready(patience: Span): Future[Welcomed] =
     val late = system.scheduler.scheduleOnce(patience.toDuration):
@@ -219,8 +218,7 @@ object SolverClient:
 
   /** By whom a flight is decided for.
     *
-    * @param byVectors
-    *   whether its plans are searched by the JDK's vectors
+    * @param byVectors whether its plans are searched by the JDK's vectors
     */
   final case class Welcomed(byVectors: Boolean):
     /** For a flight that plans. */

@@ -9,20 +9,13 @@ import skein.units.*
 
 /** A solver: decides for every flight that it welcomes, whatever link its questions come over.
   *
-  * @param id
-  *   names this start of it: another number each time
-  * @param build
-  *   of this program, which a flight's must be, too
-  * @param decidersOf
-  *   who decides by what is told of a flight, or why nobody does; may take its time
-  * @param clock
-  *   its own, whatever the controllers' are
-  * @param workers
-  *   what is decided on
-  * @param takes
-  *   by how much an answer is held up, for trials
-  * @param byVectors
-  *   whether it searches plans by vectors, as it tells flights
+  * @param id names this start of it: another number each time
+  * @param build of this program, which a flight's must be, too
+  * @param decidersOf who decides by what is told of a flight, or why nobody does; may take its time
+  * @param clock its own, whatever the controllers' are
+  * @param workers what is decided on
+  * @param takes by how much an answer is held up, for trials
+  * @param byVectors whether it searches plans by vectors, as it tells flights
   */
 final class SolverDesk(
     id: Long,
@@ -49,10 +42,8 @@ final class SolverDesk(
 
   /** Messages have come, in this order; nothing of them is decided before all are looked at.
     *
-    * @param reply
-    *   sends to whom they came from; never waits
-    * @return
-    *   or what was no message
+    * @param reply sends to whom they came from; never waits
+    * @return or what was no message
     */
   def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Unit] =
     val (mistakes, known) = messages.map(SolverMessageCodec.message).partitionMap(identity)
@@ -235,10 +226,8 @@ object SolverDesk:
 
   private val MostReason = 4096
 
-  /** @param flights
-    *   that are decided for
-    * @param garbled
-    *   what came and was no message, or no question of its flight
+  /** @param flights that are decided for
+    * @param garbled what came and was no message, or no question of its flight
     */
   final case class Stats(flights: Int, answered: Long, refused: Long, garbled: Long)
 

@@ -8,8 +8,9 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** What crosses between a flight and a solver. Instants are the controller's, unless they say that they are the
-  * solver's. A flight is named by a number that no other flight at the same solver has, and so is each start of a solver.
+/** What crosses between a flight and a solver. Instants are the controller's, unless they say that they are
+  * the solver's. A flight is named by a number that no other flight at the same solver has, and so is each
+  * start of a solver.
   */
 enum SolverMessage:
   /** A flight would like to be decided for. */
@@ -17,8 +18,8 @@ enum SolverMessage:
 
   /** The flight is decided for from now on.
     *
-    * @param byVectors
-    *   whether what it plans is searched by the JDK's vectors: else some fifty times fewer candidates are tried
+    * @param byVectors whether what it plans is searched by the JDK's vectors: else some fifty times fewer
+    *   candidates are tried
     */
   case Welcome(flight: Long, solver: Long, byVectors: Boolean)
 
@@ -37,10 +38,8 @@ enum SolverMessage:
 
 /** What a solver is to know of a flight: what its recording begins with, as far as it concerns decisions.
   *
-  * @param parameters
-  *   as a recording has them
-  * @param agents
-  *   who flies by which policy, a line each: two programs that mean the same write the same
+  * @param parameters as a recording has them
+  * @param agents who flies by which policy, a line each: two programs that mean the same write the same
   */
 final case class Briefing(
     scenario: String,
@@ -65,8 +64,7 @@ object Briefing:
 
   /** What is flown, by the scenarios and policies of this program.
     *
-    * @return
-    *   or what of it is not known here
+    * @return or what of it is not known here
     */
   def plan(briefing: Briefing)(using Scenarios): Either[String, RecordedPlan] =
     val flight = FlightRow(
@@ -98,17 +96,13 @@ object Briefing:
 
 /** What is to be decided.
   *
-  * @param deciders
-  *   who is decided for, at least one: a vehicle by its place, and what its decisions depend on; what the policy itself
-  *   remembers is with the solver
-  * @param number
-  *   counts the questions for these vehicles; a later one leaves all earlier ones
-  * @param solverClock
-  *   of which start of a solver the clock is known, and the controller's clock minus that
-  * @param remembered
-  *   the answer that was used last, by the solver's start and the question; absent before the first
-  * @param view
-  *   without its forecast, and of sensors with those of these vehicles alone
+  * @param deciders who is decided for, at least one: a vehicle by its place, and what its decisions depend
+  *   on; what the policy itself remembers is with the solver
+  * @param number counts the questions for these vehicles; a later one leaves all earlier ones
+  * @param solverClock of which start of a solver the clock is known, and the controller's clock minus that
+  * @param remembered the answer that was used last, by the solver's start and the question; absent before the
+  *   first
+  * @param view without its forecast, and of sensors with those of these vehicles alone
   */
 final case class Question(
     flight: Long,
@@ -122,20 +116,13 @@ final case class Question(
   /** The first of those who are decided for, as which they count. */
   def vehicle: Int = deciders.head.vehicle
 
-/** @param vehicle
-  *   the first of those who were asked for
-  * @param solver
-  *   this start of it
-  * @param takenAt
-  *   when the question came, on the solver's clock
-  * @param answeredAt
-  *   when the answer left, on the solver's clock
-  * @param overtaken
-  *   questions of this flight so far that were left for a newer one
-  * @param repeated
-  *   questions of this flight so far that came more than once
-  * @param result
-  *   the decision, or why there is none
+/** @param vehicle the first of those who were asked for
+  * @param solver this start of it
+  * @param takenAt when the question came, on the solver's clock
+  * @param answeredAt when the answer left, on the solver's clock
+  * @param overtaken questions of this flight so far that were left for a newer one
+  * @param repeated questions of this flight so far that came more than once
+  * @param result the decision, or why there is none
   */
 final case class Answer(
     flight: Long,
@@ -149,12 +136,9 @@ final case class Answer(
     result: Either[String, Choice]
 )
 
-/** @param decidedAt
-  *   what the policy took for now
-  * @param begunAnew
-  *   whether what was remembered was not there
-  * @param chosen
-  *   for each vehicle that was asked for
+/** @param decidedAt what the policy took for now
+  * @param begunAnew whether what was remembered was not there
+  * @param chosen for each vehicle that was asked for
   */
 final case class Choice(
     decidedAt: Instant,

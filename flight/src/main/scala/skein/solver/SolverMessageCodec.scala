@@ -19,8 +19,7 @@ object SolverMessageCodec:
 
   val MostVehicles = 1024
 
-  /** @throws IllegalArgumentException
-    *   if it is longer than [[MostBytes]]
+  /** @throws IllegalArgumentException if it is longer than [[MostBytes]]
     */
   def bytes(message: SolverMessage): Array[Byte] =
     val made = Version.toByte +: Codec.bytes(message)

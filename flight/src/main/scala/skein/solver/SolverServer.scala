@@ -11,8 +11,8 @@ import scala.util.Try
 import skein.link.{Address, Incoming, Listening, Transport}
 import skein.units.Span
 
-/** A solver that flights connect to; see [[TcpLink]]. Whoever sends what is no message, or says nothing at first, loses
-  * the connection, and nothing else happens.
+/** A solver that flights connect to; see [[TcpLink]]. Whoever sends what is no message, or says nothing at
+  * first, loses the connection, and nothing else happens.
   */
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch):
   /** With the actual port. */

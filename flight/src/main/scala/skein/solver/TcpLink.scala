@@ -12,8 +12,9 @@ import scala.util.{Failure, Success, Try}
 import skein.link.{Address, Transport, TransportError}
 import skein.units.Span
 
-/** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same over sockets
-  * and in virtual time. Where one side does not trust the other, twice and before any message came, it is refused.
+/** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same
+  * over sockets and in virtual time. Where one side does not trust the other, twice and before any message
+  * came, it is refused.
   */
 final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem) extends MessageLink:
   import TcpLink.*

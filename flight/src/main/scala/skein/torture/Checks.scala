@@ -148,8 +148,8 @@ object Checks:
       Option.when(rows > allowed)(s"$rows rows were recorded; ${allowed.fixed(0)} are many for this flight")
     ).flatten
 
-  /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that goes on. The
-    * paused truth does not: it ends at the first error.
+  /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that
+    * goes on. The paused truth does not: it ends at the first error.
     */
   private def outOfControl(seen: FlightTrace): Vector[String] =
     val due = seen.calmFrom + FaultPlan.ResumesWithin
@@ -196,7 +196,9 @@ object Checks:
       )
       .toVector
 
-  /** However a flight ends, to hover is the last that every vehicle is told; in calm the simulator hears of it. */
+  /** However a flight ends, to hover is the last that every vehicle is told; in calm the simulator hears of
+    * it.
+    */
   private def notToldToHover(seen: FlightTrace): Vector[String] =
     val heeded = seen.endedAt >= seen.calmFrom + FaultPlan.ResumesWithin
     seen.vehicles.zip(seen.ports).flatMap: (vehicle, port) =>
@@ -228,16 +230,19 @@ object Checks:
   /** Of each eye. */
   private val ImagesOnTheWay = 2
 
-  /** After a connection was lost, its last moves may be at the simulator still when those of the next one come. */
+  /** After a connection was lost, its last moves may be at the simulator still when those of the next one
+    * come.
+    */
   private val MostUnanswered = 4
 
-  /** For each vehicle. As published, each decides at every reading of any, and drops most of what it decided. */
+  /** For each vehicle. As published, each decides at every reading of any, and drops most of what it decided.
+    */
   private val RowsPerSecond = 300.0
 
   private val LongestGap = Span.ofSeconds(1.5)
 
-  /** After a flight in circles the simulated vehicle, yawed by then, circles around the place that it holds, some 5 m
-    * away; the slowest move would carry it 18 m.
+  /** After a flight in circles the simulated vehicle, yawed by then, circles around the place that it holds,
+    * some 5 m away; the slowest move would carry it 18 m.
     */
   private val Hovering = Metres(14)
 

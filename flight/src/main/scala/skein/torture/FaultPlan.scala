@@ -9,22 +9,14 @@ import skein.units.*
 
 /** What one flight has to go through; all of it follows from the seed. Times count from the flight's start.
   *
-  * @param calmFrom
-  *   from here on nothing more goes wrong
-  * @param faults
-  *   of the link between controller and simulator
-  * @param messageFaults
-  *   what a broken peer does to messages until `calmFrom`
-  * @param restarts
-  *   of the simulator; afterwards an supervisor prepares the vehicles again
-  * @param stopAt
-  *   when somebody ends the flight before its time
-  * @param clockAhead
-  *   of the simulator against the controller, until it is started again
-  * @param scene
-  *   what stands in the world
-  * @param looks
-  *   whether the last vehicle looks for the first by a camera, beside what the scenario's eyes do
+  * @param calmFrom from here on nothing more goes wrong
+  * @param faults of the link between controller and simulator
+  * @param messageFaults what a broken peer does to messages until `calmFrom`
+  * @param restarts of the simulator; afterwards an supervisor prepares the vehicles again
+  * @param stopAt when somebody ends the flight before its time
+  * @param clockAhead of the simulator against the controller, until it is started again
+  * @param scene what stands in the world
+  * @param looks whether the last vehicle looks for the first by a camera, beside what the scenario's eyes do
   */
 final case class FaultPlan(
     seed: Long,
@@ -47,8 +39,8 @@ final case class FaultPlan(
   def eyes: Vector[Eye] = scenario.eyes ++
     Option.when(looks)(FaultyEye(scenario.agents.last.name, scenario.agents.head.name, seed))
 
-  /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to stand still
-    * costs the simulator a worker for each: with many vehicles `stream` flies in their place.
+  /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to
+    * stand still costs the simulator a worker for each: with many vehicles `stream` flies in their place.
     */
   def flying(task: Scenario): FaultPlan =
     val most = loop match
@@ -57,7 +49,9 @@ final case class FaultPlan(
       case _                                      => Int.MaxValue
     copy(scenario = task, loop = if task.agents.size > most then LoopKind.Stream else loop)
 
-  /** Whether the recording is written to a file and read back, which takes longer than most flights: one in ten. */
+  /** Whether the recording is written to a file and read back, which takes longer than most flights: one in
+    * ten.
+    */
   def isFiled: Boolean = seed % 10 == 0
 
   /** One line for a person. */
@@ -85,20 +79,13 @@ final case class FaultPlan(
 
 /** How often a message meets each mischief, as a probability.
   *
-  * @param late
-  *   an answer is held back for up to `lateBy`, and others overtake it
-  * @param doubled
-  *   an answer comes twice
-  * @param nonsense
-  *   an answer's result is of another type
-  * @param stray
-  *   something is added that is no answer, or the answer to no call
-  * @param garbage
-  *   something is added that is no MessagePack
-  * @param refused
-  *   a move is asked for under a name that the simulator does not know
-  * @param lost
-  *   an answer never comes, though its connection lives
+  * @param late an answer is held back for up to `lateBy`, and others overtake it
+  * @param doubled an answer comes twice
+  * @param nonsense an answer's result is of another type
+  * @param stray something is added that is no answer, or the answer to no call
+  * @param garbage something is added that is no MessagePack
+  * @param refused a move is asked for under a name that the simulator does not know
+  * @param lost an answer never comes, though its connection lives
   */
 final case class MessageFaults(
     late: Double = 0,
@@ -127,8 +114,8 @@ enum Disk:
   case Fails(at: Span)
 
 object FaultPlan:
-  /** In which control resumes once nothing more goes wrong: connecting again takes up to 2 s; an answer lost on a
-    * connection that lives holds control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
+  /** In which control resumes once nothing more goes wrong: connecting again takes up to 2 s; an answer lost
+    * on a connection that lives holds control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
     */
   val ResumesWithin: Span = Span.ofSeconds(3)
 

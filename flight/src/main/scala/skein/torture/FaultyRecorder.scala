@@ -5,8 +5,8 @@ import scala.concurrent.{Future, Promise}
 import skein.record.*
 import skein.units.*
 
-/** Records as `recorder` does, onto a [[Disk]] that may block or fail: then rows wait in a bounded queue, and when that
-  * is full, the recording has failed.
+/** Records as `recorder` does, onto a [[Disk]] that may block or fail: then rows wait in a bounded queue, and
+  * when that is full, the recording has failed.
   */
 final class FaultyRecorder(recorder: Recorder, disk: Disk, clock: Clock, start: Instant) extends Recorder:
   private val failed  = Promise[RecordError]()

@@ -16,8 +16,9 @@ import upack.{Arr, Float64, Int32, Msg, Null, Str}
 /** A move as it came to the simulator: the velocity as it is on the wire. */
 final case class ReceivedMove(at: Instant, vehicle: String, north: Float, east: Float)
 
-/** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of arrival, and
-  * until `calm` does to messages what the [[MessageFaults]] says. Connections from `spared` are left alone.
+/** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of
+  * arrival, and until `calm` does to messages what the [[MessageFaults]] says. Connections from `spared` are
+  * left alone.
   */
 final class FaultyTransport(
     transport: Transport,

@@ -8,34 +8,21 @@ import skein.units.*
 
 /** What was seen of one flight from outside: enough to judge it.
   *
-  * @param ports
-  *   by vehicle
-  * @param arrivals
-  *   at the simulator, in order, of all vehicles
-  * @param mostUnanswered
-  *   moves of one vehicle that the simulator had not answered at one time
-  * @param mostPending
-  *   calls that the client had not ended at one time
-  * @param lastHovers
-  *   when, if ever, the simulator was last told that a vehicle is to hover
-  * @param stats
-  *   after the client was closed
-  * @param offered
-  *   to the recorder, in order, while it could keep it
-  * @param file
-  *   what is read back from the recording's file, or why that is not possible, where a file was written
-  * @param runs
-  *   of the simulator
-  * @param drifts
-  *   how far each vehicle got within [[FlightTrace.Watched]], some time after the end
-  * @param steps
-  *   calls that let the simulator's time run in steps
-  * @param callsBeside
-  *   how often vehicles were asked for a sign of life
-  * @param leftPaused
-  *   whether the simulator stood still some time after the end
-  * @param images
-  *   of each eye, after it has ended
+  * @param ports by vehicle
+  * @param arrivals at the simulator, in order, of all vehicles
+  * @param mostUnanswered moves of one vehicle that the simulator had not answered at one time
+  * @param mostPending calls that the client had not ended at one time
+  * @param lastHovers when, if ever, the simulator was last told that a vehicle is to hover
+  * @param stats after the client was closed
+  * @param offered to the recorder, in order, while it could keep it
+  * @param file what is read back from the recording's file, or why that is not possible, where a file was
+  *   written
+  * @param runs of the simulator
+  * @param drifts how far each vehicle got within [[FlightTrace.Watched]], some time after the end
+  * @param steps calls that let the simulator's time run in steps
+  * @param callsBeside how often vehicles were asked for a sign of life
+  * @param leftPaused whether the simulator stood still some time after the end
+  * @param images of each eye, after it has ended
   */
 final case class FlightTrace(
     faultPlan: FaultPlan,

@@ -6,7 +6,9 @@ import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Judges what decisions were made from: whether it was the newest that the vehicles had told, and as old as was said. */
+/** Judges what decisions were made from: whether it was the newest that the vehicles had told, and as old as
+  * was said.
+  */
 private[torture] object KnowledgeChecks:
 
   def violations(seen: FlightTrace): Vector[String] =
@@ -31,8 +33,8 @@ private[torture] object KnowledgeChecks:
       .map(reading => s"${reading.vehicle}: reading ${reading.sequence} is not what the vehicle answered")
       .toVector
 
-  /** No answer that the controller had is newer than the one decided upon, but for those that came within the time that
-    * a loop may take to join what belongs together.
+  /** No answer that the controller had is newer than the one decided upon, but for those that came within the
+    * time that a loop may take to join what belongs together.
     */
   private def outdated(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val joins = seen.faultPlan.loop match
@@ -84,8 +86,8 @@ private[torture] object KnowledgeChecks:
       byArrival ++ trueAgesWrong(seen, decision)
     wrong.nextOption().toVector
 
-  /** Whether the simulator was started again since the step before was read: the readings of this one are of two clocks, or
-    * of a simulator that ran while they were asked for.
+  /** Whether the simulator was started again since the step before was read: the readings of this one are of
+    * two clocks, or of a simulator that ran while they were asked for.
     */
   private def ranWhileRead(seen: FlightTrace, decision: DecisionRow): Boolean =
     val answers =
@@ -112,9 +114,9 @@ private[torture] object KnowledgeChecks:
     yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were " +
       s"${age.toMillis.fixed(3)} ms to within ${told.uncertainty.toMillis.fixed(3)} ms"
 
-  /** By how much the controller's clock was truly ahead of the simulator's. None while it cannot be known yet: all that
-    * a run before the simulator's present one has told must have gone by; and never, where the clock of a new run is so
-    * near to the one before that no answer shows the difference.
+  /** By how much the controller's clock was truly ahead of the simulator's. None while it cannot be known
+    * yet: all that a run before the simulator's present one has told must have gone by; and never, where the
+    * clock of a new run is so near to the one before that no answer shows the difference.
     */
   private def trueOffset(seen: FlightTrace, decision: DecisionRow): Option[Span] =
     if seen.faultPlan.loop == LoopKind.Paused then Some(Span.Zero)
@@ -146,8 +148,8 @@ private[torture] object KnowledgeChecks:
 
   private def where(decision: DecisionRow) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
-  /** Whether one state was truly sampled after another, said without the loop's own word for it. Where the simulator was
-    * started again between them with nearly the same clock, only if what they tell shows it.
+  /** Whether one state was truly sampled after another, said without the loop's own word for it. Where the
+    * simulator was started again between them with nearly the same clock, only if what they tell shows it.
     */
   private[torture] def isNewer(runs: Vector[Run])(one: Stamped[?], other: Stamped[?]): Boolean =
     val offsets                               = clockOffset(runs, one).zip(clockOffset(runs, other))
@@ -166,8 +168,8 @@ private[torture] object KnowledgeChecks:
   private final class History(answers: Vector[ReportedState]):
     private val arrivals = answers.map(_.state.receivedAt)
 
-    /** The first that came before `until`, and is newer than a reading. What is newer by much came lately: only the last
-      * [[Recent]] are looked at.
+    /** The first that came before `until`, and is newer than a reading. What is newer by much came lately:
+      * only the last [[Recent]] are looked at.
       */
     def newerThan(
         used: ReadingRow,

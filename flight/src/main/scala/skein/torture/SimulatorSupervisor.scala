@@ -14,15 +14,13 @@ import skein.units.*
 
 /** One run of the simulator, up to the next.
   *
-  * @param from
-  *   when it had started, on the controller's clock
-  * @param clockOffset
-  *   controller's clock minus simulator's, while it ran
+  * @param from when it had started, on the controller's clock
+  * @param clockOffset controller's clock minus simulator's, while it ran
   */
 final case class Run(from: Instant, clockOffset: Span)
 
-/** Runs the simulator, restarts it when the [[FaultPlan]] says so, and then brings the vehicles to their starts again. Has
-  * a connection of its own, without faults.
+/** Runs the simulator, restarts it when the [[FaultPlan]] says so, and then brings the vehicles to their
+  * starts again. Has a connection of its own, without faults.
   */
 final class SimulatorSupervisor(
     scenario: Fleet,

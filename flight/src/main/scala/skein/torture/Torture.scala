@@ -35,12 +35,9 @@ object Torture:
 
   /** Flies many, as many at once as there are `threads`. Blocks.
     *
-    * @param scenario
-    *   that is flown; without one, duels
-    * @param scene
-    *   what stands in the world; without one, what the scenario says
-    * @param onVerdict
-    *   told of each as it comes, on the calling thread
+    * @param scenario that is flown; without one, duels
+    * @param scene what stands in the world; without one, what the scenario says
+    * @param onVerdict told of each as it comes, on the calling thread
     */
   def all(
       seeds: Iterator[Long],

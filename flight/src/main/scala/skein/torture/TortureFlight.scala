@@ -16,8 +16,8 @@ import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flies a team through an [[FaultPlan]] in virtual time. Client, link, server, simulator, loop and recorder are those of a
-  * live flight; what is watched or spoilt is wrapped around them.
+/** Flies a team through an [[FaultPlan]] in virtual time. Client, link, server, simulator, loop and recorder
+  * are those of a live flight; what is watched or spoilt is wrapped around them.
   */
 object TortureFlight:
 
@@ -172,8 +172,8 @@ object TortureFlight:
 
     private def samplePending(): Unit = mostPending = mostPending.max(rpc.stats.pending)
 
-    /** When the vehicles must hover: soon, or where the command to hover may not have come through, after the last move
-      * has lasted its time.
+    /** When the vehicles must hover: soon, or where the command to hover may not have come through, after the
+      * last move has lasted its time.
       */
     private def restOf(endedAt: Instant): Span =
       val ended = endedAt.since(start)
@@ -202,5 +202,7 @@ object TortureFlight:
 
   private val connectTimeout = Span.ofSeconds(1)
 
-  /** From 10 m/s to a hover. A move still under way would fly on for longer than this and [[FlightTrace.Watched]]. */
+  /** From 10 m/s to a hover. A move still under way would fly on for longer than this and
+    * [[FlightTrace.Watched]].
+    */
   private val ComesToRest = Span.ofSeconds(5)

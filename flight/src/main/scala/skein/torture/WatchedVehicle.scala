@@ -10,22 +10,20 @@ import skein.units.*
 
 /** A move as the loop sent it. What is no velocity is told apart by its place among the moves alone.
   *
-  * @param north
-  *   m/s; 0 where it is no velocity
+  * @param north m/s; 0 where it is no velocity
   */
 final case class Sending(at: Instant, north: Float, east: Float)
 
 /** Where a vehicle said that it is.
   *
-  * @param question
-  *   counts what the vehicle was asked
+  * @param question counts what the vehicle was asked
   */
 final case class ReportedState(question: Long, state: Stamped[Kinematics])
 
-/** A port that keeps account of every call: how it began, that it ended, what it told, how many were outstanding.
+/** A port that keeps account of every call: how it began, that it ended, what it told, how many were
+  * outstanding.
   *
-  * @param eyes
-  *   sensors besides, which keep account of their calls themselves
+  * @param eyes sensors besides, which keep account of their calls themselves
   */
 final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Sensor] = Map.empty)(using
     ExecutionContext

@@ -22,8 +22,8 @@ import skein.vtime.VirtualTime
 class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
   private val names = Vector("Evader", "Pursuer1", "Pursuer2")
 
-  /** Points that follow half of their commanded velocity; the reward is minus the distance from the origin. It ends after
-    * `lasts` steps.
+  /** Points that follow half of their commanded velocity; the reward is minus the distance from the origin.
+    * It ends after `lasts` steps.
     */
   private final class Points(lasts: Int = Int.MaxValue):
     private var places = Vector.empty[Vector3]
@@ -56,8 +56,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
 
   /** Serves one connection.
     *
-    * @param answer
-    *   to a line; absent where the process ends
+    * @param answer to a line; absent where the process ends
     */
   private def served[A](answer: ujson.Value => Option[String])(use: String => A): A =
     val path   = Files.createTempDirectory("environment").resolve("socket")

@@ -24,12 +24,9 @@ class FailureTellingSimulation extends munit.FunSuite:
     seed = 1
   )
 
-  /** @param told
-    *   lines, each with the time since the flight began
-    * @param wentWrong
-    *   when, likewise
-    * @param seen
-    *   the text of the progress line 2 s after that
+  /** @param told lines, each with the time since the flight began
+    * @param wentWrong when, likewise
+    * @param seen the text of the progress line 2 s after that
     */
   private final case class Flown(
       landed: FlightResult,
@@ -47,10 +44,8 @@ class FailureTellingSimulation extends munit.FunSuite:
 
   /** Flies, and after 5 s something happens.
     *
-    * @param restarts
-    *   so long after it died the simulator is started again
-    * @param stall
-    *   from then on nothing comes through for so long
+    * @param restarts so long after it died the simulator is started again
+    * @param stall from then on nothing comes through for so long
     */
   private def fly(
       loop: LoopKind = LoopKind.Stream,

@@ -28,8 +28,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
     planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
 
-  /** @param stopping
-    *   after so long, instead of letting it go on
+  /** @param stopping after so long, instead of letting it go on
     */
   private def fly(loop: LoopKind, stopping: Boolean = false): (FlightOutcome, MemoryRecorder) =
     val plan = settings.plans.find(_.loop == loop).getOrElse(fail("there is no such flight"))

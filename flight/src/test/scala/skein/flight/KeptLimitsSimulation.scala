@@ -107,7 +107,9 @@ final case class ToGoal(goal: (Double, Double)) extends GoalPolicy:
     val (north, east) = way(seen)
     Course.of(north, east, mostMps = 5, seen.headingRad)
 
-/** The paper's two, who may not come near each other, in a round field; the evader, which does not plan, may leave it. */
+/** The paper's two, who may not come near each other, in a round field; the evader, which does not plan, may
+  * leave it.
+  */
 final case class Shadow() extends Scenario:
   def agents: Vector[Agent]          = PaperDuel().agents
   override def duration: Span        = Span.ofSeconds(12)

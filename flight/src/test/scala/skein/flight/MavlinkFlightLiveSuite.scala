@@ -13,8 +13,8 @@ import skein.simulator.*
 import skein.testing.Waiting
 import skein.units.*
 
-/** Flights over MAVLink by UDP and by TCP, with a simulator that runs already, as PX4's would; its clock runs faster, since the ways to
-  * the starts are most of it.
+/** Flights over MAVLink by UDP and by TCP, with a simulator that runs already, as PX4's would; its clock runs
+  * faster, since the ways to the starts are most of it.
   */
 class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
   private given system: ActorSystem = ActorSystem("mavlink-flight")

@@ -9,7 +9,9 @@ import skein.scenario.Scenarios
 import skein.settings.{FlySettings, SimulatedBody}
 import skein.units.*
 
-/** What `fly --plant mujoco:FILE.xml --clock virtual` flies, and what it refuses. Runs where MuJoCo is, or can be installed. */
+/** What `fly --plant mujoco:FILE.xml --clock virtual` flies, and what it refuses. Runs where MuJoCo is, or
+  * can be installed.
+  */
 class MujocoFlightLiveSuite extends MujocoHere:
   import MujocoFlightLiveSuite.*
   private given Scenarios = Scenarios.ours

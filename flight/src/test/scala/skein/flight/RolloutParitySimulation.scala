@@ -10,8 +10,8 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to the last bit: every vehicle
-  * is read at the same nanoseconds at the same places, and is commanded the same headings.
+/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to the last
+  * bit: every vehicle is read at the same nanoseconds at the same places, and is commanded the same headings.
   */
 class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   /** Until the pursuer has passed, turned and come near again. */

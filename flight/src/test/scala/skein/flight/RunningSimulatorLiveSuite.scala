@@ -13,8 +13,8 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.Waiting
 import skein.units.*
 
-/** [[RunningSimulatorSimulation]] over real sockets and on the real clock, shortened; the simulator's clock runs faster,
-  * since the ways to the starts are most of it.
+/** [[RunningSimulatorSimulation]] over real sockets and on the real clock, shortened; the simulator's clock
+  * runs faster, since the ways to the starts are most of it.
   */
 class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting:
   private given system: ActorSystem = ActorSystem("RunningSimulatorLiveSuite")

@@ -13,8 +13,7 @@ import skein.units.*
 
 /** A duel that is flown live and decided by a solver alone: what tests of the links between the two share.
   *
-  * @param link
-  *   to the solver
+  * @param link to the solver
   */
 final class SolvedFlight(
     by: SolverChoice,

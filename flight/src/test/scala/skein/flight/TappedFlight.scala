@@ -17,10 +17,8 @@ import upack.Str
 
 /** A flight in virtual time and when each of its moves came to the simulator.
   *
-  * @param startedAt
-  *   when the loop began, and how long the vehicles had hovered then
-  * @param arrivedAt
-  *   of each vehicle's moves, in the order in which they came
+  * @param startedAt when the loop began, and how long the vehicles had hovered then
+  * @param arrivedAt of each vehicle's moves, in the order in which they came
   */
 final case class TappedFlight(
     recording: Recording,

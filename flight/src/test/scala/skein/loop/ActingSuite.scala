@@ -5,7 +5,8 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** What an action is taken for where headings and speeds are asked for, and what is foreseen of its vehicle. */
+/** What an action is taken for where headings and speeds are asked for, and what is foreseen of its vehicle.
+  */
 class ActingSuite extends munit.FunSuite:
   private val down  = Metres(-20)
   private val place = Action.Position(Vector3(1, 2, -20), MetresPerSecond(4))

@@ -38,7 +38,9 @@ class PausedLoopSuite extends munit.FunSuite:
         hovering = true
         port.hover()
 
-  /** A simulator whose step number `failing` fails, and which answers only after so many times that it is let run. */
+  /** A simulator whose step number `failing` fails, and which answers only after so many times that it is let
+    * run.
+    */
   private final class FragileStepper(
       stepper: SteppedTime,
       failing: Int,

@@ -58,7 +58,9 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(part(little).objective.separation, SeparationCost(0.5, margin = 1))
     assert(PursuitPlanning(fleet, pursuer, little, 3).regardsTeam)
 
-  /** What is decided in the place of a plan by a policy that turns so far from where it was told to head, 0.25 rad. */
+  /** What is decided in the place of a plan by a policy that turns so far from where it was told to head,
+    * 0.25 rad.
+    */
   private def byPolicy(turn: Double, settings: PlanSettings): (Decision, PlannedDecision) =
     object Turning extends Policy:
       def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =

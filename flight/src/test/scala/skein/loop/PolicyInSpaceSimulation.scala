@@ -8,7 +8,8 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Policies in three dimensions, with memories and actions of their own, through whole loops in virtual time. */
+/** Policies in three dimensions, with memories and actions of their own, through whole loops in virtual time.
+  */
 class PolicyInSpaceSimulation extends munit.FunSuite:
 
   /** Climbs to an altitude, remembers that it was there, and sinks to another. */

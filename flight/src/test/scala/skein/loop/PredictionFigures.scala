@@ -5,10 +5,8 @@ import skein.vehicle.*
 
 /** Prints how far loops and models deviate from the paused truth over the links.
   *
-  * @param seeds
-  *   flights per row
-  * @param over
-  *   names of links; all of them where none is given
+  * @param seeds flights per row
+  * @param over names of links; all of them where none is given
   */
 @main def predictionFigures(seeds: Int, over: String*): Unit =
   val truth = VirtualDuel.truth.distanceM

@@ -5,8 +5,9 @@ import skein.record.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** When commands arrived, told from readings that take 30 ms to the simulator and 10 ms back, every 100 ms for 1 s. The
-  * simulator's clock is 1000 s behind. So a command that leaves at t arrives t after the first reading.
+/** When commands arrived, told from readings that take 30 ms to the simulator and 10 ms back, every 100 ms
+  * for 1 s. The simulator's clock is 1000 s behind. So a command that leaves at t arrives t after the first
+  * reading.
   */
 class FlownVehiclesSuite extends munit.FunSuite:
   private val ms    = Span.ofMillis

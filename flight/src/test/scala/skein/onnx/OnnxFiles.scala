@@ -15,8 +15,7 @@ trait OnnxFiles extends TemporaryFolders:
   protected def written(folder: Path, bytes: Array[Byte]): String =
     Files.write(folder.resolve("policy.onnx"), bytes).toString
 
-  /** @param longestS
-    *   since the last decision, and the oldest age
+  /** @param longestS since the last decision, and the oldest age
     */
   protected def seen(random: SplitMix64, longestS: Double): PlanarObservation =
     def number(most: Double) = most * (2 * random.nextDouble() - 1)

@@ -9,8 +9,8 @@ import java.util.concurrent.atomic.AtomicInteger
 
 /** A policy behind a socket, of another process as far as a flight can tell.
   *
-  * @param answer
-  *   from the number of the question, from 0, and what is seen, to bytes; without any, the connection ends
+  * @param answer from the number of the question, from 0, and what is seen, to bytes; without any, the
+  *   connection ends
   */
 final class Peer(answer: (Int, Vector[Float]) => Option[Array[Byte]]) extends AutoCloseable:
   private val folder   = Files.createTempDirectory("skein-peer")

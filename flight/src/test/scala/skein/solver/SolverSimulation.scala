@@ -9,8 +9,8 @@ import skein.solver.SolverTrial.To
 import skein.testing.Optimised
 import skein.units.*
 
-/** Whole flights whose decisions are made by a solver elsewhere, in virtual time: where it is slow, dies, is started again,
-  * answers twice, or answers in another order.
+/** Whole flights whose decisions are made by a solver elsewhere, in virtual time: where it is slow, dies, is
+  * started again, answers twice, or answers in another order.
   */
 class SolverSimulation extends munit.FunSuite, Optimised:
   private val fleet = PaperDuel().fleet

@@ -15,8 +15,7 @@ import skein.vtime.VirtualTime
 
 /** A duel in virtual time whose decisions are made by a solver behind a link that does as a test says.
   *
-  * @param questions
-  *   as they came to a solver, by its start, vehicle and number
+  * @param questions as they came to a solver, by its start, vehicle and number
   */
 final case class SolverTrial(
     outcome: FlightOutcome,
@@ -88,10 +87,9 @@ object SolverTrial:
       for span <- fate(to, sent) do
         after(span.toDuration, system.scheduler)(Future.unit).foreach(_ => if down.isEmpty then arrive)
 
-  /** @param fate
-    *   when each message arrives, counted in the order of their sending: once, several times, or never
-    * @param solverClock
-    *   the solver's clock minus the controller's
+  /** @param fate when each message arrives, counted in the order of their sending: once, several times, or
+    *   never
+    * @param solverClock the solver's clock minus the controller's
     */
   def fly(
       seed: Long = 1,

@@ -11,25 +11,25 @@ import skein.units.Span
 /** Runs policies. */
 object Decide:
 
-  /** Runs a policy that has a memory. `policy(memory, observation)` gives the next memory and the decision; it is a
-    * pure function, called once per observation in the order of arrival.
+  /** Runs a policy that has a memory. `policy(memory, observation)` gives the next memory and the decision;
+    * it is a pure function, called once per observation in the order of arrival.
     *
-    * '''Emits when''' an observation arrives. '''Backpressures when''' downstream backpressures. '''Completes when'''
-    * upstream completes. '''Cancels when''' downstream cancels.
+    * '''Emits when''' an observation arrives. '''Backpressures when''' downstream backpressures. '''Completes
+    * when''' upstream completes. '''Cancels when''' downstream cancels.
     */
   def withMemory[M, O, D](start: M)(policy: (M, O) => (M, D)): Flow[O, D, NotUsed] =
     Flow[O].statefulMap(() => start)(policy, _ => None)
 
-  /** Runs a policy that takes its time, such as a search or another process, and does not wait for it longer than
-    * `deadline`. One question is under way at a time: while a policy is late, observations are decided otherwise, at
-    * once. A late answer is not used, and the memory that comes with it is not kept.
+  /** Runs a policy that takes its time, such as a search or another process, and does not wait for it longer
+    * than `deadline`. One question is under way at a time: while a policy is late, observations are decided
+    * otherwise, at once. A late answer is not used, and the memory that comes with it is not kept.
     *
-    * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is under way, or
-    * downstream backpressures. '''Completes when''' upstream completes and the last decision was emitted. '''Cancels
-    * when''' downstream cancels.
+    * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is
+    * under way, or downstream backpressures. '''Completes when''' upstream completes and the last decision
+    * was emitted. '''Cancels when''' downstream cancels.
     *
-    * @param asksAgain
-    *   asks a policy that is late anew at every observation, for one that leaves an older question for a newer one
+    * @param asksAgain asks a policy that is late anew at every observation, for one that leaves an older
+    *   question for a newer one
     */
   def within[M, O, D](deadline: Span, otherwise: OnOverrun[M, O, D], start: M, asksAgain: Boolean = false)(
       policy: (M, O) => Future[(M, D)]
@@ -52,10 +52,8 @@ object Decide:
         answered.map(turn.next(working, observation, _, otherwise))
       .collect(Function.unlift(_.result))
 
-  /** @param working
-    *   completed when the policy may be asked again
-    * @param result
-    *   of this turn; absent before the first
+  /** @param working completed when the policy may be asked again
+    * @param result of this turn; absent before the first
     */
   private final case class Turn[M, D](
       memory: M,

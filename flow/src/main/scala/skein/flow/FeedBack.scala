@@ -6,11 +6,12 @@ import org.apache.pekko.stream.scaladsl.Flow
 /** The edge that closes a loop in a graph. */
 object FeedBack:
 
-  /** Carries the newest value of each key back upstream. It always takes, so the cycle cannot deadlock, and holds at
-    * most one value per key, so it cannot grow; a value replaced before it was taken is one that nobody could use.
+  /** Carries the newest value of each key back upstream. It always takes, so the cycle cannot deadlock, and
+    * holds at most one value per key, so it cannot grow; a value replaced before it was taken is one that
+    * nobody could use.
     *
-    * '''Emits when''' a value is held and downstream demands. '''Backpressures when''' never. '''Completes when'''
-    * upstream completes and nothing is held. '''Cancels when''' downstream cancels.
+    * '''Emits when''' a value is held and downstream demands. '''Backpressures when''' never. '''Completes
+    * when''' upstream completes and nothing is held. '''Cancels when''' downstream cancels.
     */
   def newest[K, A]: Flow[(K, A), (K, A), NotUsed] =
     Flow[(K, A)].conflateWithSeed(Vector(_))(replace).mapConcat(identity)

@@ -24,24 +24,21 @@ object Frames:
     /** A newer one arrived before downstream demanded. */
     case Replaced(frame: Stamped[A])
 
-  /** Asks for a frame at each element of `ticks`, which says how many were due since the last one, as [[Metronome]] does.
-    * A frame's `validAt` is its exposure; every emitted frame is newer than the one before. One that fails never stops the
-    * source.
+  /** Asks for a frame at each element of `ticks`, which says how many were due since the last one, as
+    * [[Metronome]] does. A frame's `validAt` is its exposure; every emitted frame is newer than the one
+    * before. One that fails never stops the source.
     *
     *   - '''Emits when''' a frame has come that is newer than all before and downstream demands.
-    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the one that waits.
+    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the one that
+    *     waits.
     *   - '''Completes when''' `ticks` has completed and all that was asked for has come.
     *   - '''Cancels when''' downstream cancels.
     *
-    * @param inFlight
-    *   frames asked for that have not come, at most
-    * @param isNewer
-    *   whether one frame is of a later moment than another: over a restart of the simulator
+    * @param inFlight frames asked for that have not come, at most
+    * @param isNewer whether one frame is of a later moment than another: over a restart of the simulator
     *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
-    * @param ask
-    *   must end by itself, within its own timeout
-    * @param onSkip
-    *   told of every frame that was due and is not emitted
+    * @param ask must end by itself, within its own timeout
+    * @param onSkip told of every frame that was due and is not emitted
     */
   def at[E, A, M](
       ticks: Source[Int, M],

@@ -3,8 +3,8 @@ package skein.flow
 import java.util.concurrent.ConcurrentHashMap
 import java.util.concurrent.atomic.AtomicBoolean
 
-/** Whether vehicles hold their positions for now, whatever is decided: one switch for all that share it, thrown from any
-  * thread. [[Steer]] obeys it.
+/** Whether vehicles hold their positions for now, whatever is decided: one switch for all that share it,
+  * thrown from any thread. [[Steer]] obeys it.
   */
 final class Hold:
   private val holding   = AtomicBoolean()
@@ -12,13 +12,11 @@ final class Hold:
 
   def isHeld: Boolean = holding.get
 
-  /** @return
-    *   whether that was new
+  /** @return whether that was new
     */
   def hold(): Boolean = turn(to = true)
 
-  /** @return
-    *   whether that was new
+  /** @return whether that was new
     */
   def release(): Boolean = turn(to = false)
 

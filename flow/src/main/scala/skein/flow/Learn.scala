@@ -9,16 +9,14 @@ object Learn:
 
   /** Gives what has come to `learn`, one lesson at a time; what comes meanwhile waits for the next lesson.
     *
-    * '''Emits when''' a lesson has made something and downstream demands. '''Backpressures when''' never; beyond `most`
-    * elements that wait, the oldest is dropped, which is reported. '''Completes when''' upstream has completed and the
-    * last lesson is over. '''Cancels when''' downstream cancels. '''Fails when''' a lesson does.
+    * '''Emits when''' a lesson has made something and downstream demands. '''Backpressures when''' never;
+    * beyond `most` elements that wait, the oldest is dropped, which is reported. '''Completes when'''
+    * upstream has completed and the last lesson is over. '''Cancels when''' downstream cancels. '''Fails
+    * when''' a lesson does.
     *
-    * @param most
-    *   elements of a lesson
-    * @param onDropped
-    *   told of every element that is in no lesson
-    * @param learn
-    *   from elements in the order in which they came; not on the stream's thread
+    * @param most elements of a lesson
+    * @param onDropped told of every element that is in no lesson
+    * @param learn from elements in the order in which they came; not on the stream's thread
     */
   def apply[A, B](
       most: Int,

@@ -4,19 +4,20 @@ import org.apache.pekko.stream.stage.*
 import org.apache.pekko.stream.{Attributes, FlowShape, Inlet, Outlet}
 import skein.units.*
 
-/** Elements at least an interval apart; the newest wins. Unlike `buffer(1, dropHead)` before `throttle`, which fetches
-  * an element and then lets it grow old for an interval, it chooses at the moment of emission.
+/** Elements at least an interval apart; the newest wins. Unlike `buffer(1, dropHead)` before `throttle`,
+  * which fetches an element and then lets it grow old for an interval, it chooses at the moment of emission.
   *
-  * Where something else keeps the period, such as the ticks of [[Sense]], half of the period is a good interval: jitter
-  * of the arrivals then costs neither a turn nor freshness, and no delay of one turn is handed on to the next.
+  * Where something else keeps the period, such as the ticks of [[Sense]], half of the period is a good
+  * interval: jitter of the arrivals then costs neither a turn nor freshness, and no delay of one turn is
+  * handed on to the next.
   *
-  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission is over.
+  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission is
+  *     over.
   *   - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
   *   - '''Completes when''' upstream completes; an element still held is reported as replaced.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param onReplaced
-  *   told of every element that was never emitted
+  * @param onReplaced told of every element that was never emitted
   */
 final class Pace[A](interval: Span, clock: Clock)(onReplaced: A => Unit) extends GraphStage[FlowShape[A, A]]:
   private val in  = Inlet[A]("Pace.in")

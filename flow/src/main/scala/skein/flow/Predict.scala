@@ -8,18 +8,17 @@ import skein.units.*
 /** Looks ahead: what is known of vehicles, carried to the moment at which a command sent now will act. */
 object Predict:
 
-  /** Joins to each element the estimates of [[Forecast.whenActing]], in the order of the vehicles, and holds earlier
-    * estimates against the readings that have come since.
+  /** Joins to each element the estimates of [[Forecast.whenActing]], in the order of the vehicles, and holds
+    * earlier estimates against the readings that have come since.
     *
-    * '''Emits when''' an element arrives by whose forecast every vehicle was seen. '''Backpressures when''' downstream
-    * backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream cancels.
+    * '''Emits when''' an element arrives by whose forecast every vehicle was seen. '''Backpressures when'''
+    * downstream backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream
+    * cancels.
     *
-    * @param verified
-    *   vehicles whose estimates are held against readings
-    * @param lead
-    *   how much later than the element's coming its command will be sent, or begin to act; asked for at each element
-    * @param onVerified
-    *   told of every prediction whose moment was read, with its error
+    * @param verified vehicles whose estimates are held against readings
+    * @param lead how much later than the element's coming its command will be sent, or begin to act; asked
+    *   for at each element
+    * @param onVerified told of every prediction whose moment was read, with its error
     */
   def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true, lead: => Span = Span.Zero)(
       onVerified: Verified => Unit
@@ -45,8 +44,7 @@ final case class Verified(vehicle: Int, madeAt: Instant, estimate: Estimate, err
 final case class Unverified private (made: Vector[Unverified.Made]):
   import Unverified.*
 
-  /** @param of
-    *   vehicles, by their place among the estimates
+  /** @param of vehicles, by their place among the estimates
     */
   def withMade(at: Instant, estimates: Vector[Estimate], of: Int => Boolean): Unverified =
     val more =

@@ -11,12 +11,9 @@ import skein.units.*
 
 /** The result of recognition in a frame.
   *
-  * @param found
-  *   with the frame's times: valid at its exposure
-  * @param startedAt
-  *   when recognition began, on the controller's clock
-  * @param took
-  *   how long it lasted
+  * @param found with the frame's times: valid at its exposure
+  * @param startedAt when recognition began, on the controller's clock
+  * @param took how long it lasted
   */
 final case class Recognised[+B](found: Stamped[B], startedAt: Instant, took: Span)
 
@@ -33,27 +30,24 @@ enum Unrecognised[+A]:
 
 /** Runs recognition on frames, several at a time: the next one is begun before the last is done.
   *
-  * A late worker goes on and gets no new frame until it has ended, so at most `workers` frames are worked on. A worker that
-  * never ends is lost.
+  * A late worker goes on and gets no new frame until it has ended, so at most `workers` frames are worked on.
+  * A worker that never ends is lost.
   *
-  *   - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of exposure, once all
-  *     frames before it have ended or are late; or, with `newestFirst`, at once, and frames exposed before it are not emitted.
+  *   - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of
+  *     exposure, once all frames before it have ended or are late; or, with `newestFirst`, at once, and
+  *     frames exposed before it are not emitted.
   *   - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
   *   - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param workers
-  *   most frames worked on at the same time
-  * @param isNewer
-  *   whether one frame was exposed later than another; where the simulator may restart, use
+  * @param workers most frames worked on at the same time
+  * @param isNewer whether one frame was exposed later than another; where the simulator may restart, use
   *   [[skein.signal.ClockAlignment.isNewer]]
-  * @param deadline
-  *   of each frame, from when it is begun
-  * @param recognise
-  *   begins work on a frame. No two calls with the same `worker`, from 0, overlap, so each may have an object that is not
-  *   thread-safe. The future must complete by itself, and the work must not be done on the caller's thread
-  * @param onSkip
-  *   called for every frame without an emitted result
+  * @param deadline of each frame, from when it is begun
+  * @param recognise begins work on a frame. No two calls with the same `worker`, from 0, overlap, so each may
+  *   have an object that is not thread-safe. The future must complete by itself, and the work must not be
+  *   done on the caller's thread
+  * @param onSkip called for every frame without an emitted result
   */
 final class Recognise[A, B](
     workers: Int,
@@ -149,11 +143,10 @@ final class Recognise[A, B](
 
 object Recognise:
 
-  /** Recognition by functions that work on a thread until they are done: one worker for each. A function is never called
-    * by two threads at once.
+  /** Recognition by functions that work on a thread until they are done: one worker for each. A function is
+    * never called by two threads at once.
     *
-    * @param threads
-    *   where they work; at least as many as functions, and not those of the streams
+    * @param threads where they work; at least as many as functions, and not those of the streams
     */
   def by[A, B](functions: IndexedSeq[A => B], threads: ExecutionContext)(
       worker: Int,

@@ -10,27 +10,27 @@ object Sense:
 
   /** What to do with an answer that comes before the answer to an older question. */
   enum Early:
-    /** Emit it at once; the older one, when it comes, is overtaken and skipped, unless it tells of a later moment. */
+    /** Emit it at once; the older one, when it comes, is overtaken and skipped, unless it tells of a later
+      * moment.
+      */
     case Overtakes
 
     /** Keep it until the older one has come or failed, as the paper's `ask` does. */
     case Waits
 
-  /** One question per `period`, the first after `offset`; up to `window` may be unanswered at once. An answer that is
-    * an error (a timeout, most often) is skipped, so that one lost answer never stops the stream.
+  /** One question per `period`, the first after `offset`; up to `window` may be unanswered at once. An answer
+    * that is an error (a timeout, most often) is skipped, so that one lost answer never stops the stream.
     *
-    *   - '''Emits when''' a question is answered with a value, in order (see [[Early]]), and downstream demands.
-    *   - '''Backpressures when''' never towards the clock: a tick that finds the window full, or downstream slow, is missed
-    *     and counted.
+    *   - '''Emits when''' a question is answered with a value, in order (see [[Early]]), and downstream
+    *     demands.
+    *   - '''Backpressures when''' never towards the clock: a tick that finds the window full, or downstream
+    *     slow, is missed and counted.
     *   - '''Completes when''' the materialised `Cancellable` is cancelled and what was asked is answered.
     *   - '''Cancels when''' downstream cancels.
     *
-    * @param ask
-    *   must end by itself, within its own timeout
-    * @param onSkip
-    *   told of every answer skipped: the error, or the value overtaken
-    * @param onMissed
-    *   told how many ticks were missed, when some were
+    * @param ask must end by itself, within its own timeout
+    * @param onSkip told of every answer skipped: the error, or the value overtaken
+    * @param onMissed told how many ticks were missed, when some were
     */
   def every[E, A](period: Span, offset: Span = Span.Zero, window: Int = 4, early: Early = Early.Overtakes)(
       ask: () => Future[Either[E, A]]
@@ -41,12 +41,11 @@ object Sense:
       early
     )(ask)(onSkip, onMissed)
 
-  /** The same at each element of `ticks`, which says how many questions were due since the last one, as [[Metronome]]
-    * does. Completes when `ticks` has completed and what was asked is answered.
+  /** The same at each element of `ticks`, which says how many questions were due since the last one, as
+    * [[Metronome]] does. Completes when `ticks` has completed and what was asked is answered.
     *
-    * @param isNewer
-    *   whether the answer to an older question tells of a later moment than the answer emitted last: questions, too,
-    *   overtake each other on their way
+    * @param isNewer whether the answer to an older question tells of a later moment than the answer emitted
+    *   last: questions, too, overtake each other on their way
     */
   def at[E, A, M](
       ticks: Source[Int, M],

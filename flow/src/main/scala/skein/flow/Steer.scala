@@ -19,42 +19,38 @@ enum Steered[+C, +R]:
 
 /** Commands one vehicle without ever overloading its simulator.
   *
-  * AirSim's move calls answer when the move ends, and each holds one of the server's workers until then; a burst of
-  * moves freezes the server, and executes out of order. So at most two are outstanding, the one that flies and the one
-  * that replaces it. The next is *asked for* only when the oldest has answered and the rate cap allows it: upstream
-  * then decides with what it knows at that moment ([[Pace]] keeps it the newest), instead of a decision growing old
-  * here.
+  * AirSim's move calls answer when the move ends, and each holds one of the server's workers until then; a
+  * burst of moves freezes the server, and executes out of order. So at most two are outstanding, the one that
+  * flies and the one that replaces it. The next is *asked for* only when the oldest has answered and the rate
+  * cap allows it: upstream then decides with what it knows at that moment ([[Pace]] keeps it the newest),
+  * instead of a decision growing old here.
   *
-  * A command whose answer is lost with its connection may fly on, and is not counted any more: with the next two it
-  * would be three at the simulator. So the vehicle is parked first, and again until it says so; then it is known what
-  * flies. What is on its way from upstream meanwhile is the first to be sent.
+  * A command whose answer is lost with its connection may fly on, and is not counted any more: with the next
+  * two it would be three at the simulator. So the vehicle is parked first, and again until it says so; then
+  * it is known what flies. What is on its way from upstream meanwhile is the first to be sent.
   *
   * While it is held, the vehicle is parked and what comes from upstream is not sent.
   *
   *   - '''Emits when''' a command is sent or has ended, and downstream demands.
-  *   - '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while an answer is
-  *     lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for downstream.
-  *   - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it failed, and every
-  *     call has ended.
+  *   - '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while
+  *     an answer is lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for
+  *     downstream.
+  *   - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it
+  *     failed, and every call has ended.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param minInterval
-  *   between two commands sent: the rate cap
-  * @param mostOutstanding
-  *   commands that may be unanswered. More than [[Moves.MostOutstanding]] let a link of a long round trip carry more
-  *   commands than one a round trip; only for links that never deliver several at once
-  * @param send
-  *   one command; the future ends when the move ends
-  * @param park
-  *   makes the vehicle hover, so that the outstanding moves are answered; sent at the end, as the last command, and
-  *   where an answer was lost
-  * @param isCertain
-  *   whether a result says that its command neither flies nor is on its way: the vehicle's own answer, or that it was
-  *   never sent. A future that fails never says so
-  * @param onUnsent
-  *   told of a command that waited for the vehicle to be parked when upstream completed, or came while it was held
-  * @param hold
-  *   parks the vehicle for as long as it is held
+  * @param minInterval between two commands sent: the rate cap
+  * @param mostOutstanding commands that may be unanswered. More than [[Moves.MostOutstanding]] let a link of
+  *   a long round trip carry more commands than one a round trip; only for links that never deliver several
+  *   at once
+  * @param send one command; the future ends when the move ends
+  * @param park makes the vehicle hover, so that the outstanding moves are answered; sent at the end, as the
+  *   last command, and where an answer was lost
+  * @param isCertain whether a result says that its command neither flies nor is on its way: the vehicle's own
+  *   answer, or that it was never sent. A future that fails never says so
+  * @param onUnsent told of a command that waited for the vehicle to be parked when upstream completed, or
+  *   came while it was held
+  * @param hold parks the vehicle for as long as it is held
   */
 final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Moves.MostOutstanding)(
     send: C => Future[R],

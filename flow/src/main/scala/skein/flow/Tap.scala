@@ -8,8 +8,8 @@ object Tap:
 
   /** Gives every element to `take`, which must not block, and passes it on. Unlike `wireTap` it never drops.
     *
-    * '''Emits when''' an element arrives. '''Backpressures when''' downstream backpressures. '''Completes when'''
-    * upstream completes. '''Cancels when''' downstream cancels.
+    * '''Emits when''' an element arrives. '''Backpressures when''' downstream backpressures. '''Completes
+    * when''' upstream completes. '''Cancels when''' downstream cancels.
     */
   def apply[A](take: A => Unit): Flow[A, A, NotUsed] = Flow[A].map: element =>
     take(element)

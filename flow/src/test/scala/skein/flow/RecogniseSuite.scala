@@ -18,7 +18,8 @@ class RecogniseSuite extends munit.FunSuite:
       mostAtOnce: Int
   )
 
-  /** Frames as often as a camera takes them, the newest of which waits; each takes as long as `tookMs` says. */
+  /** Frames as often as a camera takes them, the newest of which waits; each takes as long as `tookMs` says.
+    */
   private def run(
       perSecond: Int,
       count: Int,

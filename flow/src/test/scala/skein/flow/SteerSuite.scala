@@ -12,7 +12,9 @@ import skein.vtime.VirtualTime
 class SteerSuite extends munit.FunSuite:
   import Steered.*
 
-  /** A vehicle behind a link: a command arrives after `oneWay` and ends the one before, whose answer takes as long. */
+  /** A vehicle behind a link: a command arrives after `oneWay` and ends the one before, whose answer takes as
+    * long.
+    */
   private final class FarVehicle(oneWay: FiniteDuration)(using system: ActorSystem):
     private given ExecutionContext              = system.dispatcher
     private var flying: Option[Promise[String]] = None
@@ -37,8 +39,8 @@ class SteerSuite extends munit.FunSuite:
       flying.foreach(_.success("superseded"))
       flying = next
 
-  /** What came of ten commands over a link: events in order, with their times in ms from the start; how many calls were
-    * outstanding at most; and which commands were replaced before they were sent.
+  /** What came of ten commands over a link: events in order, with their times in ms from the start; how many
+    * calls were outstanding at most; and which commands were replaced before they were sent.
     */
   private def steered(oneWay: FiniteDuration, every: FiniteDuration, minInterval: Span) =
     var replaced = Vector.empty[Int]
@@ -175,7 +177,9 @@ class SteerSuite extends munit.FunSuite:
       .value
     assertEquals(sent, Seq(0 -> 0L, 1 -> 10_200L, 2 -> 20_400L, 3 -> 30_600L))
 
-  /** What reached a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail `failures` times. */
+  /** What reached a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail `failures`
+    * times.
+    */
   private def afterLoss(failures: Int, every: FiniteDuration = 200.millis): Vector[(Long, String)] =
     afterLossUs(failures, every).map((us, what) => (us / 1000, what))
 

@@ -5,11 +5,10 @@ import skein.policy.CameraPursuer
 import skein.simd.WorldRandom
 import skein.units.*
 
-/** What a vehicle believes of its opponent by a [[SensorModel]] while it flies: images on their way, in recognition, and
-  * what came of them. Mutable; allocates.
+/** What a vehicle believes of its opponent by a [[SensorModel]] while it flies: images on their way, in
+  * recognition, and what came of them. Mutable; allocates.
   *
-  * @param opponent
-  *   whom it looks for
+  * @param opponent whom it looks for
   */
 private[skein] final class CameraTracker(
     world: DuelWorld,

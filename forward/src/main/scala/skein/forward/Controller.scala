@@ -4,10 +4,10 @@ import skein.forecast.Forecast
 import skein.policy.{PlanarObservation, ObservingPolicy, Policy, TeamPolicy, TeamObservation}
 import skein.units.Instant
 
-/** What a decision is made from: a reading of each vehicle, and the headings sent to them until then. Mutable.
+/** What a decision is made from: a reading of each vehicle, and the headings sent to them until then.
+  * Mutable.
   *
-  * @see
-  *   `skein.loop.TeamView`, which the live loops hold
+  * @see `skein.loop.TeamView`, which the live loops hold
   */
 private[skein] final class DuelObservation(count: Int) extends Grounds:
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
@@ -50,13 +50,11 @@ private[skein] final class DuelObservation(count: Int) extends Grounds:
       sent(vehicle) = controllers(vehicle).sentHeading
       sentDecision(vehicle) = controllers(vehicle).sentDecision
 
-/** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest observation, at
-  * least an interval after the last, whenever a command may be sent.
+/** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest
+  * observation, at least an interval after the last, whenever a command may be sent.
   *
-  * @param intervalNs
-  *   between two decisions, or between two commands if it `decidesFirst`
-  * @param decidesFirst
-  *   decides at every observation; then what waits is the decision
+  * @param intervalNs between two decisions, or between two commands if it `decidesFirst`
+  * @param decidesFirst decides at every observation; then what waits is the decision
   */
 private[skein] final class Controller(
     world: DuelWorld,
@@ -205,7 +203,9 @@ private[skein] final class Controller(
   private def ageS(observation: DuelObservation, vehicle: Int) =
     (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
 
-  /** What a policy chooses whose opponent is there, flies so, was told this heading, and was known so long ago. */
+  /** What a policy chooses whose opponent is there, flies so, was told this heading, and was known so long
+    * ago.
+    */
   private def chosen(
       policy: Policy,
       observation: DuelObservation,

@@ -4,11 +4,10 @@ import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
 
-/** One-way delays of a link by 1024 equally likely values, for kernels: a random number's upper ten bits choose one.
-  * Successive messages are independent.
+/** One-way delays of a link by 1024 equally likely values, for kernels: a random number's upper ten bits
+  * choose one. Successive messages are independent.
   *
-  * @param delaysS
-  *   ascending, s: half of the round trip's quantile in the middle of each 1024th
+  * @param delaysS ascending, s: half of the round trip's quantile in the middle of each 1024th
   */
 final class DelayTable private (val delaysS: Array[Float]) extends Delays:
   private val delaysNs =
@@ -16,7 +15,9 @@ final class DelayTable private (val delaysS: Array[Float]) extends Delays:
 
   def maxS: Float = delaysS.last
 
-  /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight seconds. */
+  /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight
+    * seconds.
+    */
   private[skein] def copyGrains(into: Array[Int], at: Int): Unit =
     for i <- delaysNs.indices do into(at + i) = Math.toIntExact(delaysNs(i) / DelayTable.GrainNs)
 

@@ -6,12 +6,10 @@ import skein.scenario.PaperDuel
 
 /** One vehicle of a duel or of a team, as a rollout flies it.
   *
-  * @param speed
-  *   of the velocity it commands, where its policy does not choose one
-  * @param policy
-  *   see [[skein.policy.Policy]], and [[skein.policy.TeamPolicy]] for engagements; must be a pure function
-  * @param eye
-  *   by which alone it knows of its one opponent, if it is not told
+  * @param speed of the velocity it commands, where its policy does not choose one
+  * @param policy see [[skein.policy.Policy]], and [[skein.policy.TeamPolicy]] for engagements; must be a pure
+  *   function
+  * @param eye by which alone it knows of its one opponent, if it is not told
   */
 final case class Duelist(
     speed: Double,
@@ -39,8 +37,7 @@ object Duelist:
         )
   )
 
-/** @param durationS
-  *   of an episode
+/** @param durationS of an episode
   */
 final case class Duel(pursuer: Duelist, evader: Duelist, durationS: Double = 60.0)
 
@@ -61,16 +58,12 @@ object Duel:
 
 /** What an episode came to. Distances are horizontal, taken once a period.
   *
-  * @param captureS
-  *   when the distance first was at most the capture radius; infinite if never
-  * @param pursuerEffortRad
-  *   control effort: the sum of all changes of the commanded heading, by the shorter way
-  * @param evaderEffortRad
-  *   the same of the evader
-  * @param decisions
-  *   of both agents
-  * @param skipped
-  *   views on which an agent did not decide because a newer one came first
+  * @param captureS when the distance first was at most the capture radius; infinite if never
+  * @param pursuerEffortRad control effort: the sum of all changes of the commanded heading, by the shorter
+  *   way
+  * @param evaderEffortRad the same of the evader
+  * @param decisions of both agents
+  * @param skipped views on which an agent did not decide because a newer one came first
   */
 final case class DuelOutcome(
     minDistanceM: Double,
@@ -86,8 +79,7 @@ final case class DuelOutcome(
 
 /** What an episode came to for one evader; distances are to the nearest pursuer, once a period.
   *
-  * @param captureS
-  *   when the distance first was at most the capture radius; infinite if never
+  * @param captureS when the distance first was at most the capture radius; infinite if never
   */
 final case class EvaderOutcome(
     minDistanceM: Double,

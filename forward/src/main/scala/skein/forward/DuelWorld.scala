@@ -5,13 +5,11 @@ import skein.fusion.Exposure
 import skein.policy.Assignment
 import skein.signal.{Kinematics, Stamped}
 
-/** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their way to and from the
-  * vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
+/** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their
+  * way to and from the vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
   *
-  * @param standsStill
-  *   while it is decided
-  * @param ring
-  *   [[DuelWorld.ringOf]]
+  * @param standsStill while it is decided
+  * @param ring [[DuelWorld.ringOf]]
   */
 private[skein] final class DuelWorld(
     engagement: Engagement,
@@ -70,7 +68,8 @@ private[skein] final class DuelWorld(
 
   def nowS: Double = time * 1e-9
 
-  /** Lets an event happen at a time that is not past. Events of one time happen in the order of these calls. */
+  /** Lets an event happen at a time that is not past. Events of one time happen in the order of these calls.
+    */
   def schedule(atNs: Long, kind: Int, vehicle: Int, number: Int): Unit =
     queue.add(atNs, (kind.toLong << 40) | (vehicle.toLong << 32) | number)
 
@@ -91,8 +90,7 @@ private[skein] final class DuelWorld(
 
   /** Asks a vehicle where it is; [[Answered]] or [[TimedOut]] follows.
     *
-    * @return
-    *   the question's number: they count for each vehicle, whoever asks
+    * @return the question's number: they count for each vehicle, whoever asks
     */
   def ask(asker: Int, vehicle: Int, step: Int): Int =
     val number = asked(vehicle)
@@ -141,8 +139,7 @@ private[skein] final class DuelWorld(
 
   /** Sends a command; [[Acknowledged]] follows when a newer one has replaced it.
     *
-    * @return
-    *   its number
+    * @return its number
     */
   def send(agent: Int, headingRad: Double, speedMps: Double, step: Int): Int =
     val number = commanded(agent)
@@ -156,7 +153,8 @@ private[skein] final class DuelWorld(
     schedule(commandAt(agent), Arrived, agent, number)
     number
 
-  /** The command has reached the vehicle: it acts, now or after the handover, and the one before is answered. */
+  /** The command has reached the vehicle: it acts, now or after the handover, and the one before is answered.
+    */
   def arrived(agent: Int, number: Int): Unit =
     if number == 0 then acts(agent, number)
     else
@@ -207,14 +205,14 @@ private[skein] object DuelWorld:
   def vehicleOf(event: Long): Int = (event >>> 32).toInt & 0xff
   def numberOf(event: Long): Int  = event.toInt
 
-  /** Questions and commands of one vehicle that may be under way where each vehicle is asked in turn: more than any
-    * window allows.
+  /** Questions and commands of one vehicle that may be under way where each vehicle is asked in turn: more
+    * than any window allows.
     */
   val Ring = 64
 
-  /** How many of one vehicle's newest questions and commands must be kept. A task of `Futures` reads all vehicles one
-    * after the other, each within the time-out, and needs its first reading at the end, when each of the vehicles may
-    * have begun a task in every period since.
+  /** How many of one vehicle's newest questions and commands must be kept. A task of `Futures` reads all
+    * vehicles one after the other, each within the time-out, and needs its first reading at the end, when
+    * each of the vehicles may have begun a task in every period since.
     */
   def ringOf(timing: LoopTiming, vehicles: Int): Int = timing match
     case futures: LoopTiming.Futures =>
@@ -259,17 +257,18 @@ trait LoopObserver:
 
   /** Under `Predictive`: a reading entered the forecast.
     *
-    * @param validAtNs
-    *   when it was made
-    * @param legs
-    *   what the vehicle flew through since the reading before, by what is known now; empty at its first
+    * @param validAtNs when it was made
+    * @param legs what the vehicle flew through since the reading before, by what is known now; empty at its
+    *   first
     */
   private[skein] def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit = ()
 
   /** A command was sent: the newest decision for the vehicle. */
   def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speedMps: Double): Unit = ()
 
-  /** A command has reached the vehicle and taken the place of the one before; it acts after the vehicle's dead time. */
+  /** A command has reached the vehicle and taken the place of the one before; it acts after the vehicle's
+    * dead time.
+    */
   def acts(vehicle: Int, number: Int, atNs: Long): Unit = ()
 
   /** Who sees takes an image now. */

@@ -2,12 +2,11 @@ package skein.forward
 
 import skein.policy.{Assignment, Fleet, Role}
 
-/** Vehicles in one plane, as a rollout flies them: pursuers and evaders, 1 against 1 up to M against N, or a team without
-  * sides. Each plays against the rival that the assignment gives it, as seen at its decision, or regards the whole team,
-  * as its policy is. Whoever was captured flies on.
+/** Vehicles in one plane, as a rollout flies them: pursuers and evaders, 1 against 1 up to M against N, or a
+  * team without sides. Each plays against the rival that the assignment gives it, as seen at its decision, or
+  * regards the whole team, as its policy is. Whoever was captured flies on.
   *
-  * @param roles
-  *   of the agents, in the order in which a loop asks them
+  * @param roles of the agents, in the order in which a loop asks them
   */
 final case class Engagement(
     agents: Vector[Duelist],

@@ -1,7 +1,7 @@
 package skein.forward
 
-/** A bounded queue of events in the order of their times, ns; events of one time keep the order in which they were
-  * added. An event is a `Long` of the caller's. Allocates nothing after construction.
+/** A bounded queue of events in the order of their times, ns; events of one time keep the order in which they
+  * were added. An event is a `Long` of the caller's. Allocates nothing after construction.
   */
 private[skein] final class EventQueue(capacity: Int):
   private val times    = Array.ofDim[Long](capacity)

@@ -11,8 +11,7 @@ object LinkDelays:
 
   /** The delays of a link that forward simulation can fly.
     *
-    * @return
-    *   or what was expected and came
+    * @return or what was expected and came
     */
   def checked(link: LatencyProfile): Either[String, Delays] = link match
     case steady: LatencyProfile.Steady           => bounded(steady, steady.roundTrip)
@@ -43,8 +42,8 @@ object LinkDelays:
   /** The paper's VPN over a long time: stretches of `vpn` and of `direct`. */
   val vpnMixed: Delays = of(LatencyProfile.vpnMixed)
 
-/** A link that is busy for a while and then quiet for a while; how long is exponentially distributed, and each world's
-  * own. A flight begins at a random moment.
+/** A link that is busy for a while and then quiet for a while; how long is exponentially distributed, and
+  * each world's own. A flight begins at a random moment.
   */
 final case class AlternatingDelays(
     busy: DelayTable,
@@ -54,7 +53,9 @@ final case class AlternatingDelays(
 ) extends Delays:
   require(busyLastsS > 0 && quietLastsS > 0, s"stretches must be positive: $busyLastsS, $quietLastsS s")
 
-  /** Whether the link is busy at a time of a world's flight. Cost grows with the number of stretches before it. */
+  /** Whether the link is busy at a time of a world's flight. Cost grows with the number of stretches before
+    * it.
+    */
   def isBusy(worldKey: Int, timeNs: Long): Boolean =
     var stretch = 0
     var isBusy  = uniform(worldKey, stretch) < busyLastsS / (busyLastsS + quietLastsS)

@@ -1,8 +1,8 @@
 package skein.forward
 
-/** Asks one vehicle once a period, as `skein.flow.Sense` does: a question due while the window is full waits, a second
-  * one is missed; an answer that comes after one to a later question is dropped, unless it tells of a later moment, or all
-  * wait for their turn.
+/** Asks one vehicle once a period, as `skein.flow.Sense` does: a question due while the window is full waits,
+  * a second one is missed; an answer that comes after one to a later question is dropped, unless it tells of
+  * a later moment, or all wait for their turn.
   */
 private[skein] final class PeriodicQuestions(
     world: DuelWorld,
@@ -47,7 +47,8 @@ private[skein] final class PeriodicQuestions(
         seen.seen(vehicle, question)
     ask()
 
-  /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other. */
+  /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other.
+    */
   private def isNewer(question: Int): Boolean =
     val last = world.slot(vehicle, told)
     world.isNewer(world.slot(vehicle, question), world.validAtNs(last), world.receivedAtNs(last))

@@ -3,8 +3,8 @@ package skein.forward
 import skein.signal.Kinematics
 import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
-/** Forward simulation by a [[skein.vehicle.Plant]]. Where that is an [[skein.vehicle.ObservedPlant]], the loop
-  * `predictive` predicts by it, else straight on.
+/** Forward simulation by a [[skein.vehicle.Plant]]. Where that is an [[skein.vehicle.ObservedPlant]], the
+  * loop `predictive` predicts by it, else straight on.
   */
 final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")

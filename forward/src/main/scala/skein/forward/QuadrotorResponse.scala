@@ -5,10 +5,11 @@ import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
 
-/** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as the built-in simulator flies it
-  * (`skein.simulator.SimulatedVehicle`): physics keeps a grid of whole steps, from when the vehicle was put to
-  * its start; a command acts from the first step after it on; a position between two steps is carried on from the last.
-  * What is read and commanded are 32-bit floats on AirSim's wire, positions in the frame whose origin is the start.
+/** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as the built-in simulator flies
+  * it (`skein.simulator.SimulatedVehicle`): physics keeps a grid of whole steps, from when the vehicle was
+  * put to its start; a command acts from the first step after it on; a position between two steps is carried
+  * on from the last. What is read and commanded are 32-bit floats on AirSim's wire, positions in the frame
+  * whose origin is the start.
   */
 private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hoveredS: Double)
     extends VelocityResponse:

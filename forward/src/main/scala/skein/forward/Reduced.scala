@@ -5,8 +5,7 @@ import skein.vehicle.{FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
 
 /** A first-order model of the response to commanded velocity: v' = (gain · command(t − deadTime) − v) / lag.
   *
-  * @param lagS
-  *   0: the velocity jumps
+  * @param lagS 0: the velocity jumps
   */
 final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends VelocityResponse:
   require(deadTimeS >= 0, s"a dead time must not be negative, came $deadTimeS s")
@@ -20,9 +19,10 @@ final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends 
     PlantModel(ReducedModel.lag(gain, lagS.max(1e-9), deadTimeS))
 
 object Reduced:
-  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m, as `./skein identify` fits it to live flights of
-    * the paper's duel: gain ± 0.017, lag ± 0.07 s, dead time ± 0.02 s (95 %). Off the full quadrotor by 0.02 m after 1 s
-    * and 0.22 m after 5 s (medians). See [[skein.vehicle.ReducedModel.AirSim]], which follows it more closely.
+  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m, as `./skein identify` fits it to live
+    * flights of the paper's duel: gain ± 0.017, lag ± 0.07 s, dead time ± 0.02 s (95 %). Off the full
+    * quadrotor by 0.02 m after 1 s and 0.22 m after 5 s (medians). See [[skein.vehicle.ReducedModel.AirSim]],
+    * which follows it more closely.
     */
   val AirSim: Reduced = Reduced(gain = 0.919, lagS = 2.66, deadTimeS = 0.053)
 

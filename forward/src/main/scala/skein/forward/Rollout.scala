@@ -1,13 +1,13 @@
 package skein.forward
 
-/** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in double. Events happen in the order of
-  * their times, in whole nanoseconds; between them the vehicles fly by themselves. Given the delays that a flight in
-  * virtual time met ([[RecordedDelays]]) it flies as that did, which `RolloutParitySimulation` holds it to. Mutable: one
-  * per thread; an episode allocates nothing but what the policies, what they see of a team, the quadrotor's setpoints and
-  * the `predictive` loop's forecast need.
+/** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in
+  * double. Events happen in the order of their times, in whole nanoseconds; between them the vehicles fly by
+  * themselves. Given the delays that a flight in virtual time met ([[RecordedDelays]]) it flies as that did,
+  * which `RolloutParitySimulation` holds it to. Mutable: one per thread; an episode allocates nothing but
+  * what the policies, what they see of a team, the quadrotor's setpoints and the `predictive` loop's forecast
+  * need.
   *
-  * @param link
-  *   delays of questions, answers, commands and acknowledgements; `Paused` ignores it
+  * @param link delays of questions, answers, commands and acknowledgements; `Paused` ignores it
   */
 final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse):
   import DuelWorld.*
@@ -41,8 +41,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
 
   /** Flies one episode.
     *
-    * @param worldKey
-    *   of [[WorldRandom]]: decides all delays
+    * @param worldKey of [[WorldRandom]]: decides all delays
     */
   def fly(
       worldKey: Int,
@@ -68,8 +67,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
 
   /** Handles the events before this time.
     *
-    * @return
-    *   the time of the next event; [[Rollout.Never]] when the episode is over
+    * @return the time of the next event; [[Rollout.Never]] when the episode is over
     */
   private[skein] def flyUntil(timeNs: Long): Long =
     while !isOver && world.nextNs < timeNs do handle(world.next())
@@ -77,9 +75,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
 
   private def isOver: Boolean = tallies(0).count >= scores
 
-  /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last was captured;
-    * distances are to the nearest pursuer, efforts summed over a side. In a team without sides all are judged, by the
-    * distance to the nearest other, and the effort is that of the evaders.
+  /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last
+    * was captured; distances are to the nearest pursuer, efforts summed over a side. In a team without sides
+    * all are judged, by the distance to the nearest other, and the effort is that of the evaders.
     */
   private[skein] def outcome: DuelOutcome =
     val each    = evaderOutcomes
@@ -96,7 +94,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       loop.controllers.map(_.skipped).sum
     )
 
-  /** How the last episode came out for each evader, in the engagement's order; in a team without sides, for everybody. */
+  /** How the last episode came out for each evader, in the engagement's order; in a team without sides, for
+    * everybody.
+    */
   def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome).toVector
 
   private def handle(event: Long): Unit =

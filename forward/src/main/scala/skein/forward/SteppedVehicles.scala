@@ -2,8 +2,8 @@ package skein.forward
 
 import skein.units.{Quaternion, Vector3}
 
-/** A response of vehicles that many worlds step side by side, all by the same whole steps, sooner than each by itself. They
-  * fly as those that it creates one by one.
+/** A response of vehicles that many worlds step side by side, all by the same whole steps, sooner than each
+  * by itself. They fly as those that it creates one by one.
   */
 trait SteppedResponse extends VelocityResponse:
   /** s */
@@ -15,7 +15,9 @@ trait SteppedResponse extends VelocityResponse:
   /** So many of them, for one thread. */
   def together(vehicles: Int): SteppedVehicles
 
-/** Vehicles that are stepped together; places count from 0. World frame NED, positions from each vehicle's start. Mutable. */
+/** Vehicles that are stepped together; places count from 0. World frame NED, positions from each vehicle's
+  * start. Mutable.
+  */
 trait SteppedVehicles:
   /** Flies no more than the first ones from now on. */
   def use(vehicles: Int): Unit

@@ -4,7 +4,9 @@ import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
-/** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and thread. */
+/** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and
+  * thread.
+  */
 trait Vehicle:
   /** Places it at rest, at time 0. */
   def start(x: Double, y: Double, z: Double): Unit
@@ -26,7 +28,9 @@ trait Vehicle:
   def seenVx: Double = vx
   def seenVy: Double = vy
 
-  /** All that it tells. Where a vehicle knows no more than its horizontal motion: level, not turning, at z = 0. */
+  /** All that it tells. Where a vehicle knows no more than its horizontal motion: level, not turning, at z =
+    * 0.
+    */
   def seen: Kinematics = level(0)
 
   protected def level(downM: Double): Kinematics =

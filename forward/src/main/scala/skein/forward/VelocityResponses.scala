@@ -10,8 +10,7 @@ object VelocityResponses:
 
   /** AirSim's quadrotor with its flight controller at 3 ms, behind AirSim's API: see [[QuadrotorResponse]].
     *
-    * @param hoveredS
-    *   how long it has hovered when the flight starts
+    * @param hoveredS how long it has hovered when the flight starts
     */
   def quadrotor(quadrotor: Quadrotor = Quadrotor.AirSim, hoveredS: Double = 0.0): VelocityResponse =
     QuadrotorResponse(quadrotor, hoveredS)

@@ -5,18 +5,12 @@ import skein.vehicle.*
 
 /** How far predictions over one horizon were off.
   *
-  * @param horizonS
-  *   how far ahead was predicted, s
-  * @param predictions
-  *   how many were compared
-  * @param positionP50M
-  *   distance from the flown position, m: median
-  * @param positionP95M
-  *   its 95th percentile, m
-  * @param velocityP50Mps
-  *   difference to the flown velocity, m/s: median
-  * @param velocityP95Mps
-  *   its 95th percentile, m/s
+  * @param horizonS how far ahead was predicted, s
+  * @param predictions how many were compared
+  * @param positionP50M distance from the flown position, m: median
+  * @param positionP95M its 95th percentile, m
+  * @param velocityP50Mps difference to the flown velocity, m/s: median
+  * @param velocityP95Mps its 95th percentile, m/s
   */
 final case class HorizonError(
     horizonS: Double,
@@ -32,8 +26,8 @@ object HorizonErrors:
   /** Seconds ahead. */
   val HorizonsS: Vector[Double] = Vector(1, 2, 5)
 
-  /** Of a model's predictions from a sample every half second, against the samples nearest to the horizons; horizons that
-    * no flight is long enough for are left out.
+  /** Of a model's predictions from a sample every half second, against the samples nearest to the horizons;
+    * horizons that no flight is long enough for are left out.
     */
   def of[S](plant: ObservedPlant[S], flights: Vector[TimeHistory]): Vector[HorizonError] =
     val flight = PlantFlight(plant)
@@ -58,8 +52,8 @@ object HorizonErrors:
         quantile(velocity, 0.95)
       )
 
-  /** What the full quadrotor does when it is told the same at the same times, from hovering at the first sample: the truth
-    * that a reduced model stands for. Samples each 0.1 s, at the nearest whole step.
+  /** What the full quadrotor does when it is told the same at the same times, from hovering at the first
+    * sample: the truth that a reduced model stands for. Samples each 0.1 s, at the nearest whole step.
     */
   def reflown(flown: TimeHistory, quadrotor: Quadrotor = Quadrotor.AirSim): TimeHistory =
     if flown.samples.isEmpty then flown

@@ -6,19 +6,15 @@ import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** A fitted parameter. The interval covers the truth with 95 % probability.
   *
-  * @param atBound
-  *   the fit stopped at a bound of the parameter: neither value nor interval mean much
+  * @param atBound the fit stopped at a bound of the parameter: neither value nor interval mean much
   */
 final case class Fitted(name: String, value: Double, least: Double, most: Double, atBound: Boolean)
 
 /** A plant fitted to flights.
   *
-  * @param predictions
-  *   samples that were predicted, each from some earlier one
-  * @param velocityRmsMps
-  *   of one component's error over all predictions
-  * @param positionRmsM
-  *   the same
+  * @param predictions samples that were predicted, each from some earlier one
+  * @param velocityRmsMps of one component's error over all predictions
+  * @param positionRmsM the same
   */
 final case class Identification(
     structure: Structure,
@@ -30,22 +26,22 @@ final case class Identification(
     positionRmsM: Double
 )
 
-/** Fits the plants of a [[skein.forecast.Structure]] to flights. From a sample every [[Identification.StartEveryS]] all
-  * samples within the horizon are predicted; the parameters minimise the sum of squared errors of velocity (m/s) and
-  * position (m). What a sample does not tell of the plant's state is carried there from the samples before.
+/** Fits the plants of a [[skein.forecast.Structure]] to flights. From a sample every
+  * [[Identification.StartEveryS]] all samples within the horizon are predicted; the parameters minimise the
+  * sum of squared errors of velocity (m/s) and position (m). What a sample does not tell of the plant's state
+  * is carried there from the samples before.
   *
-  * Errors of one stretch of flight hang together, so that the intervals come from the Jacobian with the sandwich
-  * estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika 73 (1986)): the first-order
-  * form of a bootstrap over such blocks. They cover chance; not a bias of the arrivals' times, which goes into the dead
-  * time one to one.
+  * Errors of one stretch of flight hang together, so that the intervals come from the Jacobian with the
+  * sandwich estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika 73
+  * (1986)): the first-order form of a bootstrap over such blocks. They cover chance; not a bias of the
+  * arrivals' times, which goes into the dead time one to one.
   */
 object Identification:
   val StartEveryS     = 0.5
   val BlockS          = 5.0
   val DefaultHorizonS = 2.0
 
-  /** @return
-    *   or what is lacking
+  /** @return or what is lacking
     */
   def of(
       flights: Vector[TimeHistory],
@@ -70,8 +66,7 @@ object Identification:
   private def spanS(flown: TimeHistory): Double =
     if flown.samples.isEmpty then 0 else flown.samples.last.atS - flown.samples.head.atS
 
-  /** @param block
-    *   flight and stretch: errors within one hang together
+  /** @param block flight and stretch: errors within one hang together
     */
   private final case class Window(flown: TimeHistory, from: Int, horizonS: Double, block: (Int, Long)):
     val size: Int =

@@ -6,8 +6,7 @@ package skein.identify
   */
 private[identify] object LeastSquares:
 
-  /** @param jacobian
-    *   at the solution: by parameter, then by residual
+  /** @param jacobian at the solution: by parameter, then by residual
     */
   final case class Solution(
       parameters: Array[Double],
@@ -21,8 +20,7 @@ private[identify] object LeastSquares:
   /** A step that changes no parameter by more than this share ends the search. */
   private val SmallStep = 1e-7
 
-  /** @param residuals
-    *   a pure function of the parameters; always of the same size, more than the parameters
+  /** @param residuals a pure function of the parameters; always of the same size, more than the parameters
     */
   def solve(start: Array[Double], least: Array[Double], most: Array[Double])(
       residuals: Array[Double] => Array[Double]

@@ -4,14 +4,10 @@ package skein.identify
 private[skein] object LinearSystem:
   /** Solves A x = b by Gaussian elimination with pivoting.
     *
-    * @param matrix
-    *   A, n × n, row by row
-    * @param right
-    *   b
-    * @param least
-    *   pivots that are not above it in magnitude count as 0
-    * @return
-    *   x; None if A has no inverse
+    * @param matrix A, n × n, row by row
+    * @param right b
+    * @param least pivots that are not above it in magnitude count as 0
+    * @return x; None if A has no inverse
     */
   def solve(matrix: Array[Array[Double]], right: Array[Double], least: Double = 0): Option[Array[Double]] =
     val n          = right.length

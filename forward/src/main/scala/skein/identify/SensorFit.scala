@@ -5,27 +5,19 @@ import skein.signal.LatencyDistribution
 
 /** One detection beside the truth.
   *
-  * @param bearingErrorRad
-  *   measured less true azimuth
-  * @param rangeM
-  *   measured
-  * @param trueRangeM
-  *   from the camera
-  * @param tookMs
-  *   recognition
+  * @param bearingErrorRad measured less true azimuth
+  * @param rangeM measured
+  * @param trueRangeM from the camera
+  * @param tookMs recognition
   */
 final case class Detected(bearingErrorRad: Double, rangeM: Double, trueRangeM: Double, tookMs: Double)
 
 /** What an eye did in a flight.
   *
-  * @param everyS
-  *   between images, as asked for
-  * @param fovRad
-  *   horizontal
-  * @param images
-  *   that were searched
-  * @param inView
-  *   share of the flight in which the target was in view, by where both truly were
+  * @param everyS between images, as asked for
+  * @param fovRad horizontal
+  * @param images that were searched
+  * @param inView share of the flight in which the target was in view, by where both truly were
   */
 final case class Seeing(
     everyS: Double,
@@ -37,10 +29,10 @@ final case class Seeing(
     detections: Vector[Detected]
 )
 
-/** A [[skein.fusion.SensorModel]] fitted to what a recogniser did: moments of its errors, the frequency of detection in
-  * view, and recognition's times as they were. Deviations and the frequency with their 95 % intervals, as if detections
-  * were independent; what of the error lasts, as a range that is wrong in the same way for as long as the same side is
-  * seen, they do not show.
+/** A [[skein.fusion.SensorModel]] fitted to what a recogniser did: moments of its errors, the frequency of
+  * detection in view, and recognition's times as they were. Deviations and the frequency with their 95 %
+  * intervals, as if detections were independent; what of the error lasts, as a range that is wrong in the
+  * same way for as long as the same side is seen, they do not show.
   */
 final case class SensorFit(model: SensorModel, images: Int, detections: Int, fitted: Vector[Fitted])
 
@@ -48,8 +40,7 @@ object SensorFit:
   /** Fewer tell too little of deviations. */
   val LeastDetections = 30
 
-  /** @return
-    *   or what is lacking
+  /** @return or what is lacking
     */
   def of(seeing: Vector[Seeing]): Either[String, SensorFit] =
     val all = seeing.flatMap(_.detections)

@@ -11,8 +11,7 @@ final case class ArrivedCommand(atS: Double, vx: Double, vy: Double)
 
 /** One vehicle's flight: what it was told and what it did, on one clock, both in the order of their times.
   *
-  * @param downM
-  *   the altitude that its commands keep, NED
+  * @param downM the altitude that its commands keep, NED
   */
 final case class TimeHistory(
     name: String,
@@ -34,10 +33,8 @@ final case class TimeHistory(
 
   /** Predicts from one sample over all later ones within a horizon.
     *
-    * @param state
-    *   at that sample
-    * @param each
-    *   told of each later sample's index, when the flight is there
+    * @param state at that sample
+    * @param each told of each later sample's index, when the flight is there
     */
   def predict[S](flight: PlantFlight[S], state: S, from: Int, horizonS: Double)(each: Int => Unit): Unit =
     val deadTimeS = flight.plant.deadTimeS
@@ -56,7 +53,9 @@ final case class TimeHistory(
       each(sample)
       sample += 1
 
-  /** Indices of samples at least this far apart from each other, from each of which a whole horizon can be predicted. */
+  /** Indices of samples at least this far apart from each other, from each of which a whole horizon can be
+    * predicted.
+    */
   def starts(everyS: Double, horizonS: Double): Vector[Int] =
     val last = samples.lastOption.fold(0.0)(_.atS) - horizonS + TimeHistory.Rounding
     samples.indices

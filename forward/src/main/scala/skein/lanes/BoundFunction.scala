@@ -5,13 +5,11 @@ import scala.collection.mutable
 import skein.formula.{Node, Op, Trace}
 import skein.simd.{LaneCompiler, LaneFunction}
 
-/** A compiled function, and which inputs of the expressions it was compiled from are its inputs. Expressions that are
-  * alike but for the numbers of their inputs share the code. Parameters are the same in all worlds.
+/** A compiled function, and which inputs of the expressions it was compiled from are its inputs. Expressions
+  * that are alike but for the numbers of their inputs share the code. Parameters are the same in all worlds.
   *
-  * @param inputs
-  *   numbers in the expressions, in the order of the function's inputs
-  * @param nodes
-  *   the expressions with the numbers of the function's inputs
+  * @param inputs numbers in the expressions, in the order of the function's inputs
+  * @param nodes the expressions with the numbers of the function's inputs
   */
 private[lanes] final class BoundFunction private (
     val inputs: Array[Int],
@@ -44,8 +42,7 @@ private[lanes] object BoundFunction:
 
 /** Calls a [[BoundFunction]] on arrays that are put in the places of its inputs and outputs. Mutable.
   *
-  * @param parameters
-  *   read at each call
+  * @param parameters read at each call
   */
 private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Float] = Array.emptyFloatArray):
   private val arrays  = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)

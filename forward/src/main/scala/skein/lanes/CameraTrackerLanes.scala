@@ -5,8 +5,9 @@ import skein.formula.{Formula, Untraceable}
 import skein.forward.{Duelist, CameraTracker}
 import skein.fusion.{SensorFormulas, SensorModel}
 
-/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same images at the same
-  * times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. Mutable.
+/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same images at
+  * the same times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`.
+  * Mutable.
   */
 private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist):
   import CameraTrackerLanes.*
@@ -63,8 +64,8 @@ private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Du
 
   /** Takes an image.
     *
-    * @param times
-    *   from `at` on: when; the errors of the bearing and of the range; whether what is in view is found
+    * @param times from `at` on: when; the errors of the bearing and of the range; whether what is in view is
+    *   found
     */
   def expose(
       image: Int,
@@ -89,8 +90,7 @@ private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Du
 
   /** What an image showed enters the belief.
     *
-    * @param isOlder
-    *   whether it was taken before the one that entered last
+    * @param isOlder whether it was taken before the one that entered last
     */
   def join(image: Int, isOlder: Boolean, last: Int): Unit =
     if isOlder then
@@ -114,10 +114,8 @@ private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Du
 
   /** Tells [[northM]] and what follows, and turns the camera there.
     *
-    * @param nowS
-    *   since the start
-    * @param aheadS
-    *   see [[SensorFormulas.decidedUpon]]
+    * @param nowS since the start
+    * @param aheadS see [[SensorFormulas.decidedUpon]]
     */
   def look(ours: TimetableVehicles, oursAt: Int, nowS: Float, aheadS: Float): Unit =
     Arrays.fill(this.nowS, nowS)
@@ -144,8 +142,7 @@ private[lanes] object CameraTrackerLanes:
       val decidedUpon: FixedFormula
   )
 
-  /** @return
-    *   or why this sensor does not fly by lanes
+  /** @return or why this sensor does not fly by lanes
     */
   def of(model: SensorModel): Either[String, Forms] =
     val formulas                        = SensorFormulas(model)

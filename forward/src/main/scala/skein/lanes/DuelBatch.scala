@@ -12,16 +12,16 @@ import skein.forward.{
 import skein.policy.Policy
 import skein.simd.LaneMath
 
-/** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
+/** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches
+  * and maps.
   *
-  * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by [[TimetableKernel]],
-  * others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar loops ([[SteppedBatch]]). All
-  * else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the table. Which engine flies a world depends on
-  * the world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their
-  * order. One call at a time.
+  * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
+  * [[TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar
+  * loops ([[SteppedBatch]]). All else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the
+  * table. Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do not
+  * depend on threads, on a call's other worlds or on their order. One call at a time.
   *
-  * @param duel
-  *   start, speeds and duration; the policies come from the worlds
+  * @param duel start, speeds and duration; the policies come from the worlds
   */
 final class DuelBatch(
     duel: Duel,
@@ -73,10 +73,9 @@ final class DuelBatch(
 
   /** Which engine flies worlds of these policies, and why, in a line for the user.
     *
-    * @param shareEpisodes
-    *   see [[DuelWorlds.shareEpisodes]]
-    * @param links
-    *   that the worlds fly over: where delays are long for the period, or change in stretches, no lanes know them
+    * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]
+    * @param links that the worlds fly over: where delays are long for the period, or change in stretches, no
+    *   lanes know them
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
@@ -127,12 +126,9 @@ final class DuelBatch(
 
   /** Flies all worlds, unless it is cancelled.
     *
-    * @param onProgress
-    *   is told how many worlds are done, after each batch, by one thread at a time
-    * @param isCancelled
-    *   asked before each batch, from any thread; batches that fly already end
-    * @throws InterruptedException
-    *   if the caller is interrupted; the batches that fly already have ended then
+    * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
+    * @param isCancelled asked before each batch, from any thread; batches that fly already end
+    * @throws InterruptedException if the caller is interrupted; the batches that fly already have ended then
     */
   def fly(
       worlds: DuelWorlds,

@@ -21,7 +21,9 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
     for world <- numbers do
       into.set(world, rollout(worlds, world).fly(worlds.key(world), captureRadiusM), worlds.withEfforts)
 
-/** The rollout of the world flown last, which also flies the next if that has the same policies and link. Mutable. */
+/** The rollout of the world flown last, which also flies the next if that has the same policies and link.
+  * Mutable.
+  */
 private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => VelocityResponse):
   private var last: (Policy, Policy, Delays) = (null, null, null)
   private var rollout: Rollout               = null
@@ -35,8 +37,8 @@ private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => Veloci
       rollout = Rollout(own, timing, link, model)
     rollout
 
-/** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know are flown by
-  * another.
+/** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know
+  * are flown by another.
   */
 private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   val batch: Int = DuelKernel.WORLDS
@@ -214,8 +216,7 @@ private final case class DuelEyes(
   def isNobody: Boolean = evader.isEmpty && pursuer.isEmpty
 
 private object DuelEyes:
-  /** @return
-    *   or why they do not see by lanes
+  /** @return or why they do not see by lanes
     */
   def of(duel: Duel): Either[String, DuelEyes] =
     def forms(eye: Option[SensorModel]) =
@@ -230,8 +231,7 @@ private object DuelEyes:
 
 /** The timetables used last, for all threads.
   *
-  * @param mostBytes
-  *   that they hold, about
+  * @param mostBytes that they hold, about
   */
 private[lanes] final class Timetables(mostBytes: Long):
   private val known = java.util.LinkedHashMap[Any, Timetable](16, 0.75f, true)
@@ -239,8 +239,7 @@ private[lanes] final class Timetables(mostBytes: Long):
 
   /** Two threads may make the same at once; they make it equal.
     *
-    * @param of
-    *   all that it depends on
+    * @param of all that it depends on
     */
   def getOrMake(of: Any)(make: => Timetable): Timetable =
     val held = known.synchronized(known.get(of))

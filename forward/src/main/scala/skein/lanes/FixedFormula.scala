@@ -4,12 +4,9 @@ import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
   *
-  * @param alike
-  *   so many of the method's last inputs are the same in all worlds too
-  * @param extra
-  *   inputs behind the method's own
-  * @param changed
-  *   what is computed in the place of the method's outputs
+  * @param alike so many of the method's last inputs are the same in all worlds too
+  * @param extra inputs behind the method's own
+  * @param changed what is computed in the place of the method's outputs
   */
 private[skein] final class FixedFormula(
     formula: Formula,
@@ -49,8 +46,7 @@ private[skein] final class FixedFormula(
   def call: FixedFormula.Call = FixedFormula.Call(this, parameters.map(_.toFloat), own, own + extra)
 
 private[skein] object FixedFormula:
-  /** @param alike
-    *   so many of the method's last inputs are the same in all worlds
+  /** @param alike so many of the method's last inputs are the same in all worlds
     */
   def of(target: AnyRef, method: String, alike: Int): FixedFormula =
     FixedFormula(Formula.of(target, method).fold(throw _, identity), target, alike)
@@ -84,8 +80,7 @@ private[skein] object FixedFormula:
 
     /** An input of which each [[next]] call takes the next row, and after the last the first.
       *
-      * @param apart
-      *   so many numbers
+      * @param apart so many numbers
       */
     def rows(number: Int, array: Array[Float], from: Int, apart: Int): Unit =
       if places(number) >= 0 then call.input(places(number), array, from, apart)

@@ -6,12 +6,10 @@ import skein.formula.Untraceable
 
 /** What things of one kind were compiled to: each form once, for all threads.
   *
-  * @param fits
-  *   whether a thing is of a form
-  * @param mostRefused
-  *   so many things are refused, and none accepted, before the next are refused unseen: to compile takes milliseconds
-  * @param compile
-  *   a thing's form, or why it has none
+  * @param fits whether a thing is of a form
+  * @param mostRefused so many things are refused, and none accepted, before the next are refused unseen: to
+  *   compile takes milliseconds
+  * @param compile a thing's form, or why it has none
   */
 private[lanes] final class Forms[Of, Form](fits: (Form, Of) => Boolean, mostRefused: Int = Int.MaxValue)(
     compile: Of => Either[Untraceable, Form]

@@ -14,8 +14,8 @@ import skein.forward.{
 import skein.units.Expect
 import skein.vehicle.{Quadrotor, ReducedModel}
 
-/** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has delays of its
-  * own.
+/** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
+  * delays of its own.
   */
 private[skein] trait LaneDynamics:
   /** From a command's arrival until the vehicle follows it, s. */
@@ -29,12 +29,12 @@ private[skein] trait LaneDynamics:
 
   /** All worlds' vehicles of one number; what differs between worlds is told to them.
     *
-    * @param duelist
-    *   its speed is that of a direction of length 1
+    * @param duelist its speed is that of a direction of length 1
     */
   def vehicles(duelist: Duelist): TimetableVehicles
 
-  /** How long one of its steps lasts at most, s; 0 where its flight is known for as long as a command acts. */
+  /** How long one of its steps lasts at most, s; 0 where its flight is known for as long as a command acts.
+    */
   def stepS: Double = 0
 
   /** Whether its flight is known in pieces, from which it can be read at any moment of the near past. */
@@ -50,20 +50,17 @@ private[skein] trait LaneDynamics:
 private[skein] trait EventClock:
   /** At most [[Timetable.Numbers]] numbers that tell this time, s; never earlier than the time before.
     *
-    * @param acts
-    *   whether a command begins to act
+    * @param acts whether a command begins to act
     */
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
 
 private[skein] object LaneDynamics:
-  /** @return
-    *   or why this model does not fly by lanes
+  /** @return or why this model does not fly by lanes
     */
   def of(model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
     of(model, Seq(duel.pursuer, duel.evader))
 
-  /** @return
-    *   or why these do not fly by lanes with this model
+  /** @return or why these do not fly by lanes with this model
     */
   def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, LaneDynamics] = model match
     case lag: Reduced          => Right(LagDynamics(lag))
@@ -89,14 +86,12 @@ private[skein] object LaneDynamics:
 
   /** Vehicles of this model under a loop: if that predicts, what it predicts by flies by lanes too.
     *
-    * @return
-    *   or why not
+    * @return or why not
     */
   def under(timing: LoopTiming, model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
     under(timing, model, Seq(duel.pursuer, duel.evader))
 
-  /** @return
-    *   or why these do not fly by lanes under the loop with this model
+  /** @return or why these do not fly by lanes under the loop with this model
     */
   def under(
       timing: LoopTiming,
@@ -125,8 +120,8 @@ private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredicto
     flown.predicted = by.vehicles(duelist)
     flown
 
-/** By [[TimetableLagVehicles]]: how long ago a command acted last, how far an error of velocity has carried the vehicle
-  * since, over the error, and what remains of it.
+/** By [[TimetableLagVehicles]]: how long ago a command acted last, how far an error of velocity has carried
+  * the vehicle since, over the error, and what remains of it.
   */
 private final class LagDynamics(model: Reduced) extends LaneDynamics:
   def deadTimeS: Double                             = model.deadTimeS
@@ -171,7 +166,9 @@ private sealed class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     PlantFlights(duelist, lanes, timing)
 
-/** How many pieces end until then, and the time since the last. A piece begins with a command, or with the end of another. */
+/** How many pieces end until then, and the time since the last. A piece begins with a command, or with the
+  * end of another.
+  */
 private final class PieceClock(lengthS: Double) extends EventClock:
   private var pieceS                                                      = 0.0
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =

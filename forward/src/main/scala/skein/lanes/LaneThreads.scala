@@ -11,19 +11,15 @@ private[skein] object LaneSupport:
   ):
     "the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
 
-/** Hands batches of worlds out to workers, each on a thread of its own: a worker keeps its arrays from batch to batch, and is
-  * asked between them whether to go on.
+/** Hands batches of worlds out to workers, each on a thread of its own: a worker keeps its arrays from batch
+  * to batch, and is asked between them whether to go on.
   */
 private[lanes] object LaneThreads:
 
-  /** @param isCancelled
-    *   asked before each batch, from any thread
-    * @param onProgress
-    *   is told how many worlds are done, after each batch, by one thread at a time
-    * @return
-    *   how many worlds were done
-    * @throws InterruptedException
-    *   if the caller is interrupted; the batches handed out have ended then
+  /** @param isCancelled asked before each batch, from any thread
+    * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
+    * @return how many worlds were done
+    * @throws InterruptedException if the caller is interrupted; the batches handed out have ended then
     */
   def run[W](
       workers: Vector[W],

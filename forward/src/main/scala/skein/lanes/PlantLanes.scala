@@ -53,8 +53,8 @@ private[skein] object PlantLanes:
     case several: Product => several.productIterator.flatMap(numbersOf).toVector
     case _                => Vector.empty
 
-/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock tells how many steps end before a moment, and how long it
-  * is after the last of these. The scalar reference is `skein.forward.PlantVehicle`.
+/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock tells how many steps end before a moment, and
+  * how long it is after the last of these. The scalar reference is `skein.forward.PlantVehicle`.
   */
 private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
     extends TimetableVehicles(duelist):

@@ -44,8 +44,8 @@ private[skein] final class PolicyLanes private (formula: Formula):
   /** How many numbers a policy remembers. */
   val memories: Int = formula.outputs.size - 1
 
-  /** Cosine and sine of the decided heading, how far it is from the one before, what is remembered, and the heading
-    * itself if it is kept.
+  /** Cosine and sine of the decided heading, how far it is from the one before, what is remembered, and the
+    * heading itself if it is kept.
     */
   val outputs: Vector[Node] =
     val remembered = formula.outputs.tail.map((_, node) => angles.convert(node))
@@ -86,7 +86,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
   /** How many arrays it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and the own ones. */
+  /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and
+    * the own ones.
+    */
   lazy val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
 
   // But how far the decided heading is from the one before.
@@ -152,7 +154,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
   private def wrapped(angle: Node): Node =
     if angle.isConst then angle else trace.binary(Op.Remainder, angle, trace.const(2 * math.Pi))
 
-  /** The angle between the own direction and the decided one: two directions a chord apart are 2 arcsin(chord / 2). */
+  /** The angle between the own direction and the decided one: two directions a chord apart are 2 arcsin(chord
+    * / 2).
+    */
   private def apart(cos: Node, sin: Node): Node =
     val (x, y) = (trace.sub(cos, trace.input(In.OwnCos)), trace.sub(sin, trace.input(In.OwnSin)))
     val square = trace.mul(trace.add(trace.mul(x, x), trace.mul(y, y)), trace.const(0.25))

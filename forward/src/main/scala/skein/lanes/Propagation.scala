@@ -1,7 +1,7 @@
 package skein.lanes
 
-/** A way by which a [[Timetable]]'s reading is carried forward: parts flown under one command each. What the numbers mean,
-  * the kind of predicted vehicles says.
+/** A way by which a [[Timetable]]'s reading is carried forward: parts flown under one command each. What the
+  * numbers mean, the kind of predicted vehicles says.
   */
 private[skein] final class Propagation(
     val parts: Array[Propagation.Part],
@@ -23,7 +23,7 @@ private[skein] object Propagation:
   /** In the place of a command: none yet. */
   val Rest: Int = -1
 
-  /** @param command
-    *   the decision that it carries, 0 where there is none yet; in a timetable its place, or [[Rest]]
+  /** @param command the decision that it carries, 0 where there is none yet; in a timetable its place, or
+    *   [[Rest]]
     */
   final case class Part(command: Int, span: Double, rest: Double)

@@ -4,8 +4,8 @@ import skein.formula.{Angles, Formula, Node, Trace, Untraceable}
 import skein.scenario.{Positions, Quantity}
 import skein.units.Expect
 
-/** How quantities are computed in many worlds at once, compiled from their methods [[Quantity.of]]: several of one
-  * view, together. Quantities of one form differ in numbers alone.
+/** How quantities are computed in many worlds at once, compiled from their methods [[Quantity.of]]: several
+  * of one view, together. Quantities of one form differ in numbers alone.
   */
 private[lanes] final class QuantityLanes private (formulas: Vector[Formula], val count: Int):
   import QuantityLanes.*
@@ -60,7 +60,9 @@ private[lanes] object QuantityLanes:
       (quantities, vehicles) =>
         Expect.each(quantities)(formulaOf(_, vehicles)).map(QuantityLanes(_, vehicles))
 
-  /** How quantities of so many vehicles are computed by lanes, or why they are not. Compiled once for each form. */
+  /** How quantities of so many vehicles are computed by lanes, or why they are not. Compiled once for each
+    * form.
+    */
   def of(quantities: Vector[Quantity], vehicles: Int): Either[Untraceable, QuantityLanes] =
     known((quantities, vehicles))
 

@@ -4,15 +4,13 @@ import skein.forward.*
 import skein.signal.Kinematics
 import skein.units.Vector3
 
-/** Many worlds' vehicles fly side by side ([[skein.forward.SteppedVehicles]]), each world by its own [[Rollout]] and in its
-  * own time: before each step of physics every rollout handles the events that fall between the step before and this one.
-  * That is how one such vehicle meets them too, so that only the flight itself is another's; loops, delays and policies, of
-  * any kind, are the scalar reference's. Mutable.
+/** Many worlds' vehicles fly side by side ([[skein.forward.SteppedVehicles]]), each world by its own
+  * [[Rollout]] and in its own time: before each step of physics every rollout handles the events that fall
+  * between the step before and this one. That is how one such vehicle meets them too, so that only the flight
+  * itself is another's; loops, delays and policies, of any kind, are the scalar reference's. Mutable.
   *
-  * @param batch
-  *   worlds flown together
-  * @param vehicles
-  *   two for each
+  * @param batch worlds flown together
+  * @param vehicles two for each
   */
 private final class SteppedBatch(
     duel: Duel,

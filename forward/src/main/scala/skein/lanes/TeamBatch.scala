@@ -9,14 +9,14 @@ import skein.scenario.{Positions, Reduction}
 import skein.simd.LaneMath
 import skein.units.Expect
 
-/** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and quantities are
-  * formulas fly by lanes ([[TimetableKernel]]), all of an episode by one [[Timetable]], which is made once; others by the
-  * scalar reference ([[Rollout]]), which is told. Which engine flies a world depends on its candidate alone, so results do
-  * not depend on threads, on a call's other worlds or on their order. One call at a time.
+/** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
+  * quantities are formulas fly by lanes ([[TimetableKernel]]), all of an episode by one [[Timetable]], which
+  * is made once; others by the scalar reference ([[Rollout]]), which is told. Which engine flies a world
+  * depends on its candidate alone, so results do not depend on threads, on a call's other worlds or on their
+  * order. One call at a time.
   *
-  * @param areShared
-  *   whether several candidates meet the same episode. Where none do, the scalar reference flies them: it is what makes
-  *   a timetable, and that would be made for one world
+  * @param areShared whether several candidates meet the same episode. Where none do, the scalar reference
+  *   flies them: it is what makes a timetable, and that would be made for one world
   */
 final class TeamBatch(
     timing: LoopTiming,
@@ -60,10 +60,8 @@ final class TeamBatch(
 
   /** Flies all worlds, unless it is cancelled.
     *
-    * @param isCancelled
-    *   asked before each batch, from any thread; batches that fly already end
-    * @throws InterruptedException
-    *   if the caller is interrupted; the batches that fly already have ended then
+    * @param isCancelled asked before each batch, from any thread; batches that fly already end
+    * @throws InterruptedException if the caller is interrupted; the batches that fly already have ended then
     */
   def fly(worlds: TeamWorlds, isCancelled: () => Boolean = () => false): TeamOutcomes =
     val known    = IdentityHashMap[TeamCandidate, Prepared]()

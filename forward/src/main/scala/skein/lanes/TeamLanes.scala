@@ -5,11 +5,11 @@ import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
 import skein.policy.{TeamPolicy, TeamObservation}
 import skein.units.Expect
 
-/** How the policies of a team decide in many worlds at once, compiled from their methods [[TeamPolicy.course]]. Teams of
-  * one form differ in numbers alone.
+/** How the policies of a team decide in many worlds at once, compiled from their methods
+  * [[TeamPolicy.course]]. Teams of one form differ in numbers alone.
   *
-  * What several vehicles compute of one view is computed once for all of them: of the bearings that each pursuer wants
-  * to know, say.
+  * What several vehicles compute of one view is computed once for all of them: of the bearings that each
+  * pursuer wants to know, say.
   */
 private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   import TeamLanes.*
@@ -53,7 +53,8 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
       BoundFunction.of(common.without(trace, each, number => trace.input(sharedInput(number))))
     )
 
-  /** A vehicle and what of its reading an input is, 0 to 3: position north and east, velocity north and east. */
+  /** A vehicle and what of its reading an input is, 0 to 3: position north and east, velocity north and east.
+    */
   def reading(input: Int): Option[(Int, Int)] =
     Option.when(input < view)((input % count, input / count))
 
@@ -124,8 +125,7 @@ private[lanes] object TeamLanes:
 
 /** What several expressions have in common, of all that depends on the first inputs alone.
   *
-  * @param nodes
-  *   what is worth to be computed once
+  * @param nodes what is worth to be computed once
   */
 private final class Common private (val nodes: Vector[Node]):
   private val numbers = nodes.zipWithIndex.toMap

@@ -4,8 +4,7 @@ import skein.forward.Duelist
 
 /** Judges the flights of a team in many worlds. Mutable.
   *
-  * @param judged
-  *   what by; its quantities' numbers come from each world's own
+  * @param judged what by; its quantities' numbers come from each world's own
   */
 private[lanes] final class TeamScores(lanes: QuantityLanes, judged: Vector[Judged]) extends TimetableScores:
   private val worlds     = TimetableAgents.WORLDS

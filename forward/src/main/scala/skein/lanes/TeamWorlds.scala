@@ -3,11 +3,15 @@ package skein.lanes
 import skein.forward.{Delays, Engagement}
 import skein.scenario.{Quantity, Reduction}
 
-/** The worlds of one call of [[TeamBatch]], by number from 0. Pure functions of the number, called from any thread. */
+/** The worlds of one call of [[TeamBatch]], by number from 0. Pure functions of the number, called from any
+  * thread.
+  */
 trait TeamWorlds:
   def size: Int
 
-  /** `skein.simd.WorldRandom.key` of the world: decides all delays. Worlds of one key and one link meet the same. */
+  /** `skein.simd.WorldRandom.key` of the world: decides all delays. Worlds of one key and one link meet the
+    * same.
+    */
   def key(world: Int): Int
   def link(world: Int): Delays
 
@@ -16,23 +20,21 @@ trait TeamWorlds:
 
 /** A team as one candidate of a search has it.
   *
-  * @param judged
-  *   what its flights are judged by; as many for every candidate, and alike but for numbers in the quantities
+  * @param judged what its flights are judged by; as many for every candidate, and alike but for numbers in
+  *   the quantities
   */
 final class TeamCandidate(val engagement: Engagement, val judged: Vector[Judged])
 
 /** A number that a flight comes to.
   *
-  * @param fromS
-  *   counted from here on, once a period
+  * @param fromS counted from here on, once a period
   */
 final case class Judged(quantity: Quantity, reduction: Reduction, fromS: Double):
   private[lanes] def counts(timeS: Double): Boolean = timeS > fromS - 1e-6
 
 /** What each world came to.
   *
-  * @param values
-  *   by what is judged, then by world; no number where nothing counted
+  * @param values by what is judged, then by world; no number where nothing counted
   */
 final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
   private var done = 0

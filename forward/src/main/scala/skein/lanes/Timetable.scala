@@ -15,30 +15,27 @@ import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
 import skein.vehicle.ConstantVelocity
 
-/** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where the
-  * vehicles are, so all candidates that meet the same delays share one timetable, whatever their policies decide.
+/** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where
+  * the vehicles are, so all candidates that meet the same delays share one timetable, whatever their policies
+  * decide.
   *
-  * It is what [[Rollout]] does: an episode is flown once with vehicles that stand still, and an observer notes what
-  * happens: what is read, what is predicted from which reading through which commands, what is decided upon that, and
-  * when it acts.
+  * It is what [[Rollout]] does: an episode is flown once with vehicles that stand still, and an observer
+  * notes what happens: what is read, what is predicted from which reading through which commands, what is
+  * decided upon that, and when it acts.
   *
-  * @param vehicles
-  *   how many fly
-  * @param operations
-  *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then places
-  * @param times
-  *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[EventClock]] tells; of a decision, the
-  *   time since the one before, and in a duel the ages of the own and of the opponent's reading; by who sees, the age of
-  *   the own reading, the time, and until when a belief is carried ([[CameraTrackerLanes.look]]); of an image what
-  *   [[CameraTrackerLanes.expose]] takes; of a score, the time; s
-  * @param views
-  *   what is decided and scored upon: the places of all vehicles' readings, one view after the other
-  * @param propagations
-  *   by which readings are carried forward, in loops that predict
-  * @param readings
-  *   places that the readings of one vehicle need at a time
-  * @param headings
-  *   the same for the headings of one vehicle
+  * @param vehicles how many fly
+  * @param operations [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then
+  *   places
+  * @param times [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[EventClock]]
+  *   tells; of a decision, the time since the one before, and in a duel the ages of the own and of the
+  *   opponent's reading; by who sees, the age of the own reading, the time, and until when a belief is
+  *   carried ([[CameraTrackerLanes.look]]); of an image what [[CameraTrackerLanes.expose]] takes; of a score,
+  *   the time; s
+  * @param views what is decided and scored upon: the places of all vehicles' readings, one view after the
+  *   other
+  * @param propagations by which readings are carried forward, in loops that predict
+  * @param readings places that the readings of one vehicle need at a time
+  * @param headings the same for the headings of one vehicle
   */
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
@@ -61,8 +58,7 @@ private[skein] object Timetable:
 
   /** The timetable of a world of this key, for so many vehicles of this kind.
     *
-    * @param eyes
-    *   of vehicles that see, in a duel
+    * @param eyes of vehicles that see, in a duel
     */
   def of(
       vehicles: Int,
@@ -104,8 +100,8 @@ private[skein] object Timetable:
       def vx: Double                                   = 0
       def vy: Double                                   = 0
 
-/** Puts events in the order of their times, chooses places for readings and headings, each until its last use, and
-  * tells each vehicle when what happens to it.
+/** Puts events in the order of their times, chooses places for readings and headings, each until its last
+  * use, and tells each vehicle when what happens to it.
   */
 private final class TimetableCompiler(
     notes: TimetableNotes,
@@ -116,7 +112,9 @@ private final class TimetableCompiler(
   import Timetable.{Fields, Numbers}
   import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
-  /** By time, and events of one time as they were noted. Only commands act later than what was noted after them. */
+  /** By time, and events of one time as they were noted. Only commands act later than what was noted after
+    * them.
+    */
   private val order = notes.all.toArray
   java.util.Arrays.sort(order, Comparator.comparingDouble[Note](_.atS))
 

@@ -4,14 +4,10 @@ import skein.forward.{Duel, LoopTiming}
 
 /** Duels by [[TimetableKernel]]: the evader is vehicle 0. Mutable.
   *
-  * @param duel
-  *   start, speeds and duration; its policies are not used
-  * @param model
-  *   the same as the timetables'
-  * @param pursuerPolicy
-  *   takes the parameters of each candidate's pursuer before it flies
-  * @param pursuerEye
-  *   by which alone the pursuer knows of the evader; null for one that is told
+  * @param duel start, speeds and duration; its policies are not used
+  * @param model the same as the timetables'
+  * @param pursuerPolicy takes the parameters of each candidate's pursuer before it flies
+  * @param pursuerEye by which alone the pursuer knows of the evader; null for one that is told
   */
 private[lanes] final class TimetableDuels(
     duel: Duel,
@@ -42,10 +38,8 @@ private[lanes] final class TimetableDuels(
 
   /** Flies [[DuelKernel.WORLDS]] candidates through one episode, by the policies' parameters.
     *
-    * @param worlds
-    *   those that count are the first
-    * @param captureRadiusM
-    *   a distance of at most this is a capture
+    * @param worlds those that count are the first
+    * @param captureRadiusM a distance of at most this is a capture
     */
   def fly(timetable: Timetable, worlds: Int, captureRadiusM: Float): Unit =
     scores.captureWithin(captureRadiusM)

@@ -7,7 +7,8 @@ import skein.forward.{Grounds, LoopObserver, CameraTracker}
 import skein.fusion.{Exposure, SensorModel}
 import skein.units.Instant
 
-/** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle. */
+/** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle.
+  */
 private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, eyes: Map[Int, SensorModel])
     extends LoopObserver:
   import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
@@ -141,15 +142,11 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
 
 /** Something that happens.
   *
-  * @param kind
-  *   of [[TimetableKernel]]'s operations
-  * @param agent
-  *   the vehicle
-  * @param atS
-  *   a decision's: not before
-  * @param number
-  *   `LOOK`: the reading's. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one more.
-  *   `EXPOSE` and `JOIN`: the image's
+  * @param kind of [[TimetableKernel]]'s operations
+  * @param agent the vehicle
+  * @param atS a decision's: not before
+  * @param number `LOOK`: the reading's. `ACT`: the decision's. `DECIDE`: that of the decision before; the new
+  *   one's is one more. `EXPOSE` and `JOIN`: the image's
   */
 private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, val number: Int):
   /** Of a decision; of an image the errors, and whether what is in view is found. */
@@ -161,8 +158,8 @@ private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, 
   /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
   var view = 0
 
-  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for an image that is older than
-    * the one that joined before.
+  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for an image that is
+    * older than the one that joined before.
     */
   var opponent = 0
 
@@ -174,7 +171,6 @@ private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, 
 
 /** A reading in the forecast.
   *
-  * @param propagator
-  *   for what is predicted from it
+  * @param propagator for what is predicted from it
   */
 private final case class Entered(reading: Int, validAtNs: Long, propagator: Propagator)

@@ -12,8 +12,8 @@ private[skein] trait TimetablePredictor:
   /** All worlds' predictions of one vehicle. */
   def vehicles(duelist: Duelist): PredictedVehicles
 
-/** Tells by which propagations a reading of one vehicle is carried forward. Immutable: it knows what the model remembers at
-  * that reading.
+/** Tells by which propagations a reading of one vehicle is carried forward. Immutable: it knows what the
+  * model remembers at that reading.
   */
 private[lanes] trait Propagator:
   /** That of the next reading, after these legs. */
@@ -25,8 +25,7 @@ private[lanes] trait Propagator:
 private[lanes] object Propagator:
   /** A [[skein.forecast.Leg]].
     *
-    * @param decision
-    *   that its command carries; 0: none was sent yet
+    * @param decision that its command carries; 0: none was sent yet
     */
   final case class Leg(decision: Int, span: Span)
 
@@ -34,8 +33,7 @@ private[skein] object TimetablePredictor:
   /** Below, powers of e leave what floats hold. */
   val LeastLagS = 0.01
 
-  /** @return
-    *   or why this model does not predict by lanes
+  /** @return or why this model does not predict by lanes
     */
   def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
     case PlantModel(lag: ReducedModel) if lag.dragPerM == 0 && lag.turnLagS == lag.lagS =>
@@ -57,8 +55,8 @@ private object CoastPredictor extends TimetablePredictor, Propagator:
   def predicted(legs: Vector[Propagator.Leg]): Propagation =
     Propagation(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
 
-/** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
-  * command, how long it carries the vehicle, and how much of its velocity is reached.
+/** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of
+  * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
   */
 private final class LagPredictor(model: ReducedModel) extends TimetablePredictor:
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
@@ -74,7 +72,8 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
       Propagation.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
     Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
-/** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last. */
+/** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last.
+  */
 private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedDragVehicles(model, duelist.speed)
 
@@ -92,8 +91,7 @@ private final class DragPredictor(model: ReducedModel) extends TimetablePredicto
 /** Which command acts when, as [[PlantModel]] takes it: each a dead time after it has come. A command that
   * repeats the one before is a new one here, and nothing there: with drag a piece more begins.
   *
-  * @param propagation
-  *   of what is flown, and until when, s from the reading
+  * @param propagation of what is flown, and until when, s from the reading
   */
 private final class ReducedPropagator private (
     deadTime: Span,
@@ -129,8 +127,7 @@ private object ReducedPropagator:
 
   /** What [[PlantModel.Flying]] knows of commands, by their decisions.
     *
-    * @param coming
-    *   and in how long each acts
+    * @param coming and in how long each acts
     */
   final case class Known(acting: Int, last: Int, coming: Vector[(Int, Span)]):
     def told(leg: Propagator.Leg, deadTime: Span): Known =

@@ -2,15 +2,14 @@ package skein.optimise
 
 import skein.signal.{NormalQuantile, SplitMix64}
 
-/** The covariance matrix adaptation evolution strategy: each generation is drawn from a normal distribution whose mean,
-  * size and full covariance follow the better half of the one before.
+/** The covariance matrix adaptation evolution strategy: each generation is drawn from a normal distribution
+  * whose mean, size and full covariance follow the better half of the one before.
   *
   * Source of the algorithm and of every constant: N. Hansen, "The CMA Evolution Strategy: A Tutorial",
-  * arXiv:1604.00772, figure 6 and table 1, with the weights of the worse half set to zero. `CmaEsSuite` holds it to the
-  * minima of the sphere, an ellipsoid and Rosenbrock's function.
+  * arXiv:1604.00772, figure 6 and table 1, with the weights of the worse half set to zero. `CmaEsSuite` holds
+  * it to the minima of the sphere, an ellipsoid and Rosenbrock's function.
   *
-  * @param population
-  *   λ, candidates in a generation; at least 4
+  * @param population λ, candidates in a generation; at least 4
   */
 final class CmaEs(dimension: Int, population: Int, seed: Long):
   import CmaEs.*
@@ -47,10 +46,8 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
 
   /** The state after a generation.
     *
-    * @param samples
-    *   what [[sample]] gave for `state`
-    * @param costs
-    *   of each; small is good
+    * @param samples what [[sample]] gave for `state`
+    * @param costs of each; small is good
     */
   def next(state: State, samples: Vector[Vector[Double]], costs: Vector[Double]): State =
     val axes   = Axes(state)
@@ -95,14 +92,10 @@ object CmaEs:
 
   /** Where it stands, before a generation.
     *
-    * @param size
-    *   σ
-    * @param covariance
-    *   C, row by row
-    * @param path
-    *   p_c, the covariance's evolution path
-    * @param sizePath
-    *   p_σ, the step size's
+    * @param size σ
+    * @param covariance C, row by row
+    * @param path p_c, the covariance's evolution path
+    * @param sizePath p_σ, the step size's
     */
   final case class State(
       generation: Int,

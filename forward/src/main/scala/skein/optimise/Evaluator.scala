@@ -5,16 +5,15 @@ import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{Policy, PolicyFamily, Role}
 import skein.simd.{LaneMath, WorldRandom}
 
-/** Judges candidates for a [[Search]]. All candidates meet the same episodes (common random numbers), so that their
-  * differences are their own.
+/** Judges candidates for a [[Search]]. All candidates meet the same episodes (common random numbers), so that
+  * their differences are their own.
   */
 trait Evaluator:
 
-  /** The objective's mean and spread over these episodes for each candidate. A pure function: a candidate's tally
-    * depends on the candidate and the episodes alone, to the bit, whatever else the call holds.
+  /** The objective's mean and spread over these episodes for each candidate. A pure function: a candidate's
+    * tally depends on the candidate and the episodes alone, to the bit, whatever else the call holds.
     *
-    * @param episodes
-    *   numbers of the episodes, at least one
+    * @param episodes numbers of the episodes, at least one
     */
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats]
 
@@ -23,8 +22,7 @@ trait Evaluator:
 
   /** The same, or none if it was cancelled.
     *
-    * @param isCancelled
-    *   asked now and then, from any thread
+    * @param isCancelled asked now and then, from any thread
     */
   def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -33,15 +31,14 @@ trait Evaluator:
     val all = tallies(candidates, episodes)
     Option.when(!isCancelled())(all)
 
-/** An evaluator that tells single values, so that a candidate's episodes too can be parted among many: values put
-  * together again give the same tally, to the bit.
+/** An evaluator that tells single values, so that a candidate's episodes too can be parted among many: values
+  * put together again give the same tally, to the bit.
   */
 trait ValueEvaluator extends Evaluator:
 
   /** The objective's values of each candidate, by its episodes; or none if it was cancelled.
     *
-    * @param isCancelled
-    *   asked now and then, from any thread
+    * @param isCancelled asked now and then, from any thread
     */
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -61,14 +58,10 @@ trait ValueEvaluator extends Evaluator:
 
 /** Flies a family's candidates against one opponent in [[DuelBatch]].
   *
-  * @param role
-  *   of the candidates
-  * @param opponent
-  *   of the other role
-  * @param seed
-  *   of the delays
-  * @param shareEpisodes
-  *   see [[DuelWorlds.shareEpisodes]]: for many candidates; one alone flies faster without
+  * @param role of the candidates
+  * @param opponent of the other role
+  * @param seed of the delays
+  * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]: for many candidates; one alone flies faster without
   */
 final class DuelEvaluator(
     batch: DuelBatch,

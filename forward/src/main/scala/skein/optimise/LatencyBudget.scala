@@ -5,16 +5,11 @@ import skein.units.*
 
 /** How an objective changes with the latency and jitter of a link, one cell per pair.
   *
-  * @param meansMs
-  *   of the round trip, ascending
-  * @param jittersMs
-  *   of the round trip, p99 − p50, ascending
-  * @param cells
-  *   `cells(jitter)(mean)`; none where no log-normal link has such a mean and jitter
-  * @param truth
-  *   of the paused loop with the same vehicles
-  * @param per
-  *   what deviations are told by: the truth's size, or 1 for deviations in the objective's own unit
+  * @param meansMs of the round trip, ascending
+  * @param jittersMs of the round trip, p99 − p50, ascending
+  * @param cells `cells(jitter)(mean)`; none where no log-normal link has such a mean and jitter
+  * @param truth of the paused loop with the same vehicles
+  * @param per what deviations are told by: the truth's size, or 1 for deviations in the objective's own unit
   */
 final case class LatencyBudget(
     meansMs: Vector[Double],
@@ -32,11 +27,10 @@ final case class LatencyBudget(
   def deviation(jitter: Int, mean: Int): Option[Double] =
     cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
-  /** Up to which mean latency, at a jitter, the objective stays within a tolerance of the truth: straight lines between
-    * the cells' deviations.
+  /** Up to which mean latency, at a jitter, the objective stays within a tolerance of the truth: straight
+    * lines between the cells' deviations.
     *
-    * @param tolerance
-    *   of [[deviation]], for example 0.05
+    * @param tolerance of [[deviation]], for example 0.05
     */
   def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound =
     val known = meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector
@@ -64,9 +58,8 @@ object LatencyBudget:
 
   /** The link of a cell: round trips are log-normal with this mean and jitter; constant without jitter.
     *
-    * @return
-    *   none where the jitter is so large beside the mean that the logarithm's standard deviation would exceed
-    *   [[MostSigma]]
+    * @return none where the jitter is so large beside the mean that the logarithm's standard deviation would
+    *   exceed [[MostSigma]]
     */
   def link(meanMs: Double, jitterMs: Double): Option[LatencyDistribution] =
     if jitterMs == 0 then Some(LatencyDistribution.Constant(Span.ofMillis(meanMs)))
@@ -79,7 +72,9 @@ object LatencyBudget:
       val median = meanMs * StrictMath.exp(-low * low / 2)
       Some(LatencyDistribution.LogNormal(Span.ofMillis(median), low))
 
-  /** Jitter (p99 − p50) over mean of a log-normal distribution: e^(−σ²/2)·(e^(z₉₉σ) − 1); grows with σ up to 2.3. */
+  /** Jitter (p99 − p50) over mean of a log-normal distribution: e^(−σ²/2)·(e^(z₉₉σ) − 1); grows with σ up to
+    * 2.3.
+    */
   private def jitterOverMean(sigma: Double): Double =
     StrictMath.exp(-sigma * sigma / 2) * (StrictMath.exp(Z99 * sigma) - 1)
 

@@ -18,8 +18,8 @@ enum DuelMeasure:
   /** Sum of the changes of the commanded heading of the vehicle that is judged, rad. */
   case Effort
 
-  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is the
-    * probability of capture.
+  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is
+    * the probability of capture.
     */
   case Capture(radiusM: Double, withinS: Double)
 
@@ -48,8 +48,7 @@ enum DuelMeasure:
 
 /** What a search makes small or large: a weighted sum of measures, averaged over episodes.
   *
-  * @param terms
-  *   weight and measure; all that speak of a capture speak of one radius
+  * @param terms weight and measure; all that speak of a capture speak of one radius
   */
 final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
@@ -66,8 +65,7 @@ final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Dire
 
   /** Of one episode.
     *
-    * @param role
-    *   whose effort counts
+    * @param role whose effort counts
     */
   def value(outcomes: DuelOutcomes, world: Int, role: Role, durationS: Double): Double =
     val captureS = outcomes.captureS(world)
@@ -97,11 +95,10 @@ object Objective:
   private val Forms =
     "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
 
-  /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with `minimise` or `maximise` before it or
-    * not. Without, a sum is minimised, and a single measure goes where the role wants it.
+  /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with `minimise` or `maximise`
+    * before it or not. Without, a sum is minimised, and a single measure goes where the role wants it.
     *
-    * @return
-    *   or what was expected, what came, and at which character
+    * @return or what was expected, what came, and at which character
     */
   def parse(text: String, role: Role): Either[String, Objective] =
     for

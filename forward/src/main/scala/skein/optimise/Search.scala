@@ -8,12 +8,9 @@ final case class Scored(candidate: Vector[Double], tally: RunningStats)
 
 /** Where a search stands: a value, which can be written down and gone on from.
   *
-  * @param results
-  *   of the round's candidates so far, in their order
-  * @param leaders
-  *   the best so far, best first; at the end the standings of the play-off
-  * @param flown
-  *   episodes
+  * @param results of the round's candidates so far, in their order
+  * @param leaders the best so far, best first; at the end the standings of the play-off
+  * @param flown episodes
   */
 final case class SearchState(
     course: MethodState,
@@ -38,23 +35,21 @@ enum MethodState:
   /** Racing: who is left with what they have flown; empty in the first round. */
   case Raced(round: Int, field: Vector[Scored])
 
-  /** The leaders, the distribution's centre and the defaults meet on fresh episodes: so many of them so far, with what
-    * each has come to.
+  /** The leaders, the distribution's centre and the defaults meet on fresh episodes: so many of them so far,
+    * with what each has come to.
     */
   case PlayOff(episodes: Int, field: Vector[Scored])
 
   case Ended
 
-/** Chooses the best of many candidates. All meet the same episodes, and the leaders meet again on fresh ones, since the
-  * best of many seen on a few episodes was partly lucky.
+/** Chooses the best of many candidates. All meet the same episodes, and the leaders meet again on fresh ones,
+  * since the best of many seen on a few episodes was partly lucky.
   *
-  * A state machine: [[step]] is a pure function, so that a search that was stopped and gone on with ends as one that
-  * never stopped. Of equal candidates the first wins.
+  * A state machine: [[step]] is a pure function, so that a search that was stopped and gone on with ends as
+  * one that never stopped. Of equal candidates the first wins.
   *
-  * @param seed
-  *   of the candidates
-  * @param leastPlayOff
-  *   episodes on which the leaders meet at the end, at least
+  * @param seed of the candidates
+  * @param leastPlayOff episodes on which the leaders meet at the end, at least
   */
 final class Search(
     space: SearchSpace,
@@ -96,12 +91,11 @@ final class Search(
 
   /** One step on.
     *
-    * @param state
-    *   not done
-    * @param atMost
-    *   episodes that the step flies, about; more where candidates fly side by side. How a search is cut into steps does not change how it ends.
-    * @param isCancelled
-    *   asked now and then, from any thread; a step that is cancelled leaves the state as it was
+    * @param state not done
+    * @param atMost episodes that the step flies, about; more where candidates fly side by side. How a search
+    *   is cut into steps does not change how it ends.
+    * @param isCancelled asked now and then, from any thread; a step that is cancelled leaves the state as it
+    *   was
     */
   def step(
       state: SearchState,
@@ -200,8 +194,8 @@ final class Search(
         )
       case _ => (MethodState.Ended, before)
 
-  /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the same
-    * episodes, and would leave no room for others.
+  /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the
+    * same episodes, and would leave no room for others.
     */
   private def place(candidate: Vector[Double]): Vector[Long] =
     space.shares(candidate).map(share => (share * 100).round)
@@ -246,8 +240,7 @@ object Search:
 
   /** The whole search at once.
     *
-    * @return
-    *   the standings of the play-off, best first
+    * @return the standings of the play-off, best first
     */
   def run(
       space: SearchSpace,

@@ -2,8 +2,7 @@ package skein.optimise
 
 /** How a [[Search]] chooses its candidates.
   *
-  * @see
-  *   the cases' parameters; `episodes` is what every candidate flies
+  * @see the cases' parameters; `episodes` is what every candidate flies
   */
 enum SearchMethod:
   /** Evenly spread candidates, both bounds of every axis included. */
@@ -12,13 +11,11 @@ enum SearchMethod:
   /** Candidates drawn evenly from the space. */
   case Random(candidates: Int, episodes: Int)
 
-  /** The cross-entropy method (Rubinstein, Kroese, 2004) with independent normal distributions, cut to the space: each
-    * generation is drawn around the elite of the one before.
+  /** The cross-entropy method (Rubinstein, Kroese, 2004) with independent normal distributions, cut to the
+    * space: each generation is drawn around the elite of the one before.
     *
-    * @param elite
-    *   share of a generation that makes the next, above 0 to 1
-    * @param smoothing
-    *   weight of the new mean and spread against the old, above 0 to 1
+    * @param elite share of a generation that makes the next, above 0 to 1
+    * @param smoothing weight of the new mean and spread against the old, above 0 to 1
     */
   case CrossEntropy(
       population: Int,
@@ -28,16 +25,15 @@ enum SearchMethod:
       smoothing: Double = 0.8
   )
 
-  /** [[skein.optimise.CmaEs]] on the space scaled to the unit cube and mirrored at its bounds, from the defaults. It ends
-    * early when its spread is below 10^−6^ of every axis.
+  /** [[skein.optimise.CmaEs]] on the space scaled to the unit cube and mirrored at its bounds, from the
+    * defaults. It ends early when its spread is below 10^−6^ of every axis.
     */
   case CmaEs(population: Int, generations: Int, episodes: Int, startSize: Double = 0.3)
 
-  /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): random candidates fly a few episodes, the better half as
-    * many again, and so on to the last, so that hopeless candidates stop early.
+  /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): random candidates fly a few episodes, the better
+    * half as many again, and so on to the last, so that hopeless candidates stop early.
     *
-    * @param episodes
-    *   of the first round; the last candidate's are `candidates` times as many, about
+    * @param episodes of the first round; the last candidate's are `candidates` times as many, about
     */
   case Racing(candidates: Int, episodes: Int)
 

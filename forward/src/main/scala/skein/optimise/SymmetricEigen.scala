@@ -2,21 +2,18 @@ package skein.optimise
 
 /** Eigenvalues and eigenvectors of a symmetric matrix.
   *
-  * @param values
-  *   in no order
-  * @param vectors
-  *   `vectors(row)(k)` is the row-th component of the k-th, of length 1
+  * @param values in no order
+  * @param vectors `vectors(row)(k)` is the row-th component of the k-th, of length 1
   */
 private[skein] final case class SymmetricEigen(values: Array[Double], vectors: Array[Array[Double]])
 
 private[skein] object SymmetricEigen:
   private val MostSweeps = 64
 
-  /** By cyclic Jacobi rotations (Golub, Van Loan, "Matrix Computations", 8.5): slow for large matrices, exact to
-    * rounding, and the same bits everywhere.
+  /** By cyclic Jacobi rotations (Golub, Van Loan, "Matrix Computations", 8.5): slow for large matrices, exact
+    * to rounding, and the same bits everywhere.
     *
-    * @param matrix
-    *   row by row; only its symmetric part counts
+    * @param matrix row by row; only its symmetric part counts
     */
   def of(matrix: Array[Array[Double]]): SymmetricEigen =
     val n = matrix.length

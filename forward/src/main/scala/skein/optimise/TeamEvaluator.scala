@@ -6,12 +6,9 @@ import skein.simd.{LaneFunction, WorldRandom}
 
 /** Flies a team's candidates in [[TeamBatch]]: all meet the same episodes.
   *
-  * @param candidate
-  *   of its parameters; a pure function
-  * @param weights
-  *   of what is judged, in its order: their sum is the objective
-  * @param seed
-  *   of the delays
+  * @param candidate of its parameters; a pure function
+  * @param weights of what is judged, in its order: their sum is the objective
+  * @param seed of the delays
   */
 final class TeamEvaluator(
     batch: TeamBatch,

@@ -7,8 +7,7 @@ import skein.scenario.{Measure, Scenario, Window}
 
 /** What flights of a scenario are judged by: a sum of its measures.
   *
-  * @param terms
-  *   weights and measures; of a quantity, where forward simulation judges by them
+  * @param terms weights and measures; of a quantity, where forward simulation judges by them
   */
 final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Direction):
 
@@ -21,19 +20,20 @@ final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Dire
 
 object TeamObjective:
 
-  /** A scenario's measures that forward simulation can judge by, by their keys: those of a quantity, in their order. */
+  /** A scenario's measures that forward simulation can judge by, by their keys: those of a quantity, in their
+    * order.
+    */
   def measures(scenario: Scenario): ListMap[String, Measure] =
     scenario.measures.filter(_.reduced.nonEmpty).map(measure => keyOf(measure) -> measure).to(ListMap)
 
   /** `off ring` as `off-ring`. */
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
-  /** Reads `off-ring + 0.1*gap`, with a direction before it or not: measures of a quantity, as [[judged]] wants them.
+  /** Reads `off-ring + 0.1*gap`, with a direction before it or not: measures of a quantity, as [[judged]]
+    * wants them.
     *
-    * @param otherwise
-    *   the direction where none stands there
-    * @return
-    *   or what was expected, what came, and at which character
+    * @param otherwise the direction where none stands there
+    * @return or what was expected, what came, and at which character
     */
   def parse(
       text: String,

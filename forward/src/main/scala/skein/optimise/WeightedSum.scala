@@ -1,12 +1,10 @@
 package skein.optimise
 
-/** What is made small or large, as users write it: `0.7*last10s + 0.3*effort`, with `minimise` or `maximise` before it or
-  * not.
+/** What is made small or large, as users write it: `0.7*last10s + 0.3*effort`, with `minimise` or `maximise`
+  * before it or not.
   *
-  * @param terms
-  *   weight and what it weighs
-  * @param stated
-  *   the direction, where it stands there
+  * @param terms weight and what it weighs
+  * @param stated the direction, where it stands there
   */
 final case class WeightedSum[M](terms: Vector[(Double, M)], stated: Option[Direction])
 
@@ -18,14 +16,10 @@ object WeightedSum:
 
   private def term(name: String) = s"""\\s*([+-])?\\s*$Number($name)\\s*(?:\\(([^)]*)\\))?\\s*""".r
 
-  /** @param forms
-    *   of measures, for mistakes
-    * @param hyphened
-    *   whether names may have hyphens; a minus between two of them then stands between blanks
-    * @param measureOf
-    *   a name, and what stands in brackets behind it
-    * @return
-    *   or what was expected, what came, and at which character
+  /** @param forms of measures, for mistakes
+    * @param hyphened whether names may have hyphens; a minus between two of them then stands between blanks
+    * @param measureOf a name, and what stands in brackets behind it
+    * @return or what was expected, what came, and at which character
     */
   def parse[M](text: String, forms: String, hyphened: Boolean = false)(
       measureOf: (String, Option[String]) => Either[String, M]

@@ -1,7 +1,7 @@
 package skein.planning
 
-/** A block of candidate manoeuvres that are drawn, flown and priced together. Mutable; one per thread. Arrays hold step
-  * after step: the action of candidate i in step h is at h · SIZE + i.
+/** A block of candidate manoeuvres that are drawn, flown and priced together. Mutable; one per thread. Arrays
+  * hold step after step: the action of candidate i in step h is at h · SIZE + i.
   */
 private[planning] abstract class CandidateBlock(steps: Int):
   final val turnRates, speeds: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
@@ -20,10 +20,8 @@ private[planning] abstract class CandidateBlock(steps: Int):
 
   /** Draws all candidates, within the limits.
     *
-    * @param keys
-    *   of each candidate's random stream ([[skein.simd.WorldRandom]])
-    * @param stepsPerKnot
-    *   so many steps share one random number
+    * @param keys of each candidate's random stream ([[skein.simd.WorldRandom]])
+    * @param stepsPerKnot so many steps share one random number
     */
   def draw(keys: Array[Int], from: SamplingDistribution, limits: CommandLimits, stepsPerKnot: Int): Unit
 

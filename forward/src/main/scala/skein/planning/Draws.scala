@@ -2,8 +2,8 @@ package skein.planning
 
 import skein.simd.WorldRandom
 
-/** Random numbers for candidates: the four bytes of a hash added, which is nearly normal (its fourth moment is 2.7 and
-  * it ends at 3.45 standard deviations), scaled to variance 1.
+/** Random numbers for candidates: the four bytes of a hash added, which is nearly normal (its fourth moment
+  * is 2.7 and it ends at 3.45 standard deviations), scaled to variance 1.
   */
 private[planning] object Draws:
   /** One over the standard deviation of the sum of four even bytes, √(4 · (256² − 1) / 12). */

@@ -2,29 +2,24 @@ package skein.planning
 
 /** One vehicle's part in a plan that is made for several together.
   *
-  * @param situation
-  *   in which `others` are only those of whom nothing is planned here
-  * @param stream
-  *   of random numbers
+  * @param situation in which `others` are only those of whom nothing is planned here
+  * @param stream of random numbers
   */
 final case class Part(objective: PlanCost, situation: Situation, stream: Long)
 
 /** What is planned for vehicles of one controller: a plan each, and each knows all others.
   *
-  * @param tracks
-  *   the ways that the plans lead
-  * @param turn
-  *   which of them is improved next
-  * @param slices
-  *   searched so far, of all together
+  * @param tracks the ways that the plans lead
+  * @param turn which of them is improved next
+  * @param slices searched so far, of all together
   */
 final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], turn: Int, slices: Int):
 
   /** One vehicle's situation, in which it keeps apart from the planned ways of the others too. */
   def situation(self: Int, part: Part): Situation = meeting(part, tracks.indices.filter(_ != self))
 
-  /** The same with those alone whose planned ways come nearest to its own: at most [[JointPlan.Regarded]], and none that
-    * stays so far away that no manoeuvre of the horizon leads there.
+  /** The same with those alone whose planned ways come nearest to its own: at most [[JointPlan.Regarded]],
+    * and none that stays so far away that no manoeuvre of the horizon leads there.
     */
   private[planning] def nearSituation(self: Int, part: Part): Situation =
     if !part.objective.separation.isKept then part.situation

@@ -10,18 +10,19 @@ object PlanProblem:
   /** Searches side by side. */
   val MostSearches = 64
 
-/** Plans for several vehicles of one controller, any time: slice by slice the vehicles take turns, and each improves its
-  * plan against the newest plans of all others (best responses in turn, as in decentralised model predictive control;
-  * Richards and How, ''Robust distributed model predictive control'', Int. J. Control 80, 2007). So nobody's way is
-  * guessed, and two do not dodge to the same side: who comes second knows where the first will be.
+/** Plans for several vehicles of one controller, any time: slice by slice the vehicles take turns, and each
+  * improves its plan against the newest plans of all others (best responses in turn, as in decentralised
+  * model predictive control; Richards and How, ''Robust distributed model predictive control'', Int. J.
+  * Control 80, 2007). So nobody's way is guessed, and two do not dodge to the same side: who comes second
+  * knows where the first will be.
   *
-  * A plan is only given up for a better one, and coming too near costs more than all else. So plans that keep apart from
-  * one another go on to do so when time passes and parts of them have been flown, even where a tick has no slice for
-  * some vehicle; the next tick begins with that one. How well depends on how well the vehicles follow
-  * [[Situation.own]].
+  * A plan is only given up for a better one, and coming too near costs more than all else. So plans that keep
+  * apart from one another go on to do so when time passes and parts of them have been flown, even where a
+  * tick has no slice for some vehicle; the next tick begins with that one. How well depends on how well the
+  * vehicles follow [[Situation.own]].
   *
-  * Equal problems, plans and numbers of slices give equal plans, to the last bit. Holds the memory for blocks of
-  * candidates: one per thread.
+  * Equal problems, plans and numbers of slices give equal plans, to the last bit. Holds the memory for blocks
+  * of candidates: one per thread.
   */
 final class JointPlanner:
   private val blocks   = mutable.Map.empty[Int, CandidateBlock]
@@ -49,8 +50,7 @@ final class JointPlanner:
 
   /** Searches one slice for the vehicle whose turn it is.
     *
-    * @param search
-    *   its number: searches side by side meet other candidates
+    * @param search its number: searches side by side meet other candidates
     */
   def improved(problem: PlanProblem, plan: JointPlan, search: Int): JointPlan =
     val self = plan.turn
@@ -81,7 +81,9 @@ object JointPlanner:
   /** Kept likewise, by their settings and objectives. */
   private val MostPlanners = 64
 
-  /** The best of what several searches have found; of equals the first. Its plans count the candidates of all. */
+  /** The best of what several searches have found; of equals the first. Its plans count the candidates of
+    * all.
+    */
   def best(problem: PlanProblem, found: Vector[JointPlan]): JointPlan =
     val chosen =
       if found.size == 1 then found.head else found.minBy(_.cost(problem.parts, problem.settings.dtS))

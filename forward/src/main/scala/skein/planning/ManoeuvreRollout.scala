@@ -3,11 +3,11 @@ package skein.planning
 import skein.policy.{ObservingPolicy, PlanarObservation}
 import skein.vehicle.PlaneReading
 
-/** Flies one manoeuvre in a situation, in doubles: the reference for the kernel, the check of what is chosen, and how a
-  * plan is told to others.
+/** Flies one manoeuvre in a situation, in doubles: the reference for the kernel, the check of what is chosen,
+  * and how a plan is told to others.
   *
-  * Vehicles follow their commands as their plants say; a command stands for a step. The heading has turned at the step's
-  * beginning.
+  * Vehicles follow their commands as their plants say; a command stands for a step. The heading has turned at
+  * the step's beginning.
   */
 final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Double):
 
@@ -105,10 +105,8 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
           now = now.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
           now.motion
 
-/** @param track
-  *   of the vehicle itself
-  * @param breaches
-  *   of hard limits
+/** @param track of the vehicle itself
+  * @param breaches of hard limits
   */
 final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
 
@@ -116,12 +114,10 @@ final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: V
 enum Breached:
   def step: Int
 
-  /** @param metres
-    *   outside
+  /** @param metres outside
     */
   case Fence(step: Int, metres: Double)
 
-  /** @param other
-    *   which of the vehicles to keep apart from
+  /** @param other which of the vehicles to keep apart from
     */
   case TooNear(step: Int, other: Int, metres: Double)

@@ -4,8 +4,8 @@ import java.util.Arrays
 import skein.lanes.PolicyLanes
 import skein.vehicle.PlaneReading
 
-/** A [[Target.Opponent]] against each of a block's candidates: it decides at every step by its policy, compiled from the
-  * policy itself. [[ManoeuvreRollout]] is the scalar reference. Mutable.
+/** A [[Target.Opponent]] against each of a block's candidates: it decides at every step by its policy,
+  * compiled from the policy itself. [[ManoeuvreRollout]] is the scalar reference. Mutable.
   */
 private[planning] final class OpponentLanes(steps: Int):
   import OpponentLanes.*
@@ -23,12 +23,9 @@ private[planning] final class OpponentLanes(steps: Int):
 
   /** Flies through all steps.
     *
-    * @param own
-    *   the candidates' way
-    * @param cos
-    *   of the headings commanded to them before each step, and `sin`
-    * @param into
-    *   the opponent's way
+    * @param own the candidates' way
+    * @param cos of the headings commanded to them before each step, and `sin`
+    * @param into the opponent's way
     */
   def fly(
       own: VehicleLanes,
@@ -73,8 +70,7 @@ private object OpponentLanes:
       fill(In.Heading, StrictMath.IEEEremainder(opponent.headingRad, 2 * math.Pi))
       for (number, i) <- form.initialOf(opponent.policy).zipWithIndex do fill(In.Memory + i, number)
 
-    /** @param at
-      *   where the row of each way begins
+    /** @param at where the row of each way begins
       */
     def apply(
         seen: VehicleLanes,

@@ -6,7 +6,9 @@ final case class Manoeuvre(turnRates: IArray[Float], speeds: IArray[Float]):
 
   def steps: Int = turnRates.length
 
-  /** What is left of it when time has passed; its end is held. Steps are met in parts: actions are interpolated. */
+  /** What is left of it when time has passed; its end is held. Steps are met in parts: actions are
+    * interpolated.
+    */
   def shifted(elapsedS: Double, dtS: Double): Manoeuvre =
     Manoeuvre(Manoeuvre.shifted(turnRates, elapsedS / dtS), Manoeuvre.shifted(speeds, elapsedS / dtS))
 
@@ -26,10 +28,8 @@ object Manoeuvre:
 
 /** Where candidates are drawn: independent normal distributions of each step's actions.
   *
-  * @param turnSds
-  *   standard deviations, rad/s
-  * @param speedSds
-  *   m/s
+  * @param turnSds standard deviations, rad/s
+  * @param speedSds m/s
   */
 final case class SamplingDistribution(
     turnMeans: IArray[Float],
@@ -47,12 +47,9 @@ final case class SamplingDistribution(
 
 /** The best manoeuvre found so far, and where to look for better ones. Immutable.
   *
-  * @param cost
-  *   infinite while the manoeuvre was not tried in this situation
-  * @param slices
-  *   searched so far
-  * @param candidates
-  *   tried so far
+  * @param cost infinite while the manoeuvre was not tried in this situation
+  * @param slices searched so far
+  * @param candidates tried so far
   */
 final case class Plan(
     manoeuvre: Manoeuvre,

@@ -5,14 +5,10 @@ import skein.vehicle.PlaneReading
 
 /** What a vehicle may be commanded.
   *
-  * @param minSpeed
-  *   m/s
-  * @param maxSpeed
-  *   m/s; where both are equal, only the heading is planned
-  * @param maxTurnRate
-  *   rad/s
-  * @param turningRadius
-  *   m: the turn rate stays below speed / radius; 0 for a vehicle that turns on the spot
+  * @param minSpeed m/s
+  * @param maxSpeed m/s; where both are equal, only the heading is planned
+  * @param maxTurnRate rad/s
+  * @param turningRadius m: the turn rate stays below speed / radius; 0 for a vehicle that turns on the spot
   */
 final case class CommandLimits(
     minSpeed: Double,
@@ -36,8 +32,7 @@ object CommandLimits:
 
 /** What is not left.
   *
-  * @param marginM
-  *   kept inside of it
+  * @param marginM kept inside of it
   */
 final case class Geofence(fence: Fence, marginM: Double = 0):
   /** How far a place is outside, m; negative inside. */
@@ -52,14 +47,11 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
 
 /** How far vehicles stay apart.
   *
-  * @param minimum
-  *   m, never to be gone below
-  * @param margin
-  *   m beyond it, within which coming nearer costs
-  * @param growth
-  *   of the margin with the time looked ahead, m/s: what is predicted further ahead is known less well
-  * @param price
-  *   per second and per square metre missing
+  * @param minimum m, never to be gone below
+  * @param margin m beyond it, within which coming nearer costs
+  * @param growth of the margin with the time looked ahead, m/s: what is predicted further ahead is known less
+  *   well
+  * @param price per second and per square metre missing
   */
 final case class SeparationCost(
     minimum: Double,
@@ -75,32 +67,26 @@ final case class SeparationCost(
   /** Within which coming nearer costs, m. */
   def clearance(aheadS: Double): Double = minimum + margin + growth * aheadS
 
-/** What a manoeuvre costs; costs are in metres, so that weights compare. Of the distance to the target it takes the mean
-  * over the time flown times its length, the least, and, at the end of the horizon, the distance to which momentum
-  * would carry the two: with velocities that lag, a place is known only with the place that its velocity leads to.
+/** What a manoeuvre costs; costs are in metres, so that weights compare. Of the distance to the target it
+  * takes the mean over the time flown times its length, the least, and, at the end of the horizon, the
+  * distance to which momentum would carry the two: with velocities that lag, a place is known only with the
+  * place that its velocity leads to.
   *
-  * Leaving a geofence or going below the least separation costs more than anything else, once per step, and the more
-  * the further.
+  * Leaving a geofence or going below the least separation costs more than anything else, once per step, and
+  * the more the further.
   *
-  * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back at once.
+  * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back at
+  * once.
   *
-  * @param distance
-  *   per second and metre
-  * @param closest
-  *   per metre of the least distance
-  * @param carried
-  *   per metre of the distance carried to
-  * @param capture
-  *   taken off where the least distance is below the capture radius
-  * @param captureRadius
-  *   m
-  * @param turning
-  *   per second and (m/s²)², of turn rate times commanded speed
-  * @param speedChange
-  *   per second and (m/s)² off the cruise speed
-  * @param softness
-  *   m: a distance d counts as √(d² + softness²), so that one below it costs by its square, and a vehicle that is almost
-  *   there does not hurry; above 0 only where nothing is captured
+  * @param distance per second and metre
+  * @param closest per metre of the least distance
+  * @param carried per metre of the distance carried to
+  * @param capture taken off where the least distance is below the capture radius
+  * @param captureRadius m
+  * @param turning per second and (m/s²)², of turn rate times commanded speed
+  * @param speedChange per second and (m/s)² off the cruise speed
+  * @param softness m: a distance d counts as √(d² + softness²), so that one below it costs by its square, and
+  *   a vehicle that is almost there does not hurry; above 0 only where nothing is captured
   */
 final case class PlanCost(
     limits: CommandLimits,
@@ -125,12 +111,9 @@ final case class PlanCost(
 
   /** What a step of a manoeuvre commands, and what it costs by itself: its effort.
     *
-    * @param headingRad
-    *   commanded before
-    * @param turnRate
-    *   rad/s, for `turnS`
-    * @param speed
-    *   m/s
+    * @param headingRad commanded before
+    * @param turnRate rad/s, for `turnS`
+    * @param speed m/s
     */
   private[planning] def steered(
       cost: Double,
@@ -148,8 +131,7 @@ final case class PlanCost(
 
   /** What it costs to end a step so far from another vehicle.
     *
-    * @param clearance
-    *   within which coming nearer costs, m
+    * @param clearance within which coming nearer costs, m
     */
   private[planning] def neared(
       cost: Double,
@@ -177,10 +159,8 @@ final case class PlanCost(
 
   /** What these distances cost, where the horizon ends.
     *
-    * @param carriesS
-    *   for so long its last velocity carries the vehicle on
-    * @param weight
-    *   of the behaviour
+    * @param carriesS for so long its last velocity carries the vehicle on
+    * @param weight of the behaviour
     */
   private[planning] def ended(
       cost: Double,
@@ -206,8 +186,8 @@ object PlanCost:
   /** What one step costs that breaks a hard limit. */
   val Breach = 1000.0
 
-  /** Within which hard limits count as broken already when candidates are priced, m: so that what floats find within
-    * them is so in doubles.
+  /** Within which hard limits count as broken already when candidates are priced, m: so that what floats find
+    * within them is so in doubles.
     */
   val Guard = 0.01
 
@@ -215,12 +195,9 @@ object PlanCost:
   private[planning] def breach(beyond: Double): Double =
     if beyond + Guard > 0 then Breach * (1 + (beyond + Guard)) else 0
 
-/** @param cost
-  *   so far
-  * @param headingRad
-  *   commanded, with its cosine and sine
-  * @param northMps
-  *   the commanded velocity
+/** @param cost so far
+  * @param headingRad commanded, with its cosine and sine
+  * @param northMps the commanded velocity
   */
 private[planning] final case class Steered(
     cost: Double,

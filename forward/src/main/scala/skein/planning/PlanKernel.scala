@@ -4,12 +4,12 @@ import java.util.Arrays
 import skein.lanes.FixedFormula
 
 /** Flies many candidate manoeuvres of one vehicle at once and says what each costs, by the same formulas as
-  * [[ManoeuvreRollout]], its scalar reference, compiled; `PlanKernelSuite` holds the two together. The vehicle's own way
-  * does not depend on what its opponent does, so it is flown once and every behaviour of the opponent is flown against
-  * it.
+  * [[ManoeuvreRollout]], its scalar reference, compiled; `PlanKernelSuite` holds the two together. The
+  * vehicle's own way does not depend on what its opponent does, so it is flown once and every behaviour of
+  * the opponent is flown against it.
   *
-  * Positions are counted from where the vehicle starts, so that floats resolve them. Results do not depend on the lane
-  * count. One instance per thread.
+  * Positions are counted from where the vehicle starts, so that floats resolve them. Results do not depend on
+  * the lane count. One instance per thread.
   */
 private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps):
   import PlanKernel.*
@@ -148,10 +148,8 @@ private object PlanKernel:
 
   /** A method by lanes, for the object asked last.
     *
-    * @param alike
-    *   so many of its last arguments are the same for all candidates
-    * @param bind
-    *   tells a call where its numbers are
+    * @param alike so many of its last arguments are the same for all candidates
+    * @param bind tells a call where its numbers are
     */
   private final class Compiled(method: String, alike: Int)(bind: FixedFormula.Call => Unit):
     private var known = Option.empty[(formula: FixedFormula, call: FixedFormula.Call)]

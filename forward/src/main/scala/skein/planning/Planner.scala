@@ -7,33 +7,26 @@ import skein.vehicle.Plant
 
 /** How better manoeuvres are looked for. */
 enum PlanMethod:
-  /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the mean of all
-    * candidates, each weighted by e^(−cost / temperature).
+  /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the
+    * mean of all candidates, each weighted by e^(−cost / temperature).
     */
   case PathIntegral(temperature: Double)
 
-  /** The cross-entropy method (Rubinstein, 1999): mean and deviation of the search move towards those of the best
-    * candidates.
+  /** The cross-entropy method (Rubinstein, 1999): mean and deviation of the search move towards those of the
+    * best candidates.
     *
-    * @param elites
-    *   how many of a slice are the best
-    * @param smoothing
-    *   share of the old mean and deviation that is kept
+    * @param elites how many of a slice are the best
+    * @param smoothing share of the old mean and deviation that is kept
     */
   case CrossEntropy(elites: Int, smoothing: Double)
 
-/** @param steps
-  *   of the horizon
-  * @param dtS
-  *   length of a step
-  * @param blocksPerSlice
-  *   a slice is what is searched between two looks at the clock; a block are 128 candidates
-  * @param stepsPerKnot
-  *   so many steps turn alike, apart from what the search has found
-  * @param turnSd
-  *   at first, rad/s
-  * @param speedSd
-  *   at first, m/s
+/** @param steps of the horizon
+  * @param dtS length of a step
+  * @param blocksPerSlice a slice is what is searched between two looks at the clock; a block are 128
+  *   candidates
+  * @param stepsPerKnot so many steps turn alike, apart from what the search has found
+  * @param turnSd at first, rad/s
+  * @param speedSd at first, m/s
   */
 final case class PlannerSettings(
     steps: Int = 20,
@@ -56,8 +49,8 @@ final case class PlannerSettings(
   def horizonS: Double     = steps * dtS
   def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size
 
-/** Plans manoeuvres, any time: a plan is improved slice by slice, and its manoeuvre is at every moment the best found. Equal
-  * plans, situations and streams give equal plans, to the last bit, on every machine.
+/** Plans manoeuvres, any time: a plan is improved slice by slice, and its manoeuvre is at every moment the
+  * best found. Equal plans, situations and streams give equal plans, to the last bit, on every machine.
   *
   * Holds the memory for a block of candidates: one per thread.
   */
@@ -100,8 +93,7 @@ final class Planner private[planning] (
 
   /** Searches one slice.
     *
-    * @param stream
-    *   of random numbers: a plan improved with another stream meets other candidates
+    * @param stream of random numbers: a plan improved with another stream meets other candidates
     */
   def improve(plan: Plan, situation: Situation, stream: Long): Plan =
     block.situate(situation, objective, dtS)
@@ -228,8 +220,8 @@ final class Planner private[planning] (
     total
 
 object Planner:
-  /** Of the search, by block: wide ones find other manoeuvres, narrow ones improve on what was found. With a wide one
-    * alone, a plan that is almost right is hardly ever improved.
+  /** Of the search, by block: wide ones find other manoeuvres, narrow ones improve on what was found. With a
+    * wide one alone, a plan that is almost right is hardly ever improved.
     */
   private val widths = Vector(1f, 0.5f, 0.25f, 0.125f)
 

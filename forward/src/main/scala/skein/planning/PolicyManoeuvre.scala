@@ -5,13 +5,11 @@ import skein.policy.{TeamPolicy, TeamObservation}
 /** What a vehicle's own policy would do, as a manoeuvre. */
 object PolicyManoeuvre:
 
-  /** The policy is asked before each step of the horizon, where the vehicle has then flown under its answers, and all
-    * others straight on. Its headings are met as fast as the limits allow.
+  /** The policy is asked before each step of the horizon, where the vehicle has then flown under its answers,
+    * and all others straight on. Its headings are met as fast as the limits allow.
     *
-    * @param observation
-    *   at the beginning
-    * @param situation
-    *   of the same vehicle at the same moment
+    * @param observation at the beginning
+    * @param situation of the same vehicle at the same moment
     */
   def of(
       policy: TeamPolicy,

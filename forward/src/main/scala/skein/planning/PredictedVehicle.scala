@@ -4,12 +4,10 @@ import skein.vehicle.{PlaneReading, Plant, ReducedModel}
 
 /** A vehicle, and how it will move.
   *
-  * @param plant
-  *   by which it moves; its dead time has no effect here
-  * @param northM
-  *   where its plant counts from, m, world NED
-  * @param carriesS
-  *   for so long its last velocity carries it on, if nothing more is commanded, s: for a first-order lag, the lag
+  * @param plant by which it moves; its dead time has no effect here
+  * @param northM where its plant counts from, m, world NED
+  * @param carriesS for so long its last velocity carries it on, if nothing more is commanded, s: for a
+  *   first-order lag, the lag
   */
 final case class PredictedVehicle[S](
     plant: Plant[S],

@@ -29,8 +29,7 @@ object PredictedTrack:
 
   /** Who keeps the speed and goes on turning.
     *
-    * @param turnRateRadPerS
-    *   from north towards east
+    * @param turnRateRadPerS from north towards east
     */
   def turning(from: PlaneReading, turnRateRadPerS: Double, steps: Int, dtS: Double): PredictedTrack =
     if math.abs(turnRateRadPerS) < 1e-6 then straight(from, steps, dtS)
@@ -51,17 +50,15 @@ object PredictedTrack:
 
 /** What a vehicle is to come close to.
   *
-  * @param carriesS
-  *   for so long its last velocity carries it on ([[PredictedVehicle.carriesS]]); absent: as long as the vehicle's own
+  * @param carriesS for so long its last velocity carries it on ([[PredictedVehicle.carriesS]]); absent: as
+  *   long as the vehicle's own
   */
 enum Target(val carriesS: Option[Double] = None):
-  /** Somebody who decides at each step by a policy, upon where both are then, on readings of that moment, and with the
-    * heading commanded to this vehicle before.
+  /** Somebody who decides at each step by a policy, upon where both are then, on readings of that moment, and
+    * with the heading commanded to this vehicle before.
     *
-    * @param speed
-    *   that it commands, m/s
-    * @param headingRad
-    *   commanded last to it
+    * @param speed that it commands, m/s
+    * @param headingRad commanded last to it
     */
   case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: Policy)
       extends Target(Some(vehicle.carriesS))
@@ -72,19 +69,14 @@ enum Target(val carriesS: Option[Double] = None):
 /** One way in which the target may behave, and how much it counts. */
 final case class Behaviour(target: Target, weight: Double = 1)
 
-/** What a plan is made upon: the joint state at the moment at which the planned command will act on the vehicle, its
-  * dead time over.
+/** What a plan is made upon: the joint state at the moment at which the planned command will act on the
+  * vehicle, its dead time over.
   *
-  * @param headingRad
-  *   commanded last to this vehicle
-  * @param sinceDecisionS
-  *   time since then: as long the first step's turn lasts
-  * @param behaviours
-  *   of the target, the same for all candidates, which makes their costs comparable
-  * @param others
-  *   vehicles to keep apart from
-  * @param suggested
-  *   manoeuvres that every slice tries besides its own, at most 16
+  * @param headingRad commanded last to this vehicle
+  * @param sinceDecisionS time since then: as long the first step's turn lasts
+  * @param behaviours of the target, the same for all candidates, which makes their costs comparable
+  * @param others vehicles to keep apart from
+  * @param suggested manoeuvres that every slice tries besides its own, at most 16
   */
 final case class Situation(
     own: PredictedVehicle[?],

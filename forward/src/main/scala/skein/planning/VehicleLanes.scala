@@ -5,8 +5,8 @@ import scala.collection.mutable
 import skein.lanes.PlantLanes
 import skein.vehicle.{PlaneReading, Plant, ReducedModel}
 
-/** One vehicle in each candidate's world: positions, m, and velocities, m/s, north and east, at the start and at the end
-  * of each step; by row, then by candidate. The start is row 0. Mutable.
+/** One vehicle in each candidate's world: positions, m, and velocities, m/s, north and east, at the start and
+  * at the end of each step; by row, then by candidate. The start is row 0. Mutable.
   */
 private[planning] final class VehicleLanes(steps: Int):
   import VehicleLanes.*
@@ -20,8 +20,7 @@ private[planning] final class VehicleLanes(steps: Int):
 
   /** Takes who flies, all from one place.
     *
-    * @param origin
-    *   where positions are counted from
+    * @param origin where positions are counted from
     */
   def take(vehicle: PredictedVehicle[?], origin: PlaneReading, dtS: Double): Unit =
     if known.size >= MostPlants then known.clear()
@@ -50,8 +49,7 @@ private[planning] final class VehicleLanes(steps: Int):
 
   /** Flies the next step.
     *
-    * @param north
-    *   of each commanded velocity, over `speed`, m/s
+    * @param north of each commanded velocity, over `speed`, m/s
     */
   def fly(north: Array[Float], east: Array[Float], speed: Float): Unit =
     flight.foreach(_.fly(north, east, speed))

@@ -7,25 +7,22 @@ import java.lang.reflect.AccessFlag
 import scala.collection.mutable
 import skein.formula.{Node, Op, Untraceable}
 
-/** Compiles expressions to a [[LaneFunction]]: straight passes over blocks of worlds, in which a number stays in a
-  * register from where it is computed to where it is used. Elementary functions are the polynomials of [[LaneMath]],
-  * written out, so that every lane computes the same bits on every machine; products are fused with sums.
+/** Compiles expressions to a [[LaneFunction]]: straight passes over blocks of worlds, in which a number stays
+  * in a register from where it is computed to where it is used. Elementary functions are the polynomials of
+  * [[LaneMath]], written out, so that every lane computes the same bits on every machine; products are fused
+  * with sums.
   *
-  * A pass calls the vector API alone and is no longer than the JVM's compiler takes in at once without boxing vectors
-  * (see [[LaneMath]]). A longer expression becomes several passes; numbers that pass from one to another are laid by in
-  * scratch, which stays in the first-level cache.
+  * A pass calls the vector API alone and is no longer than the JVM's compiler takes in at once without boxing
+  * vectors (see [[LaneMath]]). A longer expression becomes several passes; numbers that pass from one to
+  * another are laid by in scratch, which stays in the first-level cache.
   */
 object LaneCompiler:
 
-  /** @param inputs
-    *   how many there are
-    * @param outputs
-    *   what is computed
-    * @param differences
-    *   so many of the first inputs are differences of two arrays' numbers; what is taken away stands in the arrays behind
-    *   those of the outputs
-    * @param parameters
-    *   how many each world has; 0: all worlds have the same
+  /** @param inputs how many there are
+    * @param outputs what is computed
+    * @param differences so many of the first inputs are differences of two arrays' numbers; what is taken
+    *   away stands in the arrays behind those of the outputs
+    * @param parameters how many each world has; 0: all worlds have the same
     */
   def compile(inputs: Int, outputs: Vector[Node], differences: Int = 0, parameters: Int = 0): LaneFunction =
     val passes  = Passes.of(outputs)
@@ -92,8 +89,7 @@ private object Names:
 
 /** Writes the bytecode of one pass. A vector is a local variable, given by its number.
   *
-  * @param subtrahends
-  *   where the arrays begin whose numbers are taken away from the first inputs
+  * @param subtrahends where the arrays begin whose numbers are taken away from the first inputs
   */
 private final class PassCompiler(
     code: CodeBuilder,

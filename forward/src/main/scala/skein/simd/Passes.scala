@@ -5,14 +5,10 @@ import skein.formula.{Node, Op, Trace}
 
 /** One loop over the worlds.
   *
-  * @param computes
-  *   in this order
-  * @param loads
-  *   from scratch, by place
-  * @param stores
-  *   to scratch
-  * @param outputs
-  *   by the output's number
+  * @param computes in this order
+  * @param loads from scratch, by place
+  * @param stores to scratch
+  * @param outputs by the output's number
   */
 private final case class Pass(
     computes: Vector[Node],
@@ -85,8 +81,8 @@ private object Passes:
         outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
       )
 
-  /** Where numbers are laid by from their pass to their last use: a place is given again as soon as it is free, so that
-    * all stay in a near cache. A pass loads before it stores.
+  /** Where numbers are laid by from their pass to their last use: a place is given again as soon as it is
+    * free, so that all stay in a near cache. A pass loads before it stores.
     */
   private def placed(
       lastUse: collection.Map[Node, Int],

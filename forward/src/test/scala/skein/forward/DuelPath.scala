@@ -1,6 +1,7 @@
 package skein.forward
 
-/** Tells where the evader and the pursuer of a duel are, once a period: s, then m north and east of either. */
+/** Tells where the evader and the pursuer of a duel are, once a period: s, then m north and east of either.
+  */
 final class DuelPath(told: (Double, Double, Double, Double, Double) => Unit) extends LoopObserver:
   private var evaderX, evaderY = 0.0
 

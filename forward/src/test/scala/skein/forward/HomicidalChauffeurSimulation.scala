@@ -5,7 +5,9 @@ import scala.util.boundary.break
 import skein.policy.*
 import skein.signal.SplitMix64
 
-/** The homicidal chauffeur with ideal kinematics, on both sides of its threshold: R = 8 m, speeds 10 and 5 m/s. */
+/** The homicidal chauffeur with ideal kinematics, on both sides of its threshold: R = 8 m, speeds 10 and 5
+  * m/s.
+  */
 class HomicidalChauffeurSimulation extends munit.FunSuite:
   private val game      = HomicidalChauffeur(turningRadiusM = 8, speedRatio = 0.5)
   private val dodgeM    = game.speedRatio * game.turningRadiusM
@@ -63,8 +65,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       )
       Double.PositiveInfinity
 
-  /** Runs straight away; when the pursuer is γ turning radii behind, aside at a right angle, and on in that direction
-    * while the pursuer turns after it.
+  /** Runs straight away; when the pursuer is γ turning radii behind, aside at a right angle, and on in that
+    * direction while the pursuer turns after it.
     */
   private val barrier: Policy = (dx, dy, _, _, own, pursuer, _) =>
     val ahead = -dx * math.cos(pursuer) - dy * math.sin(pursuer)
@@ -133,7 +135,9 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     assertEqualsDouble(best._1, threshold, 0.01 * threshold)
     assertEquals((best._2, best._3), (dodgeM, 90))
 
-  /** The evader's place in the pursuer's frame after it ran at an angle to the pursuer's heading and that turned right. */
+  /** The evader's place in the pursuer's frame after it ran at an angle to the pursuer's heading and that
+    * turned right.
+    */
   private def after(start: Start, courseRad: Double, seconds: Double): Start =
     val turn = turnRate * seconds
     val x    = start.ahead + 5 * seconds * math.cos(courseRad) - game.turningRadiusM * math.sin(turn)

@@ -16,7 +16,9 @@ import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** Holds the identified models of the built-in quadrotor to the quadrotor itself, in the paper's duel over the VPN. */
+/** Holds the identified models of the built-in quadrotor to the quadrotor itself, in the paper's duel over
+  * the VPN.
+  */
 class AirSimModelSuite extends munit.FunSuite:
 
   /** What both vehicles were told and did in an episode with the full quadrotor. */

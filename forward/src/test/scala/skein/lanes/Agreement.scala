@@ -3,9 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 
-/** Worlds that fly by lanes and by the scalar engine. Both take the same decisions in each, but where a number that is
-  * compared lies so near to a threshold that rounding decides: [[ErrorBound]] says how near that is. From there on a world
-  * may fly otherwise.
+/** Worlds that fly by lanes and by the scalar engine. Both take the same decisions in each, but where a
+  * number that is compared lies so near to a threshold that rounding decides: [[ErrorBound]] says how near
+  * that is. From there on a world may fly otherwise.
   */
 private[skein] final class Agreement:
   import Agreement.*
@@ -14,18 +14,15 @@ private[skein] final class Agreement:
 
   /** Adds a world.
     *
-    * @param first
-    *   what the two decided otherwise first
-    * @param whereSame
-    *   holds the flights together, if there is nothing
+    * @param first what the two decided otherwise first
+    * @param whereSame holds the flights together, if there is nothing
     */
   def add(world: Int, first: Option[Departure])(whereSame: => Unit): Unit = first match
     case None                                   => same += 1; whereSame
     case Some(departure) if departure.isRounded => undecided += world -> departure
     case Some(departure)                        => wrong += world     -> departure
 
-  /** @param atLeast
-    *   so many worlds take the same decisions from begin to end, or else nothing was compared
+  /** @param atLeast so many worlds take the same decisions from begin to end, or else nothing was compared
     */
   def check(what: String, atLeast: Int = 1)(using munit.Location): Unit =
     def told(departures: Iterable[(Int, Departure)]) =
@@ -40,17 +37,16 @@ private[skein] final class Agreement:
 private[skein] object Agreement:
   private val Told = 5
 
-  /** What floats add up to in the vehicles' flight until a time, m and m/s: until decisions part, vehicles are where they
-    * are in doubles. At 500 m a float is rounded by up to 3e-5 m, here a dozen times a second.
+  /** What floats add up to in the vehicles' flight until a time, m and m/s: until decisions part, vehicles
+    * are where they are in doubles. At 500 m a float is rounded by up to 3e-5 m, here a dozen times a second.
     */
   def mostOff(timeS: Double): Double = 1e-3 + 4e-4 * timeS
 
   /** What lanes decided otherwise than the scalar engine.
     *
-    * @param apart
-    *   by output: how far off, and how far it may be if each comparison near its threshold went the other way
-    * @param near
-    *   comparisons so near to their thresholds that rounding decides, with how near
+    * @param apart by output: how far off, and how far it may be if each comparison near its threshold went
+    *   the other way
+    * @param near comparisons so near to their thresholds that rounding decides, with how near
     */
   final case class Departure(
       agent: Int,
@@ -70,12 +66,9 @@ private[skein] object Agreement:
 
   /** Where outputs differ by more than floats may that decide as doubles do.
     *
-    * @param off
-    *   how far each input is
-    * @param ours
-    *   of the lanes, in the nodes' order
-    * @param between
-    *   how far two values of an output are apart, by its number
+    * @param off how far each input is
+    * @param ours of the lanes, in the nodes' order
+    * @param between how far two values of an output are apart, by its number
     */
   def departure(
       agent: Int,

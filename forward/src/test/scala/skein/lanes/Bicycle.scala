@@ -11,8 +11,8 @@ final case class Rolling(
     steeredRad: Double
 )
 
-/** A kinematic bicycle that steers after the commanded velocity, and whose position is read at an antenna ahead of its
-  * middle. Nothing in the product knows it.
+/** A kinematic bicycle that steers after the commanded velocity, and whose position is read at an antenna
+  * ahead of its middle. Nothing in the product knows it.
   */
 final case class Bicycle(
     wheelbaseM: Double,

@@ -7,9 +7,9 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Instant
 
-/** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader in the same
-  * images of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
-  * lies so near to a threshold that rounding decides.
+/** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader
+  * in the same images of every world, and take the same decisions; but where a bearing, a range, or a number
+  * that a policy compares lies so near to a threshold that rounding decides.
   */
 class CameraTrackerAgreementSimulation extends munit.FunSuite:
   import CameraTrackerAgreementSimulation.*

@@ -5,14 +5,12 @@ import skein.forward.*
 import skein.fusion.Exposure
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
 
-/** Duels flown by lanes, beside the scalar engine: decision by decision, by [[Agreement]]. All but the vehicles' flight is
-  * followed to the bit: a decision's own heading and memory are those that lanes decided before, the opponent's heading is
-  * that of the decision which the scalar engine knows of.
+/** Duels flown by lanes, beside the scalar engine: decision by decision, by [[Agreement]]. All but the
+  * vehicles' flight is followed to the bit: a decision's own heading and memory are those that lanes decided
+  * before, the opponent's heading is that of the decision which the scalar engine knows of.
   *
-  * @param lanes
-  *   by agent, the evader first: what flew
-  * @param policies
-  *   the same, of a world
+  * @param lanes by agent, the evader first: what flew
+  * @param policies the same, of a world
   */
 private[skein] class DuelAgreement(
     duel: Duel,
@@ -233,10 +231,8 @@ private[skein] object DuelAgreement:
       lanes
 
   enum Event:
-    /** @param k
-      *   counts the agent's decisions from 0
-      * @param known
-      *   the newest decision of the opponent that is known, from 1; 0 before the first
+    /** @param k counts the agent's decisions from 0
+      * @param known the newest decision of the opponent that is known, from 1; 0 before the first
       */
     case Decided(agent: Int, k: Int, timeS: Double, known: Int)
     case Looked(k: Int, timeS: Double, exposure: Exposure)

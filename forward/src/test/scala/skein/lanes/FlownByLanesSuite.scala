@@ -7,9 +7,10 @@ import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** ARCHITECTURE.md's table of what flies by lanes is what the engines say, cell by cell; and what is said to fly by lanes
-  * or vehicle by vehicle flies as the scalar reference does. Bodies of MuJoCo's have no column: they need a library that is
-  * not everywhere; `skein.mujoco.FlownByVehiclesLiveSuite` holds what is said of them.
+/** ARCHITECTURE.md's table of what flies by lanes is what the engines say, cell by cell; and what is said to
+  * fly by lanes or vehicle by vehicle flies as the scalar reference does. Bodies of MuJoCo's have no column:
+  * they need a library that is not everywhere; `skein.mujoco.FlownByVehiclesLiveSuite` holds what is said of
+  * them.
   */
 class FlownByLanesSuite extends munit.FunSuite:
   private val root =

@@ -11,8 +11,9 @@ import skein.simd.{LaneMath, WorldRandom}
 import skein.units.Span
 import skein.vehicle.{PlaneReading, ReducedModel}
 
-/** What flies by lanes, in short: of each engine, plant, loop and policy a line with the checksum of all results' bits.
-  * Machines with other vectors print the same lines, but for the first, which says how many lanes they have.
+/** What flies by lanes, in short: of each engine, plant, loop and policy a line with the checksum of all
+  * results' bits. Machines with other vectors print the same lines, but for the first, which says how many
+  * lanes they have.
   */
 object LaneDigests:
   private val plants = Vector[(String, VelocityResponse)](

@@ -4,7 +4,9 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Processes with vectors of 16, 32 and 64 bytes, as far as this machine has them, fly all that flies by lanes. */
+/** Processes with vectors of 16, 32 and 64 bytes, as far as this machine has them, fly all that flies by
+  * lanes.
+  */
 class LaneDigestsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   private def started(bytes: Int): (Process, Path, Path) =

@@ -8,8 +8,9 @@ import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 import skein.testing.Unhurried
 
-/** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a policy compares
-  * lies so near to another that rounding decides: that is told, with how near it was, by [[ErrorBound]].
+/** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a
+  * policy compares lies so near to another that rounding decides: that is told, with how near it was, by
+  * [[ErrorBound]].
   */
 class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
   import TeamAgreementSimulation.*
@@ -111,8 +112,7 @@ object TeamAgreementSimulation:
 
     /** Where a decision differs by more than the bound of the way that doubles take.
       *
-      * @param made
-      *   by lanes: the decision before, if there was one, and this
+      * @param made by lanes: the decision before, if there was one, and this
       */
     def difference(
         k: Int,

@@ -28,8 +28,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
   private def evader(world: Int): PaperEvader = PaperEvader(radii(world))
 
-  /** The paper's, but that the evader does not start straight ahead: there the sign of a rounding error would tell the
-    * pursuer of the quadrotors where to turn.
+  /** The paper's, but that the evader does not start straight ahead: there the sign of a rounding error would
+    * tell the pursuer of the quadrotors where to turn.
     */
   private val paper = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
 

@@ -5,9 +5,9 @@ import skein.policy.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** How fast does each loop fly by lanes, beside the scalar engine? `forward/Test/runMain skein.lanes.timingRates [text]`:
-  * on one thread, 60 s over `vpn`, only what contains the text; processor time. Agent-steps of a period, in millions a
-  * second.
+/** How fast does each loop fly by lanes, beside the scalar engine?
+  * `forward/Test/runMain skein.lanes.timingRates [text]`: on one thread, 60 s over `vpn`, only what contains
+  * the text; processor time. Agent-steps of a period, in millions a second.
   */
 @main def timingRates(only: String*): Unit =
   val times  = java.lang.management.ManagementFactory.getThreadMXBean

@@ -2,7 +2,9 @@ package skein.lanes
 
 import skein.policy.{Decided, PlanarObservation, ObservingPolicy, Policy}
 
-/** What [[TrendPursuer]] remembers: where the opponent was seen last, and how fast that direction turns on average. */
+/** What [[TrendPursuer]] remembers: where the opponent was seen last, and how fast that direction turns on
+  * average.
+  */
 final case class Trend(bearingRad: Double, rateRadPerS: Double)
 
 /** Turns with the line of sight's average rate, and after the opponent. Nothing in the product knows it. */

@@ -16,8 +16,7 @@ class JointPlannerSuite extends munit.FunSuite:
 
   private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.airSimAt(5), at)
 
-  /** @param stepsFlown
-    *   when it is planned for
+  /** @param stepsFlown when it is planned for
     */
   private def part(
       from: PlaneReading,
@@ -43,8 +42,8 @@ class JointPlannerSuite extends munit.FunSuite:
     val (cos, sin) = (math.cos(bearing(self)), math.sin(bearing(self)))
     PlaneReading(-25 * cos, -25 * sin, 8 * cos, 8 * sin)
 
-  /** Flies all under their plans, which are made anew each step by so many slices, and tells the least separation and the
-    * greatest distance to a goal at the end, m.
+  /** Flies all under their plans, which are made anew each step by so many slices, and tells the least
+    * separation and the greatest distance to a goal at the end, m.
     */
   private def fly(slices: Int, seconds: Int): (Double, Double) =
     val planner                           = JointPlanner()

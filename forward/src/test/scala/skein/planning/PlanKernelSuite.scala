@@ -71,10 +71,8 @@ class PlanKernelSuite extends munit.FunSuite:
 
   /** Where a cost jumps.
     *
-    * @param nearM
-    *   the distance from there
-    * @param by
-    *   what it jumps by at most
+    * @param nearM the distance from there
+    * @param by what it jumps by at most
     */
   private case class Jump(what: String, nearM: Double, by: Double)
 

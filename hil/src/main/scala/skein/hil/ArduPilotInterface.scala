@@ -5,12 +5,12 @@ import java.nio.{ByteBuffer, ByteOrder}
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** ArduPilot's interface to simulators in JSON (its `SIM_JSON`): a datagram with the servos' pulses comes, physics runs on
-  * by one frame, and a line with the state goes back. So ArduPilot sets the pace. It is told the truth, and adds its sensors'
-  * errors itself; the inertial sensors have ours as well.
+/** ArduPilot's interface to simulators in JSON (its `SIM_JSON`): a datagram with the servos' pulses comes,
+  * physics runs on by one frame, and a line with the state goes back. So ArduPilot sets the pace. It is told
+  * the truth, and adds its sensors' errors itself; the inertial sensors have ours as well.
   *
-  * A frame lasts as long as ArduPilot says, in whole milliseconds. One that is repeated, because its answer was lost, gets
-  * the same answer.
+  * A frame lasts as long as ArduPilot says, in whole milliseconds. One that is repeated, because its answer
+  * was lost, gets the same answer.
   */
 final class ArduPilotInterface(sensors: Sensors, from: Span) extends AutopilotInterface:
   import ArduPilotInterface.*

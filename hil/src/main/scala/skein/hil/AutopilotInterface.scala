@@ -3,20 +3,19 @@ package skein.hil
 import skein.units.Span
 import skein.vehicle.Setpoint
 
-/** The simulator's side of one autopilot's interface: what the autopilot sends goes in, its rotors' controls and what is
-  * sent to it come out. It says how far physics may run, and is then given the sensors of that time. Does no I/O and knows
-  * no clock; times are those since the simulator's start. Not thread-safe.
+/** The simulator's side of one autopilot's interface: what the autopilot sends goes in, its rotors' controls
+  * and what is sent to it come out. It says how far physics may run, and is then given the sensors of that
+  * time. Does no I/O and knows no clock; times are those since the simulator's start. Not thread-safe.
   */
 trait AutopilotInterface:
   /** Takes in a piece of a stream, or a datagram. Whatever cannot be read is counted and changes nothing.
     *
-    * @return
-    *   what is answered at once
+    * @return what is answered at once
     */
   def hear(bytes: Array[Byte], up: Span): Vector[Array[Byte]]
 
-  /** The rotors' controls as the autopilot wants them: front right, rear left, front left, rear right, 0 to 1. All these
-    * autopilots count rotors and turn them like that.
+  /** The rotors' controls as the autopilot wants them: front right, rear left, front left, rear right, 0 to 1.
+    * All these autopilots count rotors and turn them like that.
     */
   def rotors: Setpoint
 
@@ -31,8 +30,7 @@ trait AutopilotInterface:
 
   /** The sensors at that stop.
     *
-    * @return
-    *   what is sent to the autopilot
+    * @return what is sent to the autopilot
     */
   def sense(truth: SensorTruth): Vector[Array[Byte]]
 

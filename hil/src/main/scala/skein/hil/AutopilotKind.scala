@@ -15,12 +15,9 @@ enum AutopilotKind(val label: String):
 
   /** One vehicle's.
     *
-    * @param system
-    *   its number, from 1
-    * @param from
-    *   when it begins
-    * @param speed
-    *   of the simulator's clock against the real one
+    * @param system its number, from 1
+    * @param from when it begins
+    * @param speed of the simulator's clock against the real one
     */
   def interface(system: Int, sensors: Sensors, from: Span, speed: Double = 1): AutopilotInterface = this match
     case Px4        => Px4Interface(system, sensors, from)

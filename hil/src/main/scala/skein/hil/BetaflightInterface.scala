@@ -4,19 +4,20 @@ import java.nio.{ByteBuffer, ByteOrder}
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** The interface of Betaflight's SITL (its `fdm_packet` and `servo_packet`, 4.6): a datagram with the vehicle's state every
-  * 2 ms, one with four rotors' controls back. Nobody waits for the other, so what is late is left out, not made up for.
+/** The interface of Betaflight's SITL (its `fdm_packet` and `servo_packet`, 4.6): a datagram with the
+  * vehicle's state every 2 ms, one with four rotors' controls back. Nobody waits for the other, so what is
+  * late is left out, not made up for.
   *
-  * Betaflight takes the rate of its clock from the difference of two states' times over that of when they come, which for
-  * two that come close together is a hundredfold (`updateState` in its `sitl.c`). Where their times are equal it keeps the
-  * rate that it has, at first the real clock's. So all states are told of one time. At another speed than the real clock's,
-  * the rate is told once, by two states far apart, as soon as Betaflight is heard.
+  * Betaflight takes the rate of its clock from the difference of two states' times over that of when they
+  * come, which for two that come close together is a hundredfold (`updateState` in its `sitl.c`). Where their
+  * times are equal it keeps the rate that it has, at first the real clock's. So all states are told of one
+  * time. At another speed than the real clock's, the rate is told once, by two states far apart, as soon as
+  * Betaflight is heard.
   *
-  * Gyroscope, accelerometer and barometer have their errors; the attitude is the truth, which Betaflight takes from the
-  * simulator.
+  * Gyroscope, accelerometer and barometer have their errors; the attitude is the truth, which Betaflight
+  * takes from the simulator.
   *
-  * @param speed
-  *   of the simulator's clock against the real one
+  * @param speed of the simulator's clock against the real one
   */
 final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1) extends AutopilotInterface:
   import AutopilotInterface.Step
@@ -97,7 +98,9 @@ object BetaflightInterface:
   /** Of real time. */
   private val SilenceS = 0.25
 
-  /** Two states that tell the clock's rate: the farther apart, the less it matters that they come a little late. */
+  /** Two states that tell the clock's rate: the farther apart, the less it matters that they come a little
+    * late.
+    */
   private val ApartMs = 15
 
   /** Betaflight takes no rate from states that are so far apart. */

@@ -2,10 +2,10 @@ package skein.hil
 
 import skein.units.{GeoLocation, Vector3}
 
-/** The Earth's magnetic field: the International Geomagnetic Reference Field of its 13th generation (Alken et al., Earth,
-  * Planets and Space 73:49, 2021) at its epoch 2020, up to degree 6, on a spherical Earth at sea level. Autopilots correct
-  * their heading by such a model: a dipole's direction is off by tens of degrees. This one is off by some 2° where people
-  * live, and by 0.02 gauss (`MagneticFieldSuite`).
+/** The Earth's magnetic field: the International Geomagnetic Reference Field of its 13th generation (Alken et
+  * al., Earth, Planets and Space 73:49, 2021) at its epoch 2020, up to degree 6, on a spherical Earth at sea
+  * level. Autopilots correct their heading by such a model: a dipole's direction is off by tens of degrees.
+  * This one is off by some 2° where people live, and by 0.02 gauss (`MagneticFieldSuite`).
   */
 object MagneticField:
 

@@ -5,15 +5,15 @@ import skein.mavlink.CommonDialect.{Command, ModeFlag}
 import skein.units.*
 import skein.vehicle.{Airframe, Setpoint}
 
-/** PX4's simulator interface (its `simulator_mavlink`; the simulator listens, PX4 connects by TCP): HIL_SENSOR at 250 Hz,
-  * HIL_GPS at 8 Hz, SYSTEM_TIME once a second, and HIL_STATE_QUATERNION as often as PX4 asks. PX4's clock is the time of the
-  * first sensors; it answers each with HIL_ACTUATOR_CONTROLS and waits for the next.
+/** PX4's simulator interface (its `simulator_mavlink`; the simulator listens, PX4 connects by TCP):
+  * HIL_SENSOR at 250 Hz, HIL_GPS at 8 Hz, SYSTEM_TIME once a second, and HIL_STATE_QUATERNION as often as PX4
+  * asks. PX4's clock is the time of the first sensors; it answers each with HIL_ACTUATOR_CONTROLS and waits
+  * for the next.
   *
-  * Until the first answer physics runs by the clock, for PX4 starts by the sensors' time. From then on, as long as the
-  * answers say that PX4 runs in lockstep, physics waits for each.
+  * Until the first answer physics runs by the clock, for PX4 starts by the sensors' time. From then on, as
+  * long as the answers say that PX4 runs in lockstep, physics waits for each.
   *
-  * @param system
-  *   the number that frames are sent under
+  * @param system the number that frames are sent under
   */
 final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends AutopilotInterface:
   import Px4Interface.*

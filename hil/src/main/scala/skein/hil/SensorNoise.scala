@@ -1,28 +1,22 @@
 package skein.hil
 
-/** How far sensors are off: white noise, and biases that wander. Defaults are AirSim's for inertial sensors, magnetometer
-  * and barometer (`ImuSimpleParams`, an MPU-6000; `MagnetometerSimpleParams`; `BarometerSimpleParams`, an MS5611) and
-  * PX4's for satellite positioning (its `sensor_gps_sim`): what the estimators of autopilots are flown with in simulation.
+/** How far sensors are off: white noise, and biases that wander. Defaults are AirSim's for inertial sensors,
+  * magnetometer and barometer (`ImuSimpleParams`, an MPU-6000; `MagnetometerSimpleParams`;
+  * `BarometerSimpleParams`, an MS5611) and PX4's for satellite positioning (its `sensor_gps_sim`): what the
+  * estimators of autopilots are flown with in simulation.
   *
-  * @param gyroRadpsPerRootHz
-  *   white noise of the gyroscope, rad/s/√Hz: 0.3°/√h
-  * @param gyroBiasRadpsPerRootS
-  *   random walk of its bias, rad/s/√s: 4.6°/h over the root of 500 s
-  * @param accelMps2PerRootHz
-  *   white noise of the accelerometer, m/s²/√Hz: 0.24 thousandths of gravity
-  * @param accelBiasMps2PerRootS
-  *   random walk of its bias, m/s²/√s: 36 millionths of gravity over the root of 800 s
-  * @param magneticGauss
-  *   white noise of each reading of the magnetometer, gauss
-  * @param pressurePa
-  *   white noise of each reading of the barometer, Pa: 0.22 m
-  * @param pressureDriftPa
-  *   of the weather, Pa: a first-order Gauss-Markov process with a time constant of an hour. Ours: it moves the altitude by
-  *   0.3 m in a minute
-  * @param positionM
-  *   of each satellite fix, horizontally, m: a first-order process with 0.76 of the fix before; 1.5 times that vertically
-  * @param velocityMps
-  *   likewise, m/s, with 0.54 of the fix before; 1.2 times that vertically
+  * @param gyroRadpsPerRootHz white noise of the gyroscope, rad/s/√Hz: 0.3°/√h
+  * @param gyroBiasRadpsPerRootS random walk of its bias, rad/s/√s: 4.6°/h over the root of 500 s
+  * @param accelMps2PerRootHz white noise of the accelerometer, m/s²/√Hz: 0.24 thousandths of gravity
+  * @param accelBiasMps2PerRootS random walk of its bias, m/s²/√s: 36 millionths of gravity over the root of
+  *   800 s
+  * @param magneticGauss white noise of each reading of the magnetometer, gauss
+  * @param pressurePa white noise of each reading of the barometer, Pa: 0.22 m
+  * @param pressureDriftPa of the weather, Pa: a first-order Gauss-Markov process with a time constant of an
+  *   hour. Ours: it moves the altitude by 0.3 m in a minute
+  * @param positionM of each satellite fix, horizontally, m: a first-order process with 0.76 of the fix
+  *   before; 1.5 times that vertically
+  * @param velocityMps likewise, m/s, with 0.54 of the fix before; 1.2 times that vertically
   */
 final case class SensorNoise(
     gyroRadpsPerRootHz: Double = math.toRadians(0.3) / 60,

@@ -6,22 +6,14 @@ import skein.vehicle.Airframe
 
 /** What a vehicle's sensors would show if they were without error.
   *
-  * @param at
-  *   on the simulator's clock
-  * @param up
-  *   since the simulator's start: the time that autopilots are told
-  * @param kinematics
-  *   in the vehicle's own NED frame, whose origin is its start
-  * @param accelerationNed
-  *   m/s², zero for a vehicle at rest
-  * @param place
-  *   where it is on the globe
-  * @param pressurePa
-  *   of the air, Pa
-  * @param temperatureK
-  *   of the air, K
-  * @param jumped
-  *   whether it was put elsewhere, or back to its start, since its sensors were read last
+  * @param at on the simulator's clock
+  * @param up since the simulator's start: the time that autopilots are told
+  * @param kinematics in the vehicle's own NED frame, whose origin is its start
+  * @param accelerationNed m/s², zero for a vehicle at rest
+  * @param place where it is on the globe
+  * @param pressurePa of the air, Pa
+  * @param temperatureK of the air, K
+  * @param jumped whether it was put elsewhere, or back to its start, since its sensors were read last
   */
 final case class SensorTruth(
     at: Instant,

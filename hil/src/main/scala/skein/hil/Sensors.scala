@@ -3,8 +3,8 @@ package skein.hil
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.units.*
 
-/** The sensors of one vehicle, with their errors. Readings depend on the seed and on what was read before; equal seeds and
-  * equal truths give equal readings. Not thread-safe.
+/** The sensors of one vehicle, with their errors. Readings depend on the seed and on what was read before;
+  * equal seeds and equal truths give equal readings. Not thread-safe.
   */
 final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
   import Sensors.*
@@ -62,8 +62,7 @@ object Sensors:
   /** m/s² and rad/s, FRD. */
   final case class Inertial(specificForceFrd: Vector3, angularVelocityFrd: Vector3)
 
-  /** @param velocityNed
-    *   m/s
+  /** @param velocityNed m/s
     */
   final case class Fix(at: Instant, place: GeoLocation, velocityNed: Vector3)
 

@@ -4,7 +4,9 @@ import skein.units.*
 
 class MagneticFieldSuite extends munit.FunSuite:
 
-  /** NOAA and BGS, "The US/UK World Magnetic Model for 2020-2025", table of test values: at sea level in 2020.0. */
+  /** NOAA and BGS, "The US/UK World Magnetic Model for 2020-2025", table of test values: at sea level in
+    * 2020.0.
+    */
   private val published = Seq(
     (80.0, 0.0, Vector3(6570.4, -146.3, 54606.0)),
     (0.0, 120.0, Vector3(39624.3, 109.9, -10932.5)),

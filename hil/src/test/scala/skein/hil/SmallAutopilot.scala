@@ -3,11 +3,10 @@ package skein.hil
 import skein.mavlink.*
 import skein.units.*
 
-/** The other side of PX4's simulator interface: an autopilot that knows its sensors alone, arms when it knows where it is,
-  * climbs to its goal and stays there. It answers every HIL_SENSOR once.
+/** The other side of PX4's simulator interface: an autopilot that knows its sensors alone, arms when it knows
+  * where it is, climbs to its goal and stays there. It answers every HIL_SENSOR once.
   *
-  * @param asksForState
-  *   as PX4 does
+  * @param asksForState as PX4 does
   */
 final class SmallAutopilot(
     goalNed: Vector3 = Vector3(0, 0, -5),

@@ -3,8 +3,8 @@ package skein.hil
 import skein.units.*
 import skein.vehicle.{Airframe, Atmosphere}
 
-/** The controls of a quadrotor's rotors that hold a place: position, velocity, tilt, rate, each proportional to the error of
-  * the one before; altitude and place with an integral.
+/** The controls of a quadrotor's rotors that hold a place: position, velocity, tilt, rate, each proportional
+  * to the error of the one before; altitude and place with an integral.
   */
 final class SmallController(airframe: Airframe = Airframe()):
   private var integral = Vector3.Zero

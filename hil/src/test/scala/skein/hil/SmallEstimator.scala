@@ -3,9 +3,9 @@ package skein.hil
 import scala.collection.mutable
 import skein.units.*
 
-/** What a small autopilot makes of sensors that are off: a complementary filter of attitude (Mahony, Hamel, Pflimlin, IEEE
-  * Transactions on Automatic Control 53, 2008) and one of position and velocity, which take inertial sensors for what is
-  * fast and the others for what is slow.
+/** What a small autopilot makes of sensors that are off: a complementary filter of attitude (Mahony, Hamel,
+  * Pflimlin, IEEE Transactions on Automatic Control 53, 2008) and one of position and velocity, which take
+  * inertial sensors for what is fast and the others for what is slow.
   */
 final class SmallEstimator:
   import SmallEstimator.*

@@ -13,8 +13,8 @@ import scala.util.Using
 import scala.util.control.NonFatal
 import skein.link.Address
 
-/** Kafka's own broker in this process, one node that is its own controller: for tests, and for labs that have no other.
-  * What it holds lies in a folder.
+/** Kafka's own broker in this process, one node that is its own controller: for tests, and for labs that have
+  * no other. What it holds lies in a folder.
   */
 final class KafkaBroker private (server: KafkaRaftServer, val address: Address) extends AutoCloseable:
 
@@ -27,15 +27,11 @@ object KafkaBroker:
 
   /** Blocks until it answers.
     *
-    * @param folder
-    *   for what it holds; one that a broker of before has left goes on
-    * @param at
-    *   where clients find it, which it tells them; port 0 takes a free one
-    * @param certificates
-    *   of [[KafkaCertificates]]: it shows its own, and asks clients for theirs. Without them it speaks to everybody who
-    *   gets there
-    * @return
-    *   or why it cannot be had
+    * @param folder for what it holds; one that a broker of before has left goes on
+    * @param at where clients find it, which it tells them; port 0 takes a free one
+    * @param certificates of [[KafkaCertificates]]: it shows its own, and asks clients for theirs. Without
+    *   them it speaks to everybody who gets there
+    * @return or why it cannot be had
     */
   def start(
       folder: Path,
@@ -78,7 +74,9 @@ object KafkaBroker:
       .addDirectory(folder.toString)
       .run()
 
-  /** As little as one node needs: every topic of internal use has one partition, and starts without waiting for others. */
+  /** As little as one node needs: every topic of internal use has one partition, and starts without waiting
+    * for others.
+    */
   private def configuration(
       folder: Path,
       at: Address,

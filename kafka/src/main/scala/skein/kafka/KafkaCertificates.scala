@@ -2,19 +2,15 @@ package skein.kafka
 
 import java.nio.file.Path
 
-/** Certificates as Kafka's clients and brokers take them: TLS 1.3 alone, and the host that is connected to must be named in
-  * its certificate.
+/** Certificates as Kafka's clients and brokers take them: TLS 1.3 alone, and the host that is connected to
+  * must be named in its certificate.
   */
 object KafkaCertificates:
 
-  /** @param keyStore
-    *   PKCS #12, with this side's key and certificate, which a broker may ask clients for
-    * @param trustStore
-    *   PKCS #12, with the certificate of whoever signs
-    * @param password
-    *   of both, and of the key
-    * @return
-    *   `security.protocol` and `ssl.…` of Kafka's configuration
+  /** @param keyStore PKCS #12, with this side's key and certificate, which a broker may ask clients for
+    * @param trustStore PKCS #12, with the certificate of whoever signs
+    * @param password of both, and of the key
+    * @return `security.protocol` and `ssl.…` of Kafka's configuration
     */
   def settings(keyStore: Path, trustStore: Path, password: String): Map[String, String] = Map(
     Protocol                                -> "SSL",

@@ -14,15 +14,12 @@ import scala.concurrent.{Future, Promise}
 import scala.jdk.CollectionConverters.*
 import scala.util.control.NonFatal
 
-/** One side of two topics: messages written to one, read from the other, each on a thread of its own, since Kafka's clients
-  * may block. What is read are messages from the moment of opening on.
+/** One side of two topics: messages written to one, read from the other, each on a thread of its own, since
+  * Kafka's clients may block. What is read are messages from the moment of opening on.
   *
-  * @param received
-  *   told of what came at once, in its order
-  * @param lost
-  *   told why a message was not written in time
-  * @param absent
-  *   told why the broker cannot be used yet, whenever that is another reason
+  * @param received told of what came at once, in its order
+  * @param lost told why a message was not written in time
+  * @param absent told why the broker cannot be used yet, whenever that is another reason
   */
 private[kafka] final class KafkaPipe(
     topics: KafkaTopics,
@@ -45,8 +42,8 @@ private[kafka] final class KafkaPipe(
   // Since a message was not written. A broker that is back may be a new one, without topics.
   @volatile private var isDoubtful = false
 
-  /** Completes when what is written from now on by others will be read; fails where the broker refuses, and is then not
-    * tried again.
+  /** Completes when what is written from now on by others will be read; fails where the broker refuses, and
+    * is then not tried again.
     */
   def ready: Future[Unit] = reading.future
 

@@ -14,12 +14,12 @@ import scala.util.Using
 import scala.util.control.NonFatal
 import skein.link.Address
 
-/** The two topics that flights and a solver speak over, one partition each, so that messages keep their order.
+/** The two topics that flights and a solver speak over, one partition each, so that messages keep their
+  * order.
   *
-  * @param prefix
-  *   of their names
-  * @param security
-  *   Kafka's own settings of clients: `security.protocol`, `ssl.…`, `sasl.…`; passwords among them are shown nowhere
+  * @param prefix of their names
+  * @param security Kafka's own settings of clients: `security.protocol`, `ssl.…`, `sasl.…`; passwords among
+  *   them are shown nowhere
   */
 final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[String, String] = Map.empty):
   def questions: String = s"$prefix.questions"
@@ -27,8 +27,7 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
 
   /** Makes what is not there. Blocks for some seconds at most.
     *
-    * @return
-    *   or why the broker cannot be used
+    * @return or why the broker cannot be used
     */
   private[kafka] def made(): Either[KafkaTopics.Absent, Unit] =
     val settings =
@@ -49,8 +48,7 @@ object KafkaTopics:
 
   /** A broker that cannot be used.
     *
-    * @param isFinal
-    *   whether it was there and refused, so that to try again helps nobody
+    * @param isFinal whether it was there and refused, so that to try again helps nobody
     */
   private[kafka] final case class Absent(reason: String, isFinal: Boolean)
 

@@ -6,7 +6,9 @@ import java.util.concurrent.TimeUnit
 import scala.jdk.CollectionConverters.*
 import skein.link.Address
 
-/** A broker in a process of its own, on loopback, which can be killed. It ends with the process that started it. */
+/** A broker in a process of its own, on loopback, which can be killed. It ends with the process that started
+  * it.
+  */
 final class BrokerProcess private (process: Process, val address: Address):
 
   /** As by `kill -9`: it writes nothing more, and tells nobody. */
@@ -19,10 +21,8 @@ object BrokerProcess:
 
   /** Blocks until it answers.
     *
-    * @param folder
-    *   for what it holds; what a broker of before has left there goes on
-    * @param port
-    *   0 for any that is free
+    * @param folder for what it holds; what a broker of before has left there goes on
+    * @param port 0 for any that is free
     */
   def start(folder: Path, port: Int, log: File): BrokerProcess =
     val java    = Path.of(sys.props("java.home"), "bin", "java").toString

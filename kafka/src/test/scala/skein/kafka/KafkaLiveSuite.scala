@@ -32,8 +32,7 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
 
   /** Flown in real time by a solver over topics of its own.
     *
-    * @param meanwhile
-    *   done while it flies; then it is stopped
+    * @param meanwhile done while it flies; then it is stopped
     */
   private def flown(
       prefix: String,

@@ -3,16 +3,16 @@ package skein.learn
 import java.util.concurrent.ForkJoinPool
 import java.util.stream.IntStream
 
-/** Threads among which a batch's rows are shared out, in parts of a fixed number of rows: so sums over parts have the same
-  * bits on any number of threads. A batch takes less time than threads take to start, so they wait for the next one here.
+/** Threads among which a batch's rows are shared out, in parts of a fixed number of rows: so sums over parts
+  * have the same bits on any number of threads. A batch takes less time than threads take to start, so they
+  * wait for the next one here.
   */
 final class BatchThreads(threads: Int) extends AutoCloseable:
   private val pool = Option.when(threads > 1)(ForkJoinPool(threads))
 
   /** Blocks until all parts are done.
     *
-    * @param work
-    *   of a part's number, its first row and the one behind its last
+    * @param work of a part's number, its first row and the one behind its last
     */
   def share(rows: Int)(work: (Int, Int, Int) => Unit): Unit =
     val parts          = BatchThreads.parts(rows)

@@ -3,8 +3,8 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** What an action is worth where something is seen: one network or several, of which the most cautious counts, and slow
-  * copies of them that tell what is worth reaching.
+/** What an action is worth where something is seen: one network or several, of which the most cautious
+  * counts, and slow copies of them that tell what is worth reaching.
   */
 private[learn] final class Critics(
     count: Int,

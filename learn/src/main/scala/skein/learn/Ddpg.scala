@@ -1,9 +1,9 @@
 package skein.learn
 
-/** Deep deterministic policy gradient: one critic, a policy that follows its slope, slow copies of both; it tries out by
-  * normal noise. Source: Lillicrap, Hunt, Pritzel, Heess, Erez, Tassa, Silver, Wierstra, "Continuous control with deep
-  * reinforcement learning", arXiv:1509.02971; the noise has no memory, as in Fujimoto, van Hoof, Meger,
-  * arXiv:1802.09477.
+/** Deep deterministic policy gradient: one critic, a policy that follows its slope, slow copies of both; it
+  * tries out by normal noise. Source: Lillicrap, Hunt, Pritzel, Heess, Erez, Tassa, Silver, Wierstra,
+  * "Continuous control with deep reinforcement learning", arXiv:1509.02971; the noise has no memory, as in
+  * Fujimoto, van Hoof, Meger, arXiv:1802.09477.
   */
 final class Ddpg(
     observations: Int,

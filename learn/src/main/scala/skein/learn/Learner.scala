@@ -1,7 +1,7 @@
 package skein.learn
 
-/** Learns a policy from what comes of its actions. Learning has rounds: a learner draws from random numbers of the round,
-  * and between two rounds it is what [[Saved.save]] keeps.
+/** Learns a policy from what comes of its actions. Learning has rounds: a learner draws from random numbers
+  * of the round, and between two rounds it is what [[Saved.save]] keeps.
   */
 trait Learner extends Saved:
   /** The policy: its first outputs, squashed by tanh, are the actions. */
@@ -11,8 +11,7 @@ trait Learner extends Saved:
 
   /** Actions that try something out, from −1 to 1.
     *
-    * @param seen
-    *   rows of what each environment shows
+    * @param seen rows of what each environment shows
     */
   def explore(seen: Array[Float], actions: Array[Float]): Unit
 

@@ -4,15 +4,13 @@ import skein.loop.learning.{FlownLearner, Transition}
 import skein.policy.{LearnedPolicy, Role}
 import skein.signal.SplitMix64
 
-/** Learns on from what one flight meets, by a learner that remembers. Rewards are those of [[SideTask]]: a small distance
-  * is the pursuer's, a great one the evader's. Equal transitions in equal lessons give equal weights.
+/** Learns on from what one flight meets, by a learner that remembers. Rewards are those of [[SideTask]]: a
+  * small distance is the pursuer's, a great one the evader's. Equal transitions in equal lessons give equal
+  * weights.
   *
-  * @param bounds
-  *   the most that its policies turn, as a [[LearnedPolicy]]'s last parameters
-  * @param updates
-  *   for each transition
-  * @param transitionsPerVersion
-  *   after which its policy is flown
+  * @param bounds the most that its policies turn, as a [[LearnedPolicy]]'s last parameters
+  * @param updates for each transition
+  * @param transitionsPerVersion after which its policy is flown
   */
 final class LearnerInFlight private (
     learner: OffPolicy,
@@ -52,7 +50,8 @@ final class LearnerInFlight private (
 
 object LearnerInFlight:
 
-  /** What came of one decision, as a task's step. A flight is one episode, which its end does not terminate. */
+  /** What came of one decision, as a task's step. A flight is one episode, which its end does not terminate.
+    */
   private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
     def count: Int                               = 1
     def actions: Int                             = 1
@@ -67,10 +66,8 @@ object LearnerInFlight:
 
   /** A learner as it was kept.
     *
-    * @param load
-    *   fills it with what was kept, if anything was
-    * @return
-    *   the parameters of its policy, and the learner; or why it cannot learn in flight
+    * @param load fills it with what was kept, if anything was
+    * @return the parameters of its policy, and the learner; or why it cannot learn in flight
     */
   def of(
       algorithm: Algorithm,

@@ -5,8 +5,7 @@ import skein.signal.SplitMix64
 
 /** A dense network: hidden layers of rectifiers (what is negative becomes 0), and linear outputs. Mutable.
   *
-  * @param widths
-  *   inputs, hidden layers, outputs
+  * @param widths inputs, hidden layers, outputs
   */
 final class Network(val widths: Vector[Int]) extends Saved:
   require(
@@ -21,7 +20,9 @@ final class Network(val widths: Vector[Int]) extends Saved:
   private val starts =
     Vector.tabulate(layers)(layer => (widths(layer) + 1) * widths(layer + 1)).scanLeft(0)(_ + _)
 
-  /** Layer by layer: the weights, those of an input together, then the biases. [[changed]] is to be told of a change. */
+  /** Layer by layer: the weights, those of an input together, then the biases. [[changed]] is to be told of a
+    * change.
+    */
   val parameters: Array[Float] = Array.ofDim(starts.last)
 
   /** The weights of a layer but the first, those of an output together. */
@@ -49,8 +50,7 @@ final class Network(val widths: Vector[Int]) extends Saved:
 
   /** Draws all parameters of a layer evenly from ± 1 / √inputs.
     *
-    * @param lastScale
-    *   times so much for the last layer
+    * @param lastScale times so much for the last layer
     */
   def draw(random: SplitMix64, lastScale: Double = 1): Network =
     for layer <- 0 until layers do
@@ -89,11 +89,10 @@ final class Network(val widths: Vector[Int]) extends Saved:
 object Network:
   val MostWidth = 1024
 
-/** What a network computes of some rows of inputs, and how errors go back through it. Different rows may be computed by
-  * different threads.
+/** What a network computes of some rows of inputs, and how errors go back through it. Different rows may be
+  * computed by different threads.
   *
-  * @param widths
-  *   of the networks that use it
+  * @param widths of the networks that use it
   */
 final class Pass(widths: Vector[Int], val rows: Int):
   private val activations = widths.map(width => Array.ofDim[Float](rows * width)).toArray
@@ -110,8 +109,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
   /** The same by the inputs, after [[backwardToInput]]. */
   def inputError: Array[Float] = errors(0)
 
-  /** @param until
-    *   rows; not included
+  /** @param until rows; not included
     */
   def forward(network: Network, from: Int, until: Int): Unit =
     var layer = 0
@@ -146,8 +144,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
 
   /** After [[forward]].
     *
-    * @param gradient
-    *   as the network's parameters: the rows' derivatives are added
+    * @param gradient as the network's parameters: the rows' derivatives are added
     */
   def backward(network: Network, from: Int, until: Int, gradient: Array[Float]): Unit =
     back(network, from, until): layer =>

@@ -3,8 +3,8 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** What learners have in common that learn from transitions of long ago: they remember them, and after each step make
-  * updates on batches of them.
+/** What learners have in common that learn from transitions of long ago: they remember them, and after each
+  * step make updates on batches of them.
   */
 private[learn] abstract class OffPolicy(
     observations: Int,

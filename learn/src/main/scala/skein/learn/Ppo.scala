@@ -3,10 +3,10 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** Proximal policy optimisation: collects steps by the newest policy, and learns from them as long as the policy stays
-  * near the one that collected them. Source: Schulman, Wolski, Dhariwal, Radford, Klimov, arXiv:1707.06347, equation 7;
-  * advantages are normalised over a batch. The policy draws normally around tanh of the actor's outputs, as widely
-  * everywhere; environments take what is beyond ± 1 for the bound.
+/** Proximal policy optimisation: collects steps by the newest policy, and learns from them as long as the
+  * policy stays near the one that collected them. Source: Schulman, Wolski, Dhariwal, Radford, Klimov,
+  * arXiv:1707.06347, equation 7; advantages are normalised over a batch. The policy draws normally around
+  * tanh of the actor's outputs, as widely everywhere; environments take what is beyond ± 1 for the bound.
   */
 final class Ppo(
     observations: Int,
@@ -115,8 +115,8 @@ final class Ppo(
     criticOptimiser.step(critic.parameters, criticGradient.of(0))
     critic.changed()
 
-  /** The errors of a row by the smaller of two products: ratio of likelihoods times advantage, with the ratio as it is,
-    * and held near 1.
+  /** The errors of a row by the smaller of two products: ratio of likelihoods times advantage, with the ratio
+    * as it is, and held near 1.
     */
   private def improve(row: Int, at: Int, advantage: Double, count: Int, byWidths: Array[Float]): Unit =
     var log = 0.0

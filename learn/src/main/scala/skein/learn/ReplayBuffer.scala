@@ -55,8 +55,7 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
 
 /** Rows of what was seen, done, earned and reached.
   *
-  * @param goesOn
-  *   1, or 0 where nothing comes after
+  * @param goesOn 1, or 0 where nothing comes after
   */
 final class Transitions(observations: Int, acted: Int, val count: Int):
   val seen: Array[Float]    = Array.ofDim(count * observations)

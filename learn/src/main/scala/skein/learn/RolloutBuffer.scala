@@ -2,8 +2,7 @@ package skein.learn
 
 /** The newest steps of all environments in their order, and how much better than expected each turned out.
   *
-  * @param steps
-  *   of each environment that it holds
+  * @param steps of each environment that it holds
   */
 private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: Int, val steps: Int):
   val seen: Array[Float]       = Array.ofDim(steps * count * observations)
@@ -25,8 +24,7 @@ private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: I
   def rows: Int       = filled * count
   def clear(): Unit   = filled = 0
 
-  /** @param reachedValues
-    *   of what the step reached
+  /** @param reachedValues of what the step reached
     */
   def add(
       seenNow: Array[Float],
@@ -47,7 +45,9 @@ private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: I
       chained(from + row) = !task.ended(row)
     filled += 1
 
-  /** Generalised advantage estimation: Schulman, Moritz, Levine, Jordan, Abbeel, arXiv:1506.02438, equation 16. */
+  /** Generalised advantage estimation: Schulman, Moritz, Levine, Jordan, Abbeel, arXiv:1506.02438, equation
+    * 16.
+    */
   def estimate(discount: Double, decay: Double): Unit =
     for row <- 0 until count do
       var advantage = 0.0

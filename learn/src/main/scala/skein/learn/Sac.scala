@@ -2,9 +2,10 @@ package skein.learn
 
 import java.io.{DataInput, DataOutput}
 
-/** Soft actor-critic: two critics, a policy that draws its actions and is paid for drawing widely, by a temperature that
-  * adapts. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel, Levine, "Soft actor-critic
-  * algorithms and applications", arXiv:1812.05905, with its wanted entropy of minus one a number of an action.
+/** Soft actor-critic: two critics, a policy that draws its actions and is paid for drawing widely, by a
+  * temperature that adapts. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel,
+  * Levine, "Soft actor-critic algorithms and applications", arXiv:1812.05905, with its wanted entropy of
+  * minus one a number of an action.
   */
 final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: BatchThreads)
     extends OffPolicy(observations, actions, settings, seed):
@@ -131,8 +132,7 @@ private[learn] final class Temperature(rate: Double) extends Saved:
   def log: Float    = logarithm(0)
   def value: Double = StrictMath.exp(log)
 
-  /** @param logs
-    *   of the likelihoods of what was drawn
+  /** @param logs of the likelihoods of what was drawn
     */
   def step(logs: Array[Float], actions: Int): Unit =
     var sum = 0.0

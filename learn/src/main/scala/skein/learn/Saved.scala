@@ -7,8 +7,7 @@ import java.nio.ByteBuffer
 trait Saved:
   def save(out: DataOutput): Unit
 
-  /** @throws IOException
-    *   if what was saved is of another shape
+  /** @throws IOException if what was saved is of another shape
     */
   def load(in: DataInput): Unit
 

@@ -7,12 +7,12 @@ import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
-/** A side of the duel or of another scenario, under the loop's timing. What is seen is scaled as [[LearnedPolicy]] scales
-  * it, and rewards so that what a policy earns in all, discounted, is of about 1. Of several vehicles of the side, one of
-  * each environment learns; the others fly what was learned before the round.
+/** A side of the duel or of another scenario, under the loop's timing. What is seen is scaled as
+  * [[LearnedPolicy]] scales it, and rewards so that what a policy earns in all, discounted, is of about 1. Of
+  * several vehicles of the side, one of each environment learns; the others fly what was learned before the
+  * round.
   *
-  * @param seed
-  *   of where episodes begin and what befalls their messages
+  * @param seed of where episodes begin and what befalls their messages
   */
 final class SideTask private (
     batch: EnvironmentBatch,
@@ -66,10 +66,8 @@ object SideTask:
   /** Of a distance, as environments reward it once a period. */
   private[learn] val RewardPerM: Double = RewardScale / EnvironmentSettings.RewardM
 
-  /** @param opponent
-    *   of the other role; without one, as the settings name it
-    * @return
-    *   or what was expected and came
+  /** @param opponent of the other role; without one, as the settings name it
+    * @return or what was expected and came
     */
   def of(
       settings: EnvironmentSettings,
@@ -89,7 +87,8 @@ object SideTask:
   private def bounds(settings: EnvironmentSettings) =
     settings.mostTurn(if settings.learners == "pursuer" then Role.Pursuer else Role.Evader)
 
-  /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron by neuron.
+  /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron
+    * by neuron.
     */
   def parameters(actor: Network): Vector[Double] =
     require(

@@ -1,6 +1,7 @@
 package skein.learn
 
-/** What is learned: several environments side by side, stepped together. Numbers stand row by row, a row an environment.
+/** What is learned: several environments side by side, stepped together. Numbers stand row by row, a row an
+  * environment.
   */
 trait Task:
   /** Environments. */
@@ -14,8 +15,7 @@ trait Task:
 
   /** All episodes begin anew; equal rounds begin equally.
     *
-    * @param actor
-    *   the policy so far, for those who share it
+    * @param actor the policy so far, for those who share it
     */
   def begin(round: Long, actor: Network): Unit
 

@@ -1,10 +1,9 @@
 package skein.learn
 
-/** Learning, round by round: in each, every environment begins anew and is stepped a fixed number of times. Between two
-  * rounds it can be saved and gone on with, to the same bits.
+/** Learning, round by round: in each, every environment begins anew and is stepped a fixed number of times.
+  * Between two rounds it can be saved and gone on with, to the same bits.
   *
-  * @param stepsPerRound
-  *   of each environment
+  * @param stepsPerRound of each environment
   */
 final class Training(task: Task, learner: Learner, stepsPerRound: Int):
   private val actions = Array.ofDim[Float](task.count * task.actions)
@@ -12,10 +11,8 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
 
   def stepsOfRound: Long = stepsPerRound.toLong * task.count
 
-  /** @param isStopped
-    *   asked at every step; what is left of the round is not learned then
-    * @return
-    *   the mean reward of a step; or what is wrong; or nothing if it was stopped
+  /** @param isStopped asked at every step; what is left of the round is not learned then
+    * @return the mean reward of a step; or what is wrong; or nothing if it was stopped
     */
   def round(number: Long, isStopped: () => Boolean = () => false): Either[String, Option[Double]] =
     learner.begin(number)

@@ -30,7 +30,8 @@ private[learn] final class HalfOfIt(count: Int, seed: Long) extends SmallTask(co
       reached(row) = seen(row)
       start(row)
 
-/** An integrator to be brought to 0, in episodes of 20 steps that end for no reason of their own: x += 0.2 a. */
+/** An integrator to be brought to 0, in episodes of 20 steps that end for no reason of their own: x += 0.2 a.
+  */
 private[learn] final class Integrator(count: Int, seed: Long) extends SmallTask(count, 1, seed):
   private val steps = Array.ofDim[Int](count)
 

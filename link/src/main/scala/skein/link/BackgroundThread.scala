@@ -5,8 +5,9 @@ import java.util.concurrent.atomic.AtomicInteger
 
 /** Threads that give way to all others of the user's session.
   *
-  * By Linux's [[SchedulingPolicy.Idle]]. Its price: where other programs of the session keep all processors busy, such a thread
-  * hardly runs, and the JVM, which stops all threads now and then, waits for one that is ready to run; 0.8 s were seen.
+  * By Linux's [[SchedulingPolicy.Idle]]. Its price: where other programs of the session keep all processors
+  * busy, such a thread hardly runs, and the JVM, which stops all threads now and then, waits for one that is
+  * ready to run; 0.8 s were seen.
   */
 object BackgroundThread:
 
@@ -25,11 +26,10 @@ object BackgroundThread:
       thread.setPriority(Thread.MIN_PRIORITY)
       thread
 
-  /** Lowers the JVM's compiler threads to the scheduler's idle class. Call it after a warm-up, when most of the program is
-    * compiled.
+  /** Lowers the JVM's compiler threads to the scheduler's idle class. Call it after a warm-up, when most of
+    * the program is compiled.
     *
-    * @return
-    *   how many the system made do so
+    * @return how many the system made do so
     */
   def compilersGiveWay(): Int =
     SchedulingPolicy.threadsNamed(CompilerNames*).count(SchedulingPolicy.Idle.schedule)

@@ -6,8 +6,8 @@ import java.util.concurrent.{ForkJoinPool, ForkJoinWorkerThread, ThreadFactory}
 import org.apache.pekko.dispatch.{DispatcherPrerequisites, ForkJoinExecutorConfigurator}
 import scala.concurrent.{BlockContext, CanAwait}
 
-/** Pekko's fork-join executor, with its settings, whose threads are [[ControlThreads]]. Chosen by a dispatcher's `executor`;
-  * Pekko calls this constructor by reflection.
+/** Pekko's fork-join executor, with its settings, whose threads are [[ControlThreads]]. Chosen by a
+  * dispatcher's `executor`; Pekko calls this constructor by reflection.
   */
 final class ControlExecutor(config: Config, prerequisites: DispatcherPrerequisites)
     extends ForkJoinExecutorConfigurator(config.getConfig("fork-join-executor"), prerequisites):

@@ -3,19 +3,18 @@ package skein.link
 import java.util.concurrent.{ConcurrentHashMap, ThreadFactory}
 import scala.jdk.CollectionConverters.*
 
-/** The threads that readings, decisions and commands pass through: the scheduler's, those of sockets, and those of Pekko's
-  * dispatchers that are [[ControlExecutor]]s. They do not wait and do not compute for long.
+/** The threads that readings, decisions and commands pass through: the scheduler's, those of sockets, and
+  * those of Pekko's dispatchers that are [[ControlExecutor]]s. They do not wait and do not compute for long.
   */
 object ControlThreads:
   private val alive                 = ConcurrentHashMap.newKeySet[Int]()
   @volatile private var haveTheLead = false
 
-  /** From now on they run before all other threads of the machine, where the system allows it, and so do the collectors,
-    * for which they wait. Call it after a warm-up: meanwhile the compilers would hardly run. What lives then is collected
-    * once, for some 20 ms, so that later collections do not copy it again and again.
+  /** From now on they run before all other threads of the machine, where the system allows it, and so do the
+    * collectors, for which they wait. Call it after a warm-up: meanwhile the compilers would hardly run. What
+    * lives then is collected once, for some 20 ms, so that later collections do not copy it again and again.
     *
-    * @return
-    *   how many do
+    * @return how many do
     */
   def lead(): Int =
     haveTheLead = true

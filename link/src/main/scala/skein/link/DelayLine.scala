@@ -7,28 +7,27 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import skein.units.*
 
-/** One direction of one connection over an emulated link: bytes, the end of sending and failures come out as late as
-  * a [[Delivery]] decides, in order. What is due at once comes out as one segment, as from a socket. Datagrams stay as they
-  * are, and come out when each is due, whichever entered first.
+/** One direction of one connection over an emulated link: bytes, the end of sending and failures come out as
+  * late as a [[Delivery]] decides, in order. What is due at once comes out as one segment, as from a socket.
+  * Datagrams stay as they are, and come out when each is due, whichever entered first.
   *
   *   - '''Emits when''' downstream pulls and the oldest bytes are due.
   *   - '''Backpressures when''' `maxBytes` or more are under way.
-  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due too.
+  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due
+  *     too.
   *   - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
-  *   - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely takes no more
-  *     is not told to the sender, as with a socket: what still comes is discarded until upstream ends.
+  *   - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely
+  *     takes no more is not told to the sender, as with a socket: what still comes is discarded until
+  *     upstream ends.
   *
-  * Where a bottleneck lies before it, bytes enter it piece by piece, as the bottleneck has room, and are as late as it
-  * makes them besides.
+  * Where a bottleneck lies before it, bytes enter it piece by piece, as the bottleneck has room, and are as
+  * late as it makes them besides.
   *
   * What a silence swallows is counted as lost; neither side learns of it before the link breaks.
   *
-  * @param open
-  *   the delivery of a line that opens at this moment
-  * @param sinceStart
-  *   time since the link's start
-  * @param broken
-  *   the error that both sides get when the link breaks
+  * @param open the delivery of a line that opens at this moment
+  * @param sinceStart time since the link's start
+  * @param broken the error that both sides get when the link breaks
   */
 private[link] final class DelayLine(
     open: Span => Delivery,
@@ -88,8 +87,7 @@ private[link] final class DelayLine(
 
       /** Hands the bottleneck what it has room for.
         *
-        * @param held
-        *   whether there was no room before
+        * @param held whether there was no room before
         */
       private def send(held: Boolean): Unit =
         for line <- bottleneck do

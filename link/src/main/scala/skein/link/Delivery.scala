@@ -4,18 +4,14 @@ import java.util.concurrent.atomic.LongAdder
 import skein.signal.LatencySampler
 import skein.units.*
 
-/** Decides when what enters one direction of one connection comes out at its far end. All times count from the link's
-  * start. Holds mutable state (what entered before delays what enters after), one per direction and connection; reads
-  * no clock.
+/** Decides when what enters one direction of one connection comes out at its far end. All times count from
+  * the link's start. Holds mutable state (what entered before delays what enters after), one per direction
+  * and connection; reads no clock.
   *
-  * @param stalls
-  *   in the order of their beginnings
-  * @param break
-  *   the reset or silence that ends this connection
-  * @param stallsMet
-  *   counts the stalls that held something up
-  * @param isInOrder
-  *   whether what enters first comes out first
+  * @param stalls in the order of their beginnings
+  * @param break the reset or silence that ends this connection
+  * @param stallsMet counts the stalls that held something up
+  * @param isInOrder whether what enters first comes out first
   */
 private[link] final class Delivery(
     sampler: LatencySampler,
@@ -31,12 +27,13 @@ private[link] final class Delivery(
 
   /** The delay of what enters now, sampled.
     *
-    * @param now
-    *   never smaller than at the call before
+    * @param now never smaller than at the call before
     */
   def delay(now: Span): Span = sampler.oneWay(now)
 
-  /** When bytes come out that leave at a moment: a delay later, and never within a stall. None if they are lost. */
+  /** When bytes come out that leave at a moment: a delay later, and never within a stall. None if they are
+    * lost.
+    */
   def due(leave: Span, delay: Span): Option[Span] =
     met = met.filter(_.until > leave)
     val due = afterStalls(if isInOrder then lastDue.max(leave + delay) else leave + delay)

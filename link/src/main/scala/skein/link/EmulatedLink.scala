@@ -50,14 +50,12 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     Span.ofNanos(longestWaitNs.get)
   )
 
-  /** A new connection over this link; its first side is the client's, its second the server's. To be materialised
-    * once.
+  /** A new connection over this link; its first side is the client's, its second the server's. To be
+    * materialised once.
     *
-    * @param broken
-    *   the error that both sides get when the link breaks the connection
-    * @param isDatagrams
-    *   whether each piece is a datagram: it comes out as it went in, never joined to another, each after a delay of its own,
-    *   so a later one may come first
+    * @param broken the error that both sides get when the link breaks the connection
+    * @param isDatagrams whether each piece is a datagram: it comes out as it went in, never joined to
+    *   another, each after a delay of its own, so a later one may come first
     */
   def connection(
       broken: TransportError,
@@ -87,8 +85,8 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
       line(toClient, index + 1)
     )
 
-  /** How long it takes until a client that connects now is heard of at the server's side, and from then until the
-    * client has the answer. None if one of the two is lost.
+  /** How long it takes until a client that connects now is heard of at the server's side, and from then until
+    * the client has the answer. None if one of the two is lost.
     */
   def handshake(): Option[(toServer: Span, toClient: Span)] =
     val index     = 2 * attempts.getAndIncrement()

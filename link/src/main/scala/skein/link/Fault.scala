@@ -12,9 +12,9 @@ enum Fault:
   /** Every open connection breaks at once, with an error on both sides. New ones may be opened. */
   case Reset
 
-  /** The other side is gone without a word: for this long whatever is sent, or under way, is lost and nobody is told
-    * (half-open connections); attempts to connect get no answer. Then the other side is back and resets what was
-    * open. A length beyond the flight's leaves the connections half-open for good.
+  /** The other side is gone without a word: for this long whatever is sent, or under way, is lost and nobody
+    * is told (half-open connections); attempts to connect get no answer. Then the other side is back and
+    * resets what was open. A length beyond the flight's leaves the connections half-open for good.
     */
   case Silence(lasts: Span)
 
@@ -23,14 +23,10 @@ final case class TimedFault(at: Span, fault: Fault)
 
 /** What goes wrong on a link over its life: what a schedule says, and what happens at random.
   *
-  * @param schedule
-  *   in any order
-  * @param stallEvery
-  *   mean time from a random stall's start to the next's (a Poisson process)
-  * @param stallLasts
-  *   mean length of random stalls, exponentially distributed
-  * @param resetEvery
-  *   mean time between random resets (a Poisson process)
+  * @param schedule in any order
+  * @param stallEvery mean time from a random stall's start to the next's (a Poisson process)
+  * @param stallLasts mean length of random stalls, exponentially distributed
+  * @param resetEvery mean time between random resets (a Poisson process)
   */
 final case class Faults(
     schedule: Seq[TimedFault] = Nil,
@@ -53,8 +49,8 @@ final case class Faults(
       (from = at, until = at + Span.ofSeconds(random.nextExponential(stallLasts.toSeconds)))
     merge(scheduled.sortBy(_.from).iterator, atRandom)(_.from)
 
-  /** What ends a connection that is opened at a moment: the silence that reigns then, or else the first reset or silence
-    * after it.
+  /** What ends a connection that is opened at a moment: the silence that reigns then, or else the first reset
+    * or silence after it.
     */
   private[link] def breakOf(opened: Span, seed: Long): Option[TimedFault] =
     val random    = SplitMix64(SplitMix64.seedOf(seed, 2))

@@ -5,22 +5,14 @@ import skein.units.*
 
 /** What a link has done so far.
   *
-  * @param connections
-  *   opened over it
-  * @param bytesToServer
-  *   that came out at the server's side
-  * @param bytesToClient
-  *   that came out at the client's side
-  * @param bytesLost
-  *   swallowed by a silence, or under way when the link broke
-  * @param stalls
-  *   a stall counts once for each direction of each connection that it held up
-  * @param disconnects
-  *   connections that the link broke
-  * @param bytesHeldBack
-  *   that waited at their senders, because the queue of a line with a rate was full
-  * @param longestWait
-  *   of any bytes, from their sending until a line with a rate had sent them
+  * @param connections opened over it
+  * @param bytesToServer that came out at the server's side
+  * @param bytesToClient that came out at the client's side
+  * @param bytesLost swallowed by a silence, or under way when the link broke
+  * @param stalls a stall counts once for each direction of each connection that it held up
+  * @param disconnects connections that the link broke
+  * @param bytesHeldBack that waited at their senders, because the queue of a line with a rate was full
+  * @param longestWait of any bytes, from their sending until a line with a rate had sent them
   */
 final case class LinkCounts(
     connections: Long,

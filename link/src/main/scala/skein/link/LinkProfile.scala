@@ -4,16 +4,12 @@ import skein.signal.LatencyProfile
 
 /** Everything that a link does to what crosses it.
   *
-  * @param toServer
-  *   delays towards the server; the rate that it may name ([[LatencyProfile.Limited]]) is that of a line which all
-  *   connections share
-  * @param toClient
-  *   the same on the way back, where a line of its own lies
-  * @param maxBytesInFlight
-  *   what one direction of a connection holds at most (besides the segment that exceeds it); then the sender waits, as
-  *   with TCP's window
-  * @param cutsSegments
-  *   whether bytes arrive in segments that are cut anywhere, for tests of what reads them
+  * @param toServer delays towards the server; the rate that it may name ([[LatencyProfile.Limited]]) is that
+  *   of a line which all connections share
+  * @param toClient the same on the way back, where a line of its own lies
+  * @param maxBytesInFlight what one direction of a connection holds at most (besides the segment that exceeds
+  *   it); then the sender waits, as with TCP's window
+  * @param cutsSegments whether bytes arrive in segments that are cut anywhere, for tests of what reads them
   */
 final case class LinkProfile(
     toServer: LatencyProfile,

@@ -6,11 +6,12 @@ import org.apache.pekko.stream.scaladsl.{BidiFlow, Keep, Sink}
 import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
 import scala.concurrent.{ExecutionContext, Future}
 
-/** Puts an emulated link between clients and a server: it listens, and forwards each connection that it accepts to the
-  * server's address, over the link in both directions. A client that gets through here while the server does not
-  * listen sees its connection break.
+/** Puts an emulated link between clients and a server: it listens, and forwards each connection that it
+  * accepts to the server's address, over the link in both directions. A client that gets through here while
+  * the server does not listen sees its connection break.
   *
-  * A connection is accepted without delay; only what crosses it is delayed. By datagrams, whoever is heard is a connection.
+  * A connection is accepted without delay; only what crosses it is delayed. By datagrams, whoever is heard is
+  * a connection.
   */
 final class LinkProxy private (listening: Listening, link: EmulatedLink, switch: SharedKillSwitch):
 
@@ -28,12 +29,9 @@ object LinkProxy:
 
   /** Starts listening. Fails with a [[TransportError]] where that is not possible.
     *
-    * @param maxConnections
-    *   open at the same time; further clients wait to be accepted
-    * @param unreachable
-    *   told why, when an accepted connection cannot be continued to the server
-    * @param isDatagrams
-    *   whether the transport carries datagrams: see [[EmulatedLink.connection]]
+    * @param maxConnections open at the same time; further clients wait to be accepted
+    * @param unreachable told why, when an accepted connection cannot be continued to the server
+    * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
     */
   def start(
       listenAt: Address,

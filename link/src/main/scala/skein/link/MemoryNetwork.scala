@@ -14,19 +14,18 @@ import scala.util.{Failure, Success, Try}
 import skein.signal.SplitMix64
 import skein.units.*
 
-/** Hosts and emulated links between them, all in memory: the transport of virtual time. It runs in real time as well.
+/** Hosts and emulated links between them, all in memory: the transport of virtual time. It runs in real time
+  * as well.
   *
-  * A host's name serves as its address; `127.0.0.1` and `localhost` mean the host itself. Connecting takes a round
-  * trip of the link. As with TCP, each direction of a connection closes for itself; a side that fails breaks both;
-  * while a host is silent, connections stay open without an error, and attempts to connect end with
-  * [[TransportError.NoAnswer]].
+  * A host's name serves as its address; `127.0.0.1` and `localhost` mean the host itself. Connecting takes a
+  * round trip of the link. As with TCP, each direction of a connection closes for itself; a side that fails
+  * breaks both; while a host is silent, connections stay open without an error, and attempts to connect end
+  * with [[TransportError.NoAnswer]].
   *
   * On one thread everything follows from the seed.
   *
-  * @param connectTimeout
-  *   after this long an attempt to connect that is not answered fails
-  * @param backlog
-  *   connections that may wait to be accepted by one listener; further attempts are not answered
+  * @param connectTimeout after this long an attempt to connect that is not answered fails
+  * @param backlog connections that may wait to be accepted by one listener; further attempts are not answered
   */
 final class MemoryNetwork(
     plan: NetworkPlan,
@@ -105,7 +104,9 @@ final class MemoryNetwork(
               case None         => noAnswer(to, connectTimeout - toServer)
           case _ => noAnswer(to, connectTimeout)
 
-    /** The server's half of connecting: the client's end of the new connection, or a refusal. None if too many wait. */
+    /** The server's half of connecting: the client's end of the new connection, or a refusal. None if too
+      * many wait.
+      */
     private def accept(
         client: Address,
         to: Address,

@@ -14,12 +14,9 @@ final case class NetworkFault(where: Where, timed: TimedFault)
 
 /** What lies between the hosts of a [[MemoryNetwork]].
   *
-  * @param link
-  *   between any two hosts for which `links` says nothing
-  * @param links
-  *   by client's and server's host
-  * @param faults
-  *   besides those that the links' own profiles name
+  * @param link between any two hosts for which `links` says nothing
+  * @param links by client's and server's host
+  * @param faults besides those that the links' own profiles name
   */
 final case class NetworkPlan(
     link: LinkProfile = LinkProfile.none,
@@ -27,8 +24,8 @@ final case class NetworkPlan(
     faults: Seq[NetworkFault] = Nil
 ):
 
-  /** The link from a client's host to a server's, with all faults that concern it. A host reaches itself without delay
-    * or fault.
+  /** The link from a client's host to a server's, with all faults that concern it. A host reaches itself
+    * without delay or fault.
     */
   private[link] def between(client: String, server: String): LinkProfile =
     if client == server then LinkProfile.none

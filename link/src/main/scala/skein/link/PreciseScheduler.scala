@@ -18,13 +18,14 @@ import scala.concurrent.duration.{FiniteDuration, NANOSECONDS}
 import scala.jdk.CollectionConverters.*
 import scala.util.control.{NoStackTrace, NonFatal}
 
-/** Pekko's scheduler for loops that must act on time: a task starts about 0.1 ms after it is due and never before,
-  * where Pekko's default wheel rounds up to ticks of 10 ms. One thread and a heap: scheduling and cancelling cost
-  * O(log n), and a cancelled task leaves no trace.
+/** Pekko's scheduler for loops that must act on time: a task starts about 0.1 ms after it is due and never
+  * before, where Pekko's default wheel rounds up to ticks of 10 ms. One thread and a heap: scheduling and
+  * cancelling cost O(log n), and a cancelled task leaves no trace.
   *
-  * Chosen by `pekko.scheduler.implementation`; Pekko calls this constructor by reflection. As any Pekko scheduler it
-  * runs tasks on the caller's execution context, refuses tasks once closed (`IllegalStateException`), and runs what
-  * is marked `TaskRunOnClose` when it closes. `PreciseSchedulerLiveSuite` measures it.
+  * Chosen by `pekko.scheduler.implementation`; Pekko calls this constructor by reflection. As any Pekko
+  * scheduler it runs tasks on the caller's execution context, refuses tasks once closed
+  * (`IllegalStateException`), and runs what is marked `TaskRunOnClose` when it closes.
+  * `PreciseSchedulerLiveSuite` measures it.
   */
 final class PreciseScheduler(
     @scala.annotation.unused config: Config,
@@ -106,7 +107,8 @@ final class PreciseScheduler(
       if first && runnable.isInstanceOf[Scheduler.TaskRunOnClose] then onClose.remove(this): Unit
       first
 
-  /** Runs again and again until cancelled or until the task throws; `nextDelayNanos` is asked after each run. */
+  /** Runs again and again until cancelled or until the task throws; `nextDelayNanos` is asked after each run.
+    */
   private final class Repeating(
       runnable: Runnable,
       initialDelay: FiniteDuration

@@ -6,33 +6,30 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
 
-/** How Linux chooses between threads that could run, see sched(7). Java's priorities have no effect there, and niceness has
-  * none on how soon a thread runs that wakes up: it waits until the one on its processor has used up its slice, some 3 to
-  * 5 ms. Other systems know no such policies.
+/** How Linux chooses between threads that could run, see sched(7). Java's priorities have no effect there,
+  * and niceness has none on how soon a thread runs that wakes up: it waits until the one on its processor has
+  * used up its slice, some 3 to 5 ms. Other systems know no such policies.
   *
-  * @param number
-  *   in linux/sched.h
-  * @param priority
-  *   among threads of the same policy
+  * @param number in linux/sched.h
+  * @param priority among threads of the same policy
   */
 enum SchedulingPolicy(private val number: Int, priority: Int):
 
-  /** Runs when no other thread of the user's session wants the processor, and gives it back at once. Any process may choose
-    * it, and may not go back.
+  /** Runs when no other thread of the user's session wants the processor, and gives it back at once. Any
+    * process may choose it, and may not go back.
     */
   case Idle extends SchedulingPolicy(5, 0)
 
-  /** Takes the processor at once from every thread without it. It takes the right to: root, `CAP_SYS_NICE`, or a limit of
-    * `ulimit -r 1`. What such a thread starts has the usual policy. The system leaves other threads a twentieth of the time.
+  /** Takes the processor at once from every thread without it. It takes the right to: root, `CAP_SYS_NICE`,
+    * or a limit of `ulimit -r 1`. What such a thread starts has the usual policy. The system leaves other
+    * threads a twentieth of the time.
     */
   case RealTime extends SchedulingPolicy(2, 1)
 
   /** Schedules one of this process's threads like that.
     *
-    * @param thread
-    *   as the system numbers them
-    * @return
-    *   whether the system did so
+    * @param thread as the system numbers them
+    * @return whether the system did so
     */
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
     Using.resource(Arena.ofConfined()): arena =>
@@ -68,7 +65,9 @@ object SchedulingPolicy:
       Try(Files.readSymbolicLink(Path.of("/proc/thread-self")).getFileName.toString.toInt).toOption
     else None
 
-  /** This process's threads whose names begin so; the system knows 15 characters of a name. None where it tells none. */
+  /** This process's threads whose names begin so; the system knows 15 characters of a name. None where it
+    * tells none.
+    */
   def threadsNamed(beginnings: String*): Vector[Int] =
     if isLinux then
       Try(Using.resource(Files.list(Path.of("/proc/self/task")))(_.iterator.asScala.toVector))

@@ -5,7 +5,9 @@ import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import skein.signal.SplitMix64
 
-/** Where a byte stream is cut into segments. TCP promises nothing about it, and what reads from it must not care. */
+/** Where a byte stream is cut into segments. TCP promises nothing about it, and what reads from it must not
+  * care.
+  */
 private[link] object Segments:
 
   /** Cuts what comes at up to three places anywhere, decided by the seed. */

@@ -17,16 +17,15 @@ import skein.units.Span
 
 /** Real sockets. Small messages leave at once (no Nagle).
   *
-  * Without certificates each direction closes for itself: a side that has finished sending still receives what is on its
-  * way. With them a connection is TLS 1.3, both sides show theirs, and the host that is connected to must be named in its
-  * own; a connection that is open may prove not to be trusted with its first bytes, and whichever side ends, ends it.
+  * Without certificates each direction closes for itself: a side that has finished sending still receives
+  * what is on its way. With them a connection is TLS 1.3, both sides show theirs, and the host that is
+  * connected to must be named in its own; a connection that is open may prove not to be trusted with its
+  * first bytes, and whichever side ends, ends it.
   *
-  * @param connectTimeout
-  *   after this long without an answer a connection fails with [[TransportError.NoAnswer]]
-  * @param backlog
-  *   connections that may wait to be accepted; the operating system refuses more
-  * @param certificates
-  *   of this side, and those that it trusts
+  * @param connectTimeout after this long without an answer a connection fails with
+  *   [[TransportError.NoAnswer]]
+  * @param backlog connections that may wait to be accepted; the operating system refuses more
+  * @param certificates of this side, and those that it trusts
   */
 final class TcpTransport(
     connectTimeout: Span = Span.ofSeconds(5),

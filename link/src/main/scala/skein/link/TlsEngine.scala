@@ -3,14 +3,14 @@ package skein.link
 import java.nio.ByteBuffer
 import javax.net.ssl.{SSLEngine, SSLEngineResult, SSLParameters, SSLSession}
 
-/** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the whole of a record,
-  * however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for 18, and so tries for ever.
+/** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the
+  * whole of a record, however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for
+  * 18, and so tries for ever.
   */
 private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
   import TlsEngine.*
 
-  /** @param source
-    *   begins with a record, since a call takes whole ones
+  /** @param source begins with a record, since a call takes whole ones
     */
   def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
     // What is no record it refuses by itself, once, and is closed then.

@@ -3,8 +3,8 @@ package skein.link
 import skein.units.Decimals.fixed
 import skein.units.Span
 
-/** Why there is no connection, or no listener. Futures and streams of a [[Transport]] fail with one of these; the
-  * message says what was wanted, where, and what to do.
+/** Why there is no connection, or no listener. Futures and streams of a [[Transport]] fail with one of these;
+  * the message says what was wanted, where, and what to do.
   */
 enum TransportError(message: String, cause: Throwable | Null = null) extends RuntimeException(message, cause):
 
@@ -27,7 +27,8 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
         s"port ${at.port} of ${at.host} is taken; stop the other program or choose another port"
       )
 
-  /** The system does not let this program listen there: not an address of this machine, or a privileged port. */
+  /** The system does not let this program listen there: not an address of this machine, or a privileged port.
+    */
   case CannotListen(at: Address, reason: String) extends TransportError(s"cannot listen at $at: $reason")
 
   /** The connection was there and broke: reset by the other side, or by the network. */

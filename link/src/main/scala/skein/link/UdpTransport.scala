@@ -21,12 +21,11 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Try
 import skein.units.Span
 
-/** Datagrams as connections: whoever is heard at a port is one, until nothing was heard of it for `idle`. Nobody is told of
-  * the other side's end, what is lost is lost, and what does not fit into a datagram is cut. For protocols that find the
-  * beginning of a message by themselves, such as MAVLink.
+/** Datagrams as connections: whoever is heard at a port is one, until nothing was heard of it for `idle`.
+  * Nobody is told of the other side's end, what is lost is lost, and what does not fit into a datagram is
+  * cut. For protocols that find the beginning of a message by themselves, such as MAVLink.
   *
-  * @param mostPeers
-  *   at one port; what others send is dropped
+  * @param mostPeers at one port; what others send is dropped
   */
 final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem)
     extends Transport:
@@ -63,8 +62,7 @@ final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(u
 
 /** An open UDP port, with a thread of its own that receives.
   *
-  * @param dropped
-  *   datagrams of peers beyond the limit, or for which nobody was quick enough
+  * @param dropped datagrams of peers beyond the limit, or for which nobody was quick enough
   */
 final class UdpSocket private (
     socket: DatagramSocket,

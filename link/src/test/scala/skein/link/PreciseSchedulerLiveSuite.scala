@@ -24,8 +24,8 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
   test("an actor system takes it from its configuration"):
     assertEquals(scheduler.getClass, classOf[PreciseScheduler])
 
-  /** What a measurement came to when it first was as it should be, or at the fifth try: what the scheduler does is the
-    * same each time, what a busy machine adds is not.
+  /** What a measurement came to when it first was as it should be, or at the fifth try: what the scheduler
+    * does is the same each time, what a busy machine adds is not.
     */
   private def untilItHolds[A](measure: => Future[A], tries: Int = 5)(holds: A => Boolean): Future[A] =
     measure.flatMap: result =>

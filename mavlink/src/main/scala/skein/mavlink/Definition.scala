@@ -6,8 +6,8 @@ import scala.compiletime.{constValue, constValueTuple}
 import scala.deriving.Mirror
 import scala.reflect.ClassTag
 
-/** One kind of message: its number, its name and how its fields lie in a payload. On the wire the fields are ordered by
-  * the size of their elements, the greatest first, and extensions follow as published.
+/** One kind of message: its number, its name and how its fields lie in a payload. On the wire the fields are
+  * ordered by the size of their elements, the greatest first, and extensions follow as published.
   */
 final class Definition[A <: Message] private (
     val id: Int,
@@ -40,7 +40,8 @@ final class Definition[A <: Message] private (
     for index <- ordered ++ extensions do write(fields(index), bytes, message.productElement(index))
     bytes.array.take(bytes.array.lastIndexWhere(_ != 0).max(0) + 1)
 
-  /** Of any bytes: what is missing is zero, what is too much belongs to extensions that are not known here. */
+  /** Of any bytes: what is missing is zero, what is too much belongs to extensions that are not known here.
+    */
   def decode(payload: Array[Byte]): A =
     val bytes  = ByteBuffer.wrap(payload.padTo(length, 0.toByte)).order(ByteOrder.LITTLE_ENDIAN)
     val values = new Array[Any](fields.size)

@@ -6,14 +6,11 @@ import scala.compiletime.ops.int.S
 
 /** How one field of a message lies on the wire, little-endian.
   *
-  * @param typeName
-  *   as in the published definitions
-  * @param size
-  *   of one element, bytes
-  * @param count
-  *   of elements; 0 where it is no array
-  * @param isExtension
-  *   whether it came later: such fields lie behind all others and are no part of the message's [[Definition.crcExtra]]
+  * @param typeName as in the published definitions
+  * @param size of one element, bytes
+  * @param count of elements; 0 where it is no array
+  * @param isExtension whether it came later: such fields lie behind all others and are no part of the
+  *   message's [[Definition.crcExtra]]
   */
 final class Field[A] private (
     val typeName: String,

@@ -2,14 +2,10 @@ package skein.mavlink
 
 /** A message that came, and from whom.
   *
-  * @param system
-  *   1 to 255: a vehicle, or a ground station
-  * @param component
-  *   a part of it; 1 is the autopilot
-  * @param sequence
-  *   0 to 255, one more with every frame of that component
-  * @param isSigned
-  *   whether it bore a signature that is right
+  * @param system 1 to 255: a vehicle, or a ground station
+  * @param component a part of it; 1 is the autopilot
+  * @param sequence 0 to 255, one more with every frame of that component
+  * @param isSigned whether it bore a signature that is right
   */
 final case class Frame(
     system: Int,

@@ -4,22 +4,14 @@ import scala.collection.mutable
 
 /** What a reader came upon.
   *
-  * @param frames
-  *   that were right and known
-  * @param lost
-  *   that were missing by the numbers of those that came
-  * @param unknown
-  *   frames of messages that are not known here, and cannot be checked
-  * @param badChecksum
-  *   what looked like a frame and was none, or was damaged
-  * @param badSignature
-  *   frames without a signature, with a wrong one, or sent before
-  * @param notUnderstood
-  *   frames with flags that a receiver must know
-  * @param version1
-  *   frames of MAVLink 1
-  * @param garbageBytes
-  *   outside of frames
+  * @param frames that were right and known
+  * @param lost that were missing by the numbers of those that came
+  * @param unknown frames of messages that are not known here, and cannot be checked
+  * @param badChecksum what looked like a frame and was none, or was damaged
+  * @param badSignature frames without a signature, with a wrong one, or sent before
+  * @param notUnderstood frames with flags that a receiver must know
+  * @param version1 frames of MAVLink 1
+  * @param garbageBytes outside of frames
   */
 final case class ReaderCounts(
     frames: Long = 0,
@@ -32,10 +24,10 @@ final case class ReaderCounts(
     garbageBytes: Long = 0
 )
 
-/** Bytes in, frames out; whatever comes, it goes on at the next frame. Holds less than one frame. Not thread-safe.
+/** Bytes in, frames out; whatever comes, it goes on at the next frame. Holds less than one frame. Not
+  * thread-safe.
   *
-  * @param signing
-  *   with it, a frame that is not signed rightly is refused
+  * @param signing with it, a frame that is not signed rightly is refused
   */
 final class FrameReader(signing: Option[Signing] = None):
   import Frame.*

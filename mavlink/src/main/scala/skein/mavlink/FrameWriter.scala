@@ -2,8 +2,7 @@ package skein.mavlink
 
 /** Frames of one component, counted. Not thread-safe.
   *
-  * @param signing
-  *   without it frames are not signed
+  * @param signing without it frames are not signed
   */
 final class FrameWriter(system: Int, component: Int, signing: Option[Signing] = None):
   require((1 to 255).contains(system), s"expected a system from 1 to 255, came $system")

@@ -1,8 +1,9 @@
 package skein.mavlink
 
-/** A message of the common dialect. Fields stand in the published order, by their published names; units are those of
-  * the definitions (mavlink.io, `common.xml`), which are not the same everywhere. Unsigned numbers of up to 32 bits are
-  * positive; of 64 bits they are the bits. Fields with a default are extensions, which older peers do not know.
+/** A message of the common dialect. Fields stand in the published order, by their published names; units are
+  * those of the definitions (mavlink.io, `common.xml`), which are not the same everywhere. Unsigned numbers
+  * of up to 32 bits are positive; of 64 bits they are the bits. Fields with a default are extensions, which
+  * older peers do not know.
   */
 sealed trait Message extends Product
 
@@ -298,7 +299,9 @@ final case class SetPositionTargetGlobalInt(
     yawRate: Float
 ) extends Message
 
-/** A question with `tc1` 0 and the asker's time in `ts1`; its answer repeats `ts1` and has the answerer's time in `tc1`, ns. */
+/** A question with `tc1` 0 and the asker's time in `ts1`; its answer repeats `ts1` and has the answerer's
+  * time in `tc1`, ns.
+  */
 final case class Timesync(tc1: Long, ts1: Long, targetSystem: Int = 0, targetComponent: Int = 0)
     extends Message
 
@@ -360,14 +363,14 @@ final case class ExtendedSysState(vtolState: Int, landedState: Int) extends Mess
 /** A line for a person; a long one in several pieces of one `id`. */
 final case class Statustext(severity: Int, text: String, id: Int = 0, chunkSeq: Int = 0) extends Message
 
-/** Motors and servos of a simulated vehicle, from its autopilot: 0 to 1 each, or −1 to 1; the mode is a heartbeat's, and the
-  * first flag says that the autopilot waits for the next sensors.
+/** Motors and servos of a simulated vehicle, from its autopilot: 0 to 1 each, or −1 to 1; the mode is a
+  * heartbeat's, and the first flag says that the autopilot waits for the next sensors.
   */
 final case class HilActuatorControls(timeUsec: Long, controls: Vector[Float], mode: Int, flags: Long)
     extends Message
 
-/** What sensors of a simulated vehicle show: m/s², rad/s, gauss, hPa, m, °C; `fieldsUpdated` has a bit for each field that
-  * is new.
+/** What sensors of a simulated vehicle show: m/s², rad/s, gauss, hPa, m, °C; `fieldsUpdated` has a bit for
+  * each field that is new.
   */
 final case class HilSensor(
     timeUsec: Long,

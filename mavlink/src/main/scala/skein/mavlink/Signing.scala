@@ -3,18 +3,17 @@ package skein.mavlink
 import java.security.MessageDigest
 import scala.collection.mutable
 
-/** Signatures of one link, made and checked: the first 48 bits of a SHA-256 over the key, the frame, the link's number and
-  * a time that never runs backwards. One for each link and direction's end; not thread-safe.
+/** Signatures of one link, made and checked: the first 48 bits of a SHA-256 over the key, the frame, the
+  * link's number and a time that never runs backwards. One for each link and direction's end; not
+  * thread-safe.
   *
-  * A frame is refused whose time is not later than that of the frame before it of the same system, component and link, or,
-  * for the first of these, more than a minute behind this end's time. No more than [[Signing.MostStreams]] are kept apart.
+  * A frame is refused whose time is not later than that of the frame before it of the same system, component
+  * and link, or, for the first of these, more than a minute behind this end's time. No more than
+  * [[Signing.MostStreams]] are kept apart.
   *
-  * @param key
-  *   32 bytes, the same at both ends
-  * @param link
-  *   its number, 0 to 255
-  * @param now
-  *   in units of 10 µs since the start of 2015, UTC: see [[Signing.timeOf]]
+  * @param key 32 bytes, the same at both ends
+  * @param link its number, 0 to 255
+  * @param now in units of 10 µs since the start of 2015, UTC: see [[Signing.timeOf]]
   */
 final class Signing(key: Array[Byte], link: Int, now: () => Long):
   import Signing.*
@@ -30,7 +29,9 @@ final class Signing(key: Array[Byte], link: Int, now: () => Long):
     val stamp = link.toByte +: Array.tabulate(6)(index => (newest >> (8 * index)).toByte)
     stamp ++ digest(frame, stamp)
 
-  /** Whether a frame, up to and with its checksum, is what the other end signed, and not one that was sent before. */
+  /** Whether a frame, up to and with its checksum, is what the other end signed, and not one that was sent
+    * before.
+    */
   private[mavlink] def accepts(
       frame: Array[Byte],
       signature: Array[Byte],

@@ -10,8 +10,8 @@ private[mcap] final class Catalogue:
   def schema(id: Int): Option[Record.Schema]   = schemas.get(id)
   def channel(id: Int): Option[Record.Channel] = channels.get(id)
 
-  /** Takes what names a schema or a channel; refuses what refers to one that nobody named. Gives whether the record
-    * counts: readers are to step over a schema with the identifier 0.
+  /** Takes what names a schema or a channel; refuses what refers to one that nobody named. Gives whether the
+    * record counts: readers are to step over a schema with the identifier 0.
     */
   def takes(record: Record, at: Place): Boolean = record match
     case message: Record.Message =>

@@ -6,8 +6,7 @@ import java.util.Arrays
 
 /** How the records of a chunk are compressed.
   *
-  * @param name
-  *   as a chunk says it
+  * @param name as a chunk says it
   */
 enum Compression(val name: String):
   case Uncompressed extends Compression("")
@@ -33,7 +32,9 @@ object Compression:
   /** Four bytes of Zstandard, a block of one value, stand for no more than 128 KiB. */
   private val ZstdRatio = 32768L
 
-  /** The records of a chunk, which claims their size; or, of a chunk that is cut off, as many as there are of them. */
+  /** The records of a chunk, which claims their size; or, of a chunk that is cut off, as many as there are of
+    * them.
+    */
   private[mcap] def decompress(
       chunk: Record.Chunk,
       limits: McapLimits,

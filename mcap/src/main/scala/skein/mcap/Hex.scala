@@ -1,6 +1,8 @@
 package skein.mcap
 
-/** Numbers as hexadecimal digits, the same on every machine: a format string would write them by the machine's locale. */
+/** Numbers as hexadecimal digits, the same on every machine: a format string would write them by the
+  * machine's locale.
+  */
 private[mcap] object Hex:
   def of(number: Int): String = "0x" + digits(number, 8)
 

@@ -2,12 +2,12 @@ package skein.mcap
 
 import scala.collection.mutable
 
-/** Reads messages by time and topic, attachments and metadata by their index, from a source that can be read anywhere. It
-  * opens the chunks that may hold what is asked for and no others. Where a file says too little about itself, or is cut
-  * off, `open` reads it through once.
+/** Reads messages by time and topic, attachments and metadata by their index, from a source that can be read
+  * anywhere. It opens the chunks that may hold what is asked for and no others. Where a file says too little
+  * about itself, or is cut off, `open` reads it through once.
   *
-  * Every chunk that is opened is held to its CRC and to what the index says of it. Memory: the summary, and the chunks
-  * whose times overlap, uncompressed, within the limits.
+  * Every chunk that is opened is held to its CRC and to what the index says of it. Memory: the summary, and
+  * the chunks whose times overlap, uncompressed, within the limits.
   */
 final class IndexedReader private (source: ByteSource, limits: McapLimits, val summary: Summary):
 
@@ -108,7 +108,9 @@ final class IndexedReader private (source: ByteSource, limits: McapLimits, val s
               open = Some(stretch -> IndexedReader.this.open(stretch))
       found
 
-  /** Opens a stretch once no message that is still to come from those that are open can be earlier than its first. */
+  /** Opens a stretch once no message that is still to come from those that are open can be earlier than its
+    * first.
+    */
   private final class InTimeOrder(
       wanted: Vector[Stretch],
       query: Query,

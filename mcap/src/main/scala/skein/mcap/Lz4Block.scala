@@ -17,7 +17,9 @@ private[mcap] object Lz4Block:
   final class Memory:
     private[Lz4Block] val seen = new Array[Int](1 << HashBits)
 
-  /** Gives where the block ends in `target`, which must have room for length + length / 255 + 16 bytes behind `to`. */
+  /** Gives where the block ends in `target`, which must have room for length + length / 255 + 16 bytes behind
+    * `to`.
+    */
   def compress(
       source: Array[Byte],
       from: Int,
@@ -103,8 +105,8 @@ private[mcap] object Lz4Block:
     target(out) = left.toByte
     out + 1
 
-  /** Gives where the block ends in `target`, which it may look back into as far as `oldest`. Throws `Damaged`; where the
-    * source is only a beginning (`cut`), gives what it holds instead.
+  /** Gives where the block ends in `target`, which it may look back into as far as `oldest`. Throws
+    * `Damaged`; where the source is only a beginning (`cut`), gives what it holds instead.
     */
   def decompress(
       source: Array[Byte],

@@ -3,9 +3,10 @@ package skein.mcap
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Arrays
 
-/** LZ4 frames (https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md), to and from one array. Reads every frame
-  * that needs no dictionary, with blocks that look back into earlier ones and without, one behind another, and steps over
-  * skippable ones. Writes blocks of at most 4 MiB, each for itself, and the size of the content.
+/** LZ4 frames (https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md), to and from one array. Reads
+  * every frame that needs no dictionary, with blocks that look back into earlier ones and without, one behind
+  * another, and steps over skippable ones. Writes blocks of at most 4 MiB, each for itself, and the size of
+  * the content.
   */
 private[mcap] object Lz4Frame:
   private val Number          = 0x184d2204
@@ -47,7 +48,9 @@ private[mcap] object Lz4Frame:
     view.putInt(out, 0)
     Bytes.of(target, 0, out + 4)
 
-  /** What the frames hold, at most `size` bytes. Throws `Damaged`; where they are cut off (`cut`), gives what there is. */
+  /** What the frames hold, at most `size` bytes. Throws `Damaged`; where they are cut off (`cut`), gives what
+    * there is.
+    */
   def decompress(source: Bytes, size: Int, cut: Boolean): Bytes =
     Reading(source.array, source.from, source.from + source.size, size, cut).all()
 

@@ -4,10 +4,9 @@ import scala.util.control.NoStackTrace
 
 /** Where in a file something lies.
   *
-  * @param offset
-  *   bytes from the start of the file
-  * @param inChunk
-  *   in a chunk that starts at `offset`: bytes from the start of its records, uncompressed; -1 outside of chunks
+  * @param offset bytes from the start of the file
+  * @param inChunk in a chunk that starts at `offset`: bytes from the start of its records, uncompressed; -1
+  *   outside of chunks
   */
 final case class Place(offset: Long, inChunk: Int = -1):
   override def toString: String =

@@ -2,14 +2,11 @@ package skein.mcap
 
 /** What a reader takes at most, whatever a file claims. Nothing is allocated for a claim beyond.
   *
-  * @param recordBytes
-  *   one record, thus one message, one attachment, or one chunk as it is in the file
-  * @param chunkBytes
-  *   the records of one chunk, uncompressed
-  * @param summaryBytes
-  *   the summary with its offsets
-  * @param openBytes
-  *   chunks that a reader in order of log time holds at once because their times overlap, uncompressed
+  * @param recordBytes one record, thus one message, one attachment, or one chunk as it is in the file
+  * @param chunkBytes the records of one chunk, uncompressed
+  * @param summaryBytes the summary with its offsets
+  * @param openBytes chunks that a reader in order of log time holds at once because their times overlap,
+  *   uncompressed
   */
 final case class McapLimits(
     recordBytes: Int = 256 << 20,

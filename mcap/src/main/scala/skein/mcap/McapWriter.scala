@@ -4,10 +4,10 @@ import java.util.zip.CRC32
 import scala.collection.immutable.{SeqMap, VectorMap}
 import scala.collection.mutable
 
-/** Writes a file, record by record, into a sink; no input or output of its own. Every part carries its CRC. What was
-  * given to it is in the sink after `flush` or `finish`; should the process end before, the file can still be read up to
-  * the last chunk. Memory: one chunk, compressed and not, and 16 bytes for each message in it; for the summary, 100 bytes
-  * for each chunk, attachment and metadata record.
+/** Writes a file, record by record, into a sink; no input or output of its own. Every part carries its CRC.
+  * What was given to it is in the sink after `flush` or `finish`; should the process end before, the file can
+  * still be read up to the last chunk. Memory: one chunk, compressed and not, and 16 bytes for each message
+  * in it; for the summary, 100 bytes for each chunk, attachment and metadata record.
   *
   * Not for several threads at once.
   */
@@ -33,8 +33,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
 
   /** Names a schema; gives its identifier.
     *
-    * @param encoding
-    *   such as `protobuf` or `jsonschema`
+    * @param encoding such as `protobuf` or `jsonschema`
     */
   def schema(name: String, encoding: String, data: Bytes): Int =
     open()
@@ -46,8 +45,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
 
   /** Names a channel; gives its identifier.
     *
-    * @param schemaId
-    *   of its messages; 0 for none
+    * @param schemaId of its messages; 0 for none
     */
   def channel(
       topic: String,
@@ -65,10 +63,8 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
 
   /** A message of a channel named before.
     *
-    * @param logTime
-    *   when it was recorded, ns
-    * @param publishTime
-    *   when it was sent, ns; the log time where that is not known
+    * @param logTime when it was recorded, ns
+    * @param publishTime when it was sent, ns; the log time where that is not known
     */
   def message(channelId: Int, sequence: Int, logTime: Long, publishTime: Long, data: Bytes): Unit =
     message(channelId, sequence, logTime, publishTime, data.array, data.from, data.from + data.size)
@@ -101,8 +97,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
     target.raw(data, from, until)
     room()
 
-  /** @param createTime
-    *   ns; 0 where it is not known
+  /** @param createTime ns; 0 where it is not known
     */
   def attachment(logTime: Long, createTime: Long, name: String, mediaType: String, data: Bytes): Unit =
     open()

@@ -2,12 +2,9 @@ package skein.mcap
 
 /** Which messages, in which order.
   *
-  * @param from
-  *   earliest log time, ns, unsigned
-  * @param until
-  *   log times before it, ns, unsigned; none for no bound
-  * @param topics
-  *   none for all
+  * @param from earliest log time, ns, unsigned
+  * @param until log times before it, ns, unsigned; none for no bound
+  * @param topics none for all
   */
 final case class Query(
     from: Long = 0,

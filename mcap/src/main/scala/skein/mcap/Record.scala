@@ -2,30 +2,27 @@ package skein.mcap
 
 import scala.collection.immutable.SeqMap
 
-/** A record of an MCAP file, as the specification has it (https://mcap.dev/spec). Times are nanoseconds since an epoch
-  * that reader and writer agree on, unsigned; so are sizes and offsets, which count bytes from the start of the file.
-  * Identifiers are unsigned 16 bit, a sequence number unsigned 32 bit. A CRC of 0 means that there is none.
+/** A record of an MCAP file, as the specification has it (https://mcap.dev/spec). Times are nanoseconds since
+  * an epoch that reader and writer agree on, unsigned; so are sizes and offsets, which count bytes from the
+  * start of the file. Identifiers are unsigned 16 bit, a sequence number unsigned 32 bit. A CRC of 0 means
+  * that there is none.
   */
 sealed abstract class Record(val opcode: Int) extends Product
 
 object Record:
   final case class Header(profile: String, library: String) extends Record(Opcode.Header)
 
-  /** @param summaryStart
-    *   0 where there is no summary
-    * @param summaryOffsetStart
-    *   0 where there are no summary offsets
+  /** @param summaryStart 0 where there is no summary
+    * @param summaryOffsetStart 0 where there are no summary offsets
     */
   final case class Footer(summaryStart: Long, summaryOffsetStart: Long, summaryCrc: Int)
       extends Record(Opcode.Footer)
 
-  /** @param encoding
-    *   of the schema itself, such as `protobuf` or `jsonschema`; empty where there is none
+  /** @param encoding of the schema itself, such as `protobuf` or `jsonschema`; empty where there is none
     */
   final case class Schema(id: Int, name: String, encoding: String, data: Bytes) extends Record(Opcode.Schema)
 
-  /** @param schemaId
-    *   0 where there is none
+  /** @param schemaId 0 where there is none
     */
   final case class Channel(
       id: Int,
@@ -35,20 +32,15 @@ object Record:
       metadata: SeqMap[String, String]
   ) extends Record(Opcode.Channel)
 
-  /** @param logTime
-    *   when it was recorded
-    * @param publishTime
-    *   when it was sent; the log time where that is not known
+  /** @param logTime when it was recorded
+    * @param publishTime when it was sent; the log time where that is not known
     */
   final case class Message(channelId: Int, sequence: Int, logTime: Long, publishTime: Long, data: Bytes)
       extends Record(Opcode.Message)
 
-  /** @param startTime
-    *   earliest log time of its messages; 0 where it has none
-    * @param endTime
-    *   latest log time of its messages; 0 where it has none
-    * @param records
-    *   schemas, channels and messages, compressed
+  /** @param startTime earliest log time of its messages; 0 where it has none
+    * @param endTime latest log time of its messages; 0 where it has none
+    * @param records schemas, channels and messages, compressed
     */
   final case class Chunk(
       startTime: Long,
@@ -59,14 +51,12 @@ object Record:
       records: Bytes
   ) extends Record(Opcode.Chunk)
 
-  /** @param entries
-    *   of each message of the channel in the chunk before: log time, and where it starts in the chunk's records; 8 bytes
-    *   each
+  /** @param entries of each message of the channel in the chunk before: log time, and where it starts in the
+    *   chunk's records; 8 bytes each
     */
   final case class MessageIndex(channelId: Int, entries: Bytes) extends Record(Opcode.MessageIndex)
 
-  /** @param messageIndexOffsets
-    *   by channel, where its message index lies; empty where there are none
+  /** @param messageIndexOffsets by channel, where its message index lies; empty where there are none
     */
   final case class ChunkIndex(
       startTime: Long,
@@ -80,8 +70,7 @@ object Record:
       uncompressedSize: Long
   ) extends Record(Opcode.ChunkIndex)
 
-  /** @param crc
-    *   of all fields before it; computed by whoever writes
+  /** @param crc of all fields before it; computed by whoever writes
     */
   final case class Attachment(
       logTime: Long,
@@ -102,8 +91,7 @@ object Record:
       mediaType: String
   ) extends Record(Opcode.AttachmentIndex)
 
-  /** @param channelMessageCounts
-    *   messages by channel; empty where nobody counted
+  /** @param channelMessageCounts messages by channel; empty where nobody counted
     */
   final case class Statistics(
       messageCount: Long,
@@ -125,8 +113,7 @@ object Record:
   final case class SummaryOffset(groupOpcode: Int, groupStart: Long, groupLength: Long)
       extends Record(Opcode.SummaryOffset)
 
-  /** @param dataCrc
-    *   of all bytes of the file before this record
+  /** @param dataCrc of all bytes of the file before this record
     */
   final case class DataEnd(dataCrc: Int) extends Record(Opcode.DataEnd)
 

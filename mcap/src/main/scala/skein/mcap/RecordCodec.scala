@@ -47,7 +47,9 @@ private[mcap] object RecordCodec:
       crc.update(out.array, at, out.size - at)
       out.u32(crc.getValue.toInt)
 
-  /** The record whose content is `array[from, until)`; it keeps a view of the array. `place` is where the record starts. */
+  /** The record whose content is `array[from, until)`; it keeps a view of the array. `place` is where the
+    * record starts.
+    */
   def decode(opcode: Int, array: Array[Byte], from: Int, until: Int, place: Place): Record =
     val fields = Fields(array, from, until, Opcode.name(opcode), place)
     opcode match

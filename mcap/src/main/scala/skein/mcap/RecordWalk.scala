@@ -4,12 +4,9 @@ import java.nio.{ByteBuffer, ByteOrder}
 
 /** Steps over records that lie one behind another.
   *
-  * @param offset
-  *   where they start in the file
-  * @param inChunk
-  *   whether that is the chunk whose records they are
-  * @param cut
-  *   whether they may end within a record, which then does not count
+  * @param offset where they start in the file
+  * @param inChunk whether that is the chunk whose records they are
+  * @param cut whether they may end within a record, which then does not count
   */
 private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Boolean, cut: Boolean = false):
   private val array = records.array

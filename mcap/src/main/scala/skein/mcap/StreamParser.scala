@@ -6,8 +6,7 @@ import java.util.zip.CRC32
 /** What a parser says when it is asked for the next record. */
 enum Parsed:
 
-  /** @param length
-    *   of the whole record, with its kind and length, at its place
+  /** @param length of the whole record, with its kind and length, at its place
     */
   case Found(record: Record, at: Place, length: Long)
 
@@ -20,13 +19,15 @@ enum Parsed:
   /** Nothing more can be read; after `CutOff`, everything before the cut has been. */
   case Failed(error: McapError)
 
-/** Reads a file from its start to its end, in pieces as they come: bytes in, records out, no input or output of its own.
+/** Reads a file from its start to its end, in pieces as they come: bytes in, records out, no input or output
+  * of its own.
   *
-  * A chunk is given as a record and then, record by record, as what it holds. Every CRC that is there is held: of chunks,
-  * attachments, the data section and the summary. A file that is cut off gives all that lies before the cut, of a chunk
-  * that is cut through as well, where no CRC can speak for it; then `CutOff`. What is out of place, refers to what nobody
-  * named, or names it again otherwise, is refused. Memory: one record, and one chunk's records uncompressed, both within
-  * the limits; room for a record is made as its bytes come, at most 4 MiB ahead of them.
+  * A chunk is given as a record and then, record by record, as what it holds. Every CRC that is there is
+  * held: of chunks, attachments, the data section and the summary. A file that is cut off gives all that lies
+  * before the cut, of a chunk that is cut through as well, where no CRC can speak for it; then `CutOff`. What
+  * is out of place, refers to what nobody named, or names it again otherwise, is refused. Memory: one record,
+  * and one chunk's records uncompressed, both within the limits; room for a record is made as its bytes come,
+  * at most 4 MiB ahead of them.
   *
   * Whoever uses it from several threads takes care that they take turns.
   */

@@ -2,14 +2,10 @@ package skein.mcap
 
 /** What a file holds and where.
   *
-  * @param chunks
-  *   in the order of the file
-  * @param stretches
-  *   where messages are, in the order of the file
-  * @param rebuilt
-  *   whether the file had to be read through for it, since it says too little about itself
-  * @param cut
-  *   where the file is cut off, if it is
+  * @param chunks in the order of the file
+  * @param stretches where messages are, in the order of the file
+  * @param rebuilt whether the file had to be read through for it, since it says too little about itself
+  * @param cut where the file is cut off, if it is
   */
 final case class Summary(
     header: Record.Header,
@@ -29,8 +25,7 @@ final case class Summary(
 
 /** A part of a file that holds messages.
   *
-  * @param channels
-  *   those that have messages in it; none where that is not known
+  * @param channels those that have messages in it; none where that is not known
   */
 final case class Stretch(
     offset: Long,

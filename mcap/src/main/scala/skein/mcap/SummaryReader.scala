@@ -6,7 +6,9 @@ import scala.collection.mutable
 private[mcap] object SummaryReader:
   private val FooterLength = 9 + 20
 
-  /** The summary; by reading through the file where it is cut off, or where its summary does not lead to all messages. */
+  /** The summary; by reading through the file where it is cut off, or where its summary does not lead to all
+    * messages.
+    */
   def read(source: ByteSource, limits: McapLimits): Summary =
     val header = this.header(source, limits)
     val tail   = FooterLength + Magic.bytes.size

@@ -2,7 +2,8 @@ package skein.mcap
 
 import java.nio.{ByteBuffer, ByteOrder}
 
-/** The checksum of LZ4 frames (https://github.com/Cyan4973/xxHash/blob/dev/doc/xxhash_spec.md), with seed 0. */
+/** The checksum of LZ4 frames (https://github.com/Cyan4973/xxHash/blob/dev/doc/xxhash_spec.md), with seed 0.
+  */
 private[mcap] object XxHash32:
   private val P1 = 0x9e3779b1
   private val P2 = 0x85ebca77

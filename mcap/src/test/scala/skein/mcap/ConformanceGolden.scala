@@ -4,9 +4,9 @@ import java.util.HexFormat
 import scala.collection.immutable.VectorMap
 import scala.io.Source
 
-/** The pairs of the specification's own conformance suite, 312 of its 416: what a file holds, as JSON, and its bytes. A
-  * line of `conformance.jsonl` is a pair: its name, the features that it shows, its records, and the file in hexadecimal
-  * digits.
+/** The pairs of the specification's own conformance suite, 312 of its 416: what a file holds, as JSON, and
+  * its bytes. A line of `conformance.jsonl` is a pair: its name, the features that it shows, its records, and
+  * the file in hexadecimal digits.
   */
 class ConformanceGolden extends munit.FunSuite:
   import ConformanceGolden.*

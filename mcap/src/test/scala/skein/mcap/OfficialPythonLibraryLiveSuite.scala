@@ -5,8 +5,9 @@ import scala.jdk.CollectionConverters.*
 import skein.mcap.file.McapFile
 import skein.testing.{Lengthy, PythonEnvironment, TemporaryFolders, Waiting}
 
-/** The proof that others read what is written here, and the reverse: the official library of PyPI, unmodified, reads our
-  * files and writes others. Runs where Python can install that library; it fetches it once per user.
+/** The proof that others read what is written here, and the reverse: the official library of PyPI,
+  * unmodified, reads our files and writes others. Runs where Python can install that library; it fetches it
+  * once per user.
   */
 class OfficialPythonLibraryLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   folder.test("the official library opens every file we write, and finds what we wrote"): folder =>

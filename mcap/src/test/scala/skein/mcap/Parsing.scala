@@ -8,8 +8,7 @@ final case class Parsing(found: Vector[Parsed.Found], end: Parsed):
   def messages: Vector[Record.Message] = records.collect { case message: Record.Message => message }
 
 object Parsing:
-  /** @param piece
-    *   so many bytes are offered at a time
+  /** @param piece so many bytes are offered at a time
     */
   def all(file: Bytes, piece: Int = 1 << 20, limits: McapLimits = McapLimits()): Parsing =
     val parser = StreamParser(limits)

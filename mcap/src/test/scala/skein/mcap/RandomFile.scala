@@ -32,8 +32,7 @@ final case class RandomFile(
 
 object RandomFile:
 
-  /** @param most
-    *   messages
+  /** @param most messages
     */
   def draw(seed: Long, most: Int = 60, options: SplittableRandom => WriterOptions = anyOptions): RandomFile =
     val random      = SplittableRandom(seed)

@@ -4,8 +4,8 @@ import skein.identify.LinearSystem
 
 /** How actuators' controls turn a vehicle, and which controls are the least that turn it as is wanted.
   *
-  * @param inverse
-  *   actuators × 4: what is added to a control for 1 m/s² upwards, and for 1 rad/s² about front, right and down
+  * @param inverse actuators × 4: what is added to a control for 1 m/s² upwards, and for 1 rad/s² about front,
+  *   right and down
   */
 private[mujoco] final class Allocation private (inverse: Array[Array[Double]]):
 
@@ -19,11 +19,9 @@ private[mujoco] object Allocation:
 
   /** By the pseudo-inverse, B⁺ = Bᵀ (B Bᵀ)⁻¹.
     *
-    * @param effects
-    *   B, 4 × actuators, row by row: what one more of each control adds to the acceleration upwards, m/s², and to the
-    *   angular accelerations about front, right and down, rad/s²
-    * @return
-    *   or what these actuators cannot do
+    * @param effects B, 4 × actuators, row by row: what one more of each control adds to the acceleration
+    *   upwards, m/s², and to the angular accelerations about front, right and down, rad/s²
+    * @return or what these actuators cannot do
     */
   def of(effects: Array[Array[Double]]): Either[String, Allocation] =
     val most = effects.map(row => row.map(math.abs).max)

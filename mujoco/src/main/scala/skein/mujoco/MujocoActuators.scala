@@ -2,16 +2,12 @@ package skein.mujoco
 
 /** A model's actuators, and what was measured of them.
   *
-  * @param lowest
-  *   of each control; −∞ where it is not limited
-  * @param highest
-  *   likewise; ∞
-  * @param resting
-  *   the control of each that is closest to none
-  * @param effects
-  *   of each, what one more of its control adds: upwards, m/s², about front, right and down, rad/s²
-  * @param weightMps2
-  *   what it falls with while they rest
+  * @param lowest of each control; −∞ where it is not limited
+  * @param highest likewise; ∞
+  * @param resting the control of each that is closest to none
+  * @param effects of each, what one more of its control adds: upwards, m/s², about front, right and down,
+  *   rad/s²
+  * @param weightMps2 what it falls with while they rest
   */
 private[mujoco] final class MujocoActuators(
     val lowest: Array[Double],
@@ -46,5 +42,7 @@ private[mujoco] final class MujocoActuators(
     lift >= weightMps2
 
 private object MujocoActuators:
-  /** Signs of what each rotor does about the front and the right axis: front right, rear left, front left, rear right. */
+  /** Signs of what each rotor does about the front and the right axis: front right, rear left, front left,
+    * rear right.
+    */
   private val Corners = Vector((-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0))

@@ -3,8 +3,8 @@ package skein.mujoco
 import java.lang.foreign.ValueLayout.{JAVA_BYTE, JAVA_DOUBLE, JAVA_INT}
 import java.lang.foreign.{Arena, MemorySegment}
 
-/** So many simulations of one model: MuJoCo's `mjBatch`, stepped by the thread that asks. A row of numbers is the state of
-  * one. Its memory is freed when nobody refers to it any more. Not thread-safe.
+/** So many simulations of one model: MuJoCo's `mjBatch`, stepped by the thread that asks. A row of numbers is
+  * the state of one. Its memory is freed when nobody refers to it any more. Not thread-safe.
   */
 private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: Int, arena: Arena):
   import MujocoBatch.*
@@ -65,7 +65,9 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
     if due > 0 then check(MujocoCalls.step(batch, ids, due, 1))
     due = 0
 
-  /** Steps all of them as often, each with its own control (`mjSTATE_CTRL`, count × steps × their number) in each step. */
+  /** Steps all of them as often, each with its own control (`mjSTATE_CTRL`, count × steps × their number) in
+    * each step.
+    */
   def rollout(steps: Int, controls: MemorySegment): Unit =
     check(MujocoCalls.rollout(batch, steps, controls, MujocoBatch.Controls))
 
@@ -82,8 +84,7 @@ private[mujoco] final class MujocoFailed(reason: String) extends IllegalStateExc
 private[mujoco] object MujocoBatch:
   /** MuJoCo copies the model.
     *
-    * @return
-    *   or why MuJoCo makes none of it
+    * @return or why MuJoCo makes none of it
     */
   def of(model: MemorySegment, count: Int, threads: Int = 1): Either[String, MujocoBatch] =
     val arena  = Arena.ofAuto()

@@ -3,11 +3,13 @@ package skein.mujoco
 import skein.units.Vector3
 import skein.vehicle.{Environment, FlightController, HorizontalMode, Quadrotor, QuadrotorState, Setpoint}
 
-/** So many bodies of a model. Between two steps all that is known of a vehicle is in its [[skein.vehicle.QuadrotorState]],
-  * but for what else moves in the model; MuJoCo computes the step between. Ground is flat, as AirSim's, and met as there.
+/** So many bodies of a model. Between two steps all that is known of a vehicle is in its
+  * [[skein.vehicle.QuadrotorState]], but for what else moves in the model; MuJoCo computes the step between.
+  * Ground is flat, as AirSim's, and met as there.
   *
-  * MuJoCo's world has x to the north, y to the west and z up; its body x to the front, y to the left and z up. Wind is a
-  * world that moves: MuJoCo is given velocities relative to the air, whose density the model states.
+  * MuJoCo's world has x to the north, y to the west and z up; its body x to the front, y to the left and z
+  * up. Wind is a world that moves: MuJoCo is given velocities relative to the air, whose density the model
+  * states.
   */
 private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
   private val body                    = model.body

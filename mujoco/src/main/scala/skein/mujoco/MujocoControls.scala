@@ -2,9 +2,9 @@ package skein.mujoco
 
 import skein.vehicle.{Airframe, Environment, Quadrotor, QuadrotorState}
 
-/** What the rotors' controls of AirSim's flight controller are to a model's actuators. AirSim's controller wants a thrust and
-  * three torques of AirSim's quadrotor. The model gets the accelerations that these would give that one, with its weight in
-  * the place of the other's: so AirSim's gains fly it, whatever its mass.
+/** What the rotors' controls of AirSim's flight controller are to a model's actuators. AirSim's controller
+  * wants a thrust and three torques of AirSim's quadrotor. The model gets the accelerations that these would
+  * give that one, with its weight in the place of the other's: so AirSim's gains fly it, whatever its mass.
   */
 private[mujoco] final class MujocoControls(actuators: MujocoActuators):
   import MujocoControls.*
@@ -13,8 +13,8 @@ private[mujoco] final class MujocoControls(actuators: MujocoActuators):
 
   /** Overwritten by the next call.
     *
-    * @param isDirect
-    *   whether they are the rotors' own and not a controller's: then each is a share of its actuator's range
+    * @param isDirect whether they are the rotors' own and not a controller's: then each is a share of its
+    *   actuator's range
     */
   def of(state: QuadrotorState, isDirect: Boolean): Array[Double] =
     import state.{control0 as c0, control1 as c1, control2 as c2, control3 as c3}

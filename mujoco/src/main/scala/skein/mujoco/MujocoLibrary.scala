@@ -6,7 +6,8 @@ import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
 
 /** Where MuJoCo's C library lies: the one that the system property `skein.mujoco` or the environment variable
-  * `SKEIN_MUJOCO` names, or that of PyPI's package `mujoco`, where `python3` finds it. Nothing of it is part of Skein.
+  * `SKEIN_MUJOCO` names, or that of PyPI's package `mujoco`, where `python3` finds it. Nothing of it is part
+  * of Skein.
   */
 object MujocoLibrary:
   /** The first with bodies in batches. */

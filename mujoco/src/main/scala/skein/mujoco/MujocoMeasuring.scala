@@ -4,16 +4,11 @@ import skein.units.Expect
 
 /** What a model's body is, as it was measured.
   *
-  * @param stepS
-  *   of a step, s
-  * @param place
-  *   where a row has the body's position and attitude; likewise the next ones
-  * @param standsAtM
-  *   the body's height in the model, m: where it stands on the ground
-  * @param hoveringRow
-  *   of one that has long hovered
-  * @param standingRow
-  *   of one that stands
+  * @param stepS of a step, s
+  * @param place where a row has the body's position and attitude; likewise the next ones
+  * @param standsAtM the body's height in the model, m: where it stands on the ground
+  * @param hoveringRow of one that has long hovered
+  * @param standingRow of one that stands
   */
 private[mujoco] final class MujocoBody(
     val stepS: Double,
@@ -27,11 +22,10 @@ private[mujoco] final class MujocoBody(
     val standingRow: Array[Double]
 )
 
-/** Finds out whether a model can be flown. What its actuators do is measured: each is held at a control until it has
-  * settled, and the accelerations are read.
+/** Finds out whether a model can be flown. What its actuators do is measured: each is held at a control until
+  * it has settled, and the accelerations are read.
   *
-  * @param one
-  *   a simulation of it
+  * @param one a simulation of it
   */
 private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
   import MujocoBatch.*

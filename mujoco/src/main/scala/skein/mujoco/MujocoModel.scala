@@ -4,11 +4,11 @@ import java.lang.foreign.{Arena, MemorySegment}
 import java.nio.file.{Files, Path}
 import skein.units.Expect
 
-/** A multirotor in MuJoCo's XML. Its body is the one of the first joint, a free one; its z is up. What its actuators do is
-  * measured ([[MujocoMeasuring]]). MuJoCo's memory of it is freed when nobody refers to it any more.
+/** A multirotor in MuJoCo's XML. Its body is the one of the first joint, a free one; its z is up. What its
+  * actuators do is measured ([[MujocoMeasuring]]). MuJoCo's memory of it is freed when nobody refers to it
+  * any more.
   *
-  * @param text
-  *   names it in messages
+  * @param text names it in messages
   */
 final class MujocoModel private (
     val text: String,
@@ -18,7 +18,8 @@ final class MujocoModel private (
   /** Of a step, s. */
   def stepS: Double = body.stepS
 
-  /** Whether its actuators are four rotors, one at each corner, which can be told their controls one by one. */
+  /** Whether its actuators are four rotors, one at each corner, which can be told their controls one by one.
+    */
   def hasRotors: Boolean = body.actuators.rotors.isDefined
 
   /** So many simulations of it. A model of which there was one has more, but for want of memory. */
@@ -28,8 +29,7 @@ final class MujocoModel private (
 object MujocoModel:
   /** Reads a model and measures its actuators: some 50 ms.
     *
-    * @return
-    *   or why it cannot be flown, or that MuJoCo is not here
+    * @return or why it cannot be flown, or that MuJoCo is not here
     */
   def read(file: Path): Either[String, MujocoModel] =
     for

@@ -5,8 +5,8 @@ import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
-/** A model's multirotor in forward simulation, behind AirSim's API as the built-in simulator flies it; many of them by
-  * MuJoCo's batch, which gives the same bits.
+/** A model's multirotor in forward simulation, behind AirSim's API as the built-in simulator flies it; many
+  * of them by MuJoCo's batch, which gives the same bits.
   */
 final class MujocoResponse(model: MujocoModel) extends SteppedResponse:
   def stepS: Double    = model.stepS

@@ -6,8 +6,9 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 
-/** What ARCHITECTURE.md says of MuJoCo's bodies beside its table of what flies by lanes: they fly as vehicles in duels, and
-  * by the scalar engine in teams. `FlownByLanesSuite` holds the plants that need nothing installed to that table.
+/** What ARCHITECTURE.md says of MuJoCo's bodies beside its table of what flies by lanes: they fly as vehicles
+  * in duels, and by the scalar engine in teams. `FlownByLanesSuite` holds the plants that need nothing
+  * installed to that table.
   */
 class FlownByVehiclesLiveSuite extends MujocoHere:
   private lazy val model = MujocoResponse(MujocoRotorcraftLiveSuite.example("quadrotor"))

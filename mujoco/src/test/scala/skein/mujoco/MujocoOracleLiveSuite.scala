@@ -6,13 +6,13 @@ import skein.testing.Waiting
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
-/** The quadrotor's rigid body beside MuJoCo's, which knows nothing of it: AirSim's quadrotor as MJCF, integrated by
-  * Runge-Kutta's method of the fourth order. MuJoCo gets the rotors' thrusts, and the drag, which it has not; both take the
-  * same steps.
+/** The quadrotor's rigid body beside MuJoCo's, which knows nothing of it: AirSim's quadrotor as MJCF,
+  * integrated by Runge-Kutta's method of the fourth order. MuJoCo gets the rotors' thrusts, and the drag,
+  * which it has not; both take the same steps.
   *
-  * AirSim's velocity Verlet takes an acceleration that it has computed for the middle of a step for that of the step's end.
-  * So accelerations act half a step late, and its error is of the first order: it falls to a half with half the step. Where
-  * both lead, for steps that become ever smaller, is where MuJoCo is.
+  * AirSim's velocity Verlet takes an acceleration that it has computed for the middle of a step for that of
+  * the step's end. So accelerations act half a step late, and its error is of the first order: it falls to a
+  * half with half the step. Where both lead, for steps that become ever smaller, is where MuJoCo is.
   */
 class MujocoOracleLiveSuite extends MujocoHere, Waiting:
   import MujocoOracleLiveSuite.*

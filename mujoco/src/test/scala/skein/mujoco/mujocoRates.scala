@@ -5,14 +5,12 @@ import java.lang.foreign.Arena
 import java.nio.file.Path
 import skein.units.Decimals.fixed
 
-/** Steps a second on one thread: vehicles of a model with their flight controllers, told a velocity every 100 ms, beside
-  * MuJoCo's own batch, which gets the same number of steps at once, with controls as its rotors would have. The two take
-  * turns; of each the best of some rounds counts.
+/** Steps a second on one thread: vehicles of a model with their flight controllers, told a velocity every 100
+  * ms, beside MuJoCo's own batch, which gets the same number of steps at once, with controls as its rotors
+  * would have. The two take turns; of each the best of some rounds counts.
   *
-  * @param file
-  *   a model
-  * @param vehicles
-  *   side by side
+  * @param file a model
+  * @param vehicles side by side
   */
 @main def mujocoRates(file: String, vehicles: Int, steps: Int, rounds: Int): Unit =
   val model = MujocoModel.read(Path.of(file)).fold(sys.error, identity)

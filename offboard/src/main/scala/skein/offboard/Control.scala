@@ -10,19 +10,14 @@ import skein.units.Decimals.fixed
 
 /** How vehicles are controlled over MAVLink.
   *
-  * @param renewEvery
-  *   a setpoint is sent again so often, until its action's time is over; then the vehicle is told to stay where it is, as
-  *   often, for as long as the link is open. PX4 leaves offboard below 2 Hz
-  * @param sampleEvery
-  *   how often the vehicle is asked to tell its motion
-  * @param timeout
-  *   of every answer
-  * @param farthestM
-  *   the geofence: so far from the flight's origin in the plane, m; who leaves it holds its position and is flown no more
-  * @param highestM
-  *   and so far above it
-  * @param exchanges
-  *   a vehicle is ready after so many TIMESYNCs; until then, one leaves every [[Control.Tick]]
+  * @param renewEvery a setpoint is sent again so often, until its action's time is over; then the vehicle is
+  *   told to stay where it is, as often, for as long as the link is open. PX4 leaves offboard below 2 Hz
+  * @param sampleEvery how often the vehicle is asked to tell its motion
+  * @param timeout of every answer
+  * @param farthestM the geofence: so far from the flight's origin in the plane, m; who leaves it holds its
+  *   position and is flown no more
+  * @param highestM and so far above it
+  * @param exchanges a vehicle is ready after so many TIMESYNCs; until then, one leaves every [[Control.Tick]]
   */
 final case class OffboardSettings(
     renewEvery: Span = Span.ofMillis(100),
@@ -33,22 +28,17 @@ final case class OffboardSettings(
     exchanges: Int = 1
 )
 
-/** One vehicle's control as a value: what is asked of it, what comes from it and how time passes go in; messages and
-  * answers come out. Knows no socket and no clock.
+/** One vehicle's control as a value: what is asked of it, what comes from it and how time passes go in;
+  * messages and answers come out. Knows no socket and no clock.
   *
-  * A TIMESYNC goes behind every setpoint. Its answer is the setpoint's receipt, and tells when it came, on the vehicle's
-  * clock: so an action counts as replaced when the vehicle has its successor.
+  * A TIMESYNC goes behind every setpoint. Its answer is the setpoint's receipt, and tells when it came, on
+  * the vehicle's clock: so an action counts as replaced when the vehicle has its successor.
   *
-  * @param originNed
-  *   of the vehicle's own frame, in the flight's
-  * @param asked
-  *   actions without an answer, the oldest first
-  * @param readers
-  *   who waits for the next sample
-  * @param firmware
-  *   whose modes it has, as its heartbeat tells
-  * @param lastSync
-  *   the newest TIMESYNC's time; each has a later one
+  * @param originNed of the vehicle's own frame, in the flight's
+  * @param asked actions without an answer, the oldest first
+  * @param readers who waits for the next sample
+  * @param firmware whose modes it has, as its heartbeat tells
+  * @param lastSync the newest TIMESYNC's time; each has a later one
   */
 final case class Control(
     system: Int,
@@ -79,8 +69,7 @@ final case class Control(
 
   private def isAligned = clock.exists(_.exchanges >= settings.exchanges)
 
-  /** @return
-    *   an answer of the next sample to `token`
+  /** @return an answer of the next sample to `token`
     */
   def read(token: Long, now: Instant): Step =
     if readers.size >= MostReaders then
@@ -167,8 +156,7 @@ final case class Control(
 
   def heard(message: Message, now: Instant): Step = copy(heardAt = Some(now)).taken(message, now)
 
-  /** @param reference
-    *   the clock that all vehicles of the flight are told in
+  /** @param reference the clock that all vehicles of the flight are told in
     */
   def inTimeOf(reference: Option[VehicleClock]): Control =
     (clock, reference) match
@@ -331,8 +319,7 @@ final case class Control(
 object Control:
   type Answer = Either[VehicleError, Boolean | Stamped[Kinematics]]
 
-  /** @param answers
-    *   by their askers' tokens
+  /** @param answers by their askers' tokens
     */
   final case class Step(
       next: Control,
@@ -343,13 +330,11 @@ object Control:
       val after = more(next)
       Step(after.next, messages ++ after.messages, (answers ++ after.answers).filter(_._1 != Silent))
 
-  /** @param sentAt
-    *   a TIMESYNC of this time or later tells that the vehicle has it
+  /** @param sentAt a TIMESYNC of this time or later tells that the vehicle has it
     */
   final case class Asked(token: Long, sentAt: Instant, until: Instant, replacedAt: Option[Instant])
 
-  /** @param mode
-    *   that it sets
+  /** @param mode that it sets
     */
   final case class Order(
       token: Long,

@@ -5,14 +5,11 @@ import skein.mavlink.FlightMode
 
 /** Whose modes a vehicle has, by its autopilot's own numbers.
   *
-  * @param offboard
-  *   the mode in which it follows setpoints, as its heartbeat tells it
-  * @param holding
-  *   the mode in which it stays where it is
-  * @param flyable
-  *   out of these it is taken into `offboard`: whoever puts it into another one, a pilot or a failsafe, has it
-  * @param takeoffM
-  *   the height that a takeoff is asked for; not a number: the autopilot's own
+  * @param offboard the mode in which it follows setpoints, as its heartbeat tells it
+  * @param holding the mode in which it stays where it is
+  * @param flyable out of these it is taken into `offboard`: whoever puts it into another one, a pilot or a
+  *   failsafe, has it
+  * @param takeoffM the height that a takeoff is asked for; not a number: the autopilot's own
   */
 enum Firmware(
     val title: String,
@@ -30,7 +27,9 @@ enum Firmware(
         Float.NaN
       )
 
-  /** ArduPilot's copter (`mode.h`), which takes off in Guided and follows setpoints there. Nothing here has flown with it. */
+  /** ArduPilot's copter (`mode.h`), which takes off in Guided and follows setpoints there. Nothing here has
+    * flown with it.
+    */
   case Copter extends Firmware("ArduPilot", 4, 17, Set(4, 17), 2.5f)
 
   /** What its pilots call this mode. */
@@ -48,12 +47,9 @@ enum Firmware(
 object Firmware:
   /** Whose heartbeat this is.
     *
-    * @param autopilot
-    *   `MAV_AUTOPILOT`
-    * @param kind
-    *   `MAV_TYPE`
-    * @return
-    *   or what was expected
+    * @param autopilot `MAV_AUTOPILOT`
+    * @param kind `MAV_TYPE`
+    * @return or what was expected
     */
   def of(autopilot: Int, kind: Int): Either[String, Firmware] = (autopilot, kind) match
     case (12, _)                         => Right(Px4)

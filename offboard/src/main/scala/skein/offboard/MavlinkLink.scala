@@ -13,13 +13,11 @@ import skein.port.VehicleError
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** Vehicles that speak MAVLink over one connection. It speaks as a ground station: heartbeats, and a TIMESYNC behind
-  * every setpoint.
+/** Vehicles that speak MAVLink over one connection. It speaks as a ground station: heartbeats, and a TIMESYNC
+  * behind every setpoint.
   *
-  * @param systems
-  *   the vehicles' numbers, in the flight's order
-  * @param origin
-  *   of the flight's frame; without it, where the first vehicle's own frame has its origin
+  * @param systems the vehicles' numbers, in the flight's order
+  * @param origin of the flight's frame; without it, where the first vehicle's own frame has its origin
   */
 final class MavlinkLink private (
     systems: Vector[Int],
@@ -47,7 +45,8 @@ final class MavlinkLink private (
   /** What is known of a vehicle now. */
   def control(number: Int): Control = controls(number)
 
-  /** The flight's clock, which is the first vehicle's, against the controller's; none before that was heard. */
+  /** The flight's clock, which is the first vehicle's, against the controller's; none before that was heard.
+    */
   def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 
   /** Asks something of a vehicle. */
@@ -138,8 +137,8 @@ object MavlinkLink:
   /** ODOMETRY, LOCAL_POSITION_NED, ATTITUDE_QUATERNION. */
   private val Samples = Vector(331, 32, 31)
 
-  /** What comes often and is not looked at: GPS_RAW_INT, ATTITUDE, GLOBAL_POSITION_INT. On a link that keeps the order,
-    * everything that comes delays what comes behind it.
+  /** What comes often and is not looked at: GPS_RAW_INT, ATTITUDE, GLOBAL_POSITION_INT. On a link that keeps
+    * the order, everything that comes delays what comes behind it.
     */
   private val Unneeded = Vector(24, 30, 33)
 
@@ -148,14 +147,11 @@ object MavlinkLink:
 
   /** Opens a link and waits for all vehicles.
     *
-    * @param connection
-    *   takes bytes for the vehicles and gives theirs
-    * @param within
-    *   which all are to be heard
-    * @param isDatagrams
-    *   whether it gives datagrams, of which each ends where it ends, and not pieces of a stream
-    * @return
-    *   or which vehicles were not heard
+    * @param connection takes bytes for the vehicles and gives theirs
+    * @param within which all are to be heard
+    * @param isDatagrams whether it gives datagrams, of which each ends where it ends, and not pieces of a
+    *   stream
+    * @return or which vehicles were not heard
     */
   def open(
       connection: Flow[ByteString, ByteString, ?],

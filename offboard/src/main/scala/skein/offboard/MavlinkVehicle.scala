@@ -7,10 +7,11 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode, or in Guided of ArduPilot's copter. Not for real aircraft.
+/** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode, or in Guided of ArduPilot's
+  * copter. Not for real aircraft.
   *
-  * A reading is the next sample that the vehicle sends. An action ends as replaced when the vehicle has received its
-  * successor.
+  * A reading is the next sample that the vehicle sends. An action ends as replaced when the vehicle has
+  * received its successor.
   */
 final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSystem) extends VehiclePort:
   import system.dispatcher

@@ -11,10 +11,8 @@ private[offboard] object Setpoints:
 
   /** Absent where that is no setpoint, but a mode: hovering, landing.
     *
-    * @param state
-    *   of the vehicle, in its own frame
-    * @param originNed
-    *   of that frame, in the flight's
+    * @param state of the vehicle, in its own frame
+    * @param originNed of that frame, in the flight's
     */
   def of(action: Action, state: Kinematics, originNed: Vector3, system: Int): Option[Message] = action match
     case Action.Velocity(v, yaw) =>

@@ -7,8 +7,9 @@ import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** The wheel as a user has it: installed into a fresh environment, it trains. Skipped where there is no Python, or where its
-  * packages cannot be fetched. The package's own tests take longer, and run where Python has what they need.
+/** The wheel as a user has it: installed into a fresh environment, it trains. Skipped where there is no
+  * Python, or where its packages cannot be fetched. The package's own tests take longer, and run where Python
+  * has what they need.
   */
 class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private val root = Iterator

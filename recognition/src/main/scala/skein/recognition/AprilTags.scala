@@ -14,8 +14,7 @@ import skein.units.*
 
 /** A camera without distortion, as AirSim's are.
   *
-  * @param fieldOfView
-  *   horizontal, AirSim's `FOV_Degrees`
+  * @param fieldOfView horizontal, AirSim's `FOV_Degrees`
   */
 final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
   require(
@@ -28,12 +27,9 @@ final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
 
 /** A tag that was found.
   *
-  * @param positionFrd
-  *   of its middle in the camera's frame (front, right, down), m
-  * @param facingFrd
-  *   which way it faces: of unit length, away from what it is on
-  * @param deviationPx
-  *   standard deviation with which its edges were found
+  * @param positionFrd of its middle in the camera's frame (front, right, down), m
+  * @param facingFrd which way it faces: of unit length, away from what it is on
+  * @param deviationPx standard deviation with which its edges were found
   */
 final case class Tag(
     id: Long,
@@ -44,7 +40,8 @@ final case class Tag(
     deviationPx: Double
 ):
 
-  /** Azimuth and elevation deviate as the edges do. The range deviates by the same share as the tag's apparent width.
+  /** Azimuth and elevation deviate as the edges do. The range deviates by the same share as the tag's
+    * apparent width.
     */
   def polar: PolarMeasurement =
     val angle   = Radians(deviationPx / camera.focalPx)
@@ -59,12 +56,12 @@ final case class Tag(
   def measured(image: Stamped[Image]): Measurement =
     polar.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
 
-/** Finds AprilTags of the family 36h11 in raw images, by BoofCV. Keeps memory of its own: make one for each thread.
+/** Finds AprilTags of the family 36h11 in raw images, by BoofCV. Keeps memory of its own: make one for each
+  * thread.
   *
-  * @param size
-  *   of the tags' black squares, from edge to edge
-  * @param deviationPx
-  *   standard deviation with which edges are found; `AprilTagsSuite` checks the default on rendered images
+  * @param size of the tags' black squares, from edge to edge
+  * @param deviationPx standard deviation with which edges are found; `AprilTagsSuite` checks the default on
+  *   rendered images
   */
 final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = AprilTags.DeviationPx):
   private val gray                               = GrayU8(camera.width, camera.height)
@@ -88,8 +85,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
 
-  /** @param bgr
-    *   blue, green, red of each pixel, in rows from the top
+  /** @param bgr blue, green, red of each pixel, in rows from the top
     */
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Vector[Tag]] =
     if width == camera.width && height == camera.height && bgr.remaining == width * height * 3 then

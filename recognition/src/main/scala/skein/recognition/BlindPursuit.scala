@@ -9,15 +9,13 @@ import skein.units.*
 
 /** The paper's duel, but that the pursuer knows of the evader by its camera alone.
   *
-  * @param blind
-  *   false: the pursuer is told where the evader is, and flies by the same policy otherwise
-  * @param recogniser
-  *   `tags`: by the AprilTags on the evader's sides; `detector`: an evader without tags, by the detector that comes with
-  *   this library; or a file: by an ONNX detector of one's own, as [[VehicleDetector.load]] takes it
-  * @param takes
-  *   how long recognition takes, as latencies are told: `uniform:15ms..120ms`, or `file:PATH` of times that were measured
-  * @param everyMs
-  *   period of the images
+  * @param blind false: the pursuer is told where the evader is, and flies by the same policy otherwise
+  * @param recogniser `tags`: by the AprilTags on the evader's sides; `detector`: an evader without tags, by
+  *   the detector that comes with this library; or a file: by an ONNX detector of one's own, as
+  *   [[VehicleDetector.load]] takes it
+  * @param takes how long recognition takes, as latencies are told: `uniform:15ms..120ms`, or `file:PATH` of
+  *   times that were measured
+  * @param everyMs period of the images
   */
 final case class BlindPursuit(
     blind: Boolean = true,

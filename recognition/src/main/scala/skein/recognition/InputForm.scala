@@ -3,13 +3,11 @@ package skein.recognition
 import java.nio.ByteBuffer
 import skein.airsim.{Image, Pixels}
 
-/** How an image becomes the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel of each place,
-  * (value − mean) · scale of each channel.
+/** How an image becomes the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel of
+  * each place, (value − mean) · scale of each channel.
   *
-  * @param redFirst
-  *   whether red is the first channel; else blue is
-  * @param mean
-  *   of each channel in the model's order, from 0 to 255
+  * @param redFirst whether red is the first channel; else blue is
+  * @param mean of each channel in the model's order, from 0 to 255
   */
 final case class InputForm(
     width: Int,
@@ -24,8 +22,7 @@ final case class InputForm(
     case Pixels.Bgr(bytes) => tensor(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
 
-  /** @param bgr
-    *   blue, green, red of each pixel, in rows from the top
+  /** @param bgr blue, green, red of each pixel, in rows from the top
     */
   def tensor(imageWidth: Int, imageHeight: Int, bgr: ByteBuffer): Either[String, Array[Float]] =
     val expected = 3L * imageWidth * imageHeight

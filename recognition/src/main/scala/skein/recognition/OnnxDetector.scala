@@ -5,10 +5,8 @@ import skein.airsim.{Image, Pixels}
 
 /** Something found in an image: the least box around it, in the image's pixels.
   *
-  * @param kind
-  *   the number of what it is, in the model's order
-  * @param score
-  *   from 0 to 1
+  * @param kind the number of what it is, in the model's order
+  * @param score from 0 to 1
   */
 final case class Box(left: Double, top: Double, right: Double, bottom: Double, kind: Int, score: Double):
   def width: Double  = right - left
@@ -23,24 +21,22 @@ final case class Box(left: Double, top: Double, right: Double, bottom: Double, k
 
 /** How a detector's output tells its boxes, in pixels of its input. */
 enum BoxForm:
-  /** 1 × (4 + kinds) × boxes: each column is a box's middle, width and height, then a score of each kind: YOLOv8 and those
-    * after it. One object may have several boxes.
+  /** 1 × (4 + kinds) × boxes: each column is a box's middle, width and height, then a score of each kind:
+    * YOLOv8 and those after it. One object may have several boxes.
     */
   case Columns
 
-  /** 1 × boxes × 6: each row is left, top, right, bottom, score, kind: models that suppress overlaps themselves. */
+  /** 1 × boxes × 6: each row is left, top, right, bottom, score, kind: models that suppress overlaps
+    * themselves.
+    */
   case Rows
 
 /** Any detector of objects in ONNX form, by onnxruntime. Any thread, several at once.
   *
-  * @param form
-  *   what the model takes
-  * @param boxes
-  *   what it gives
-  * @param leastScore
-  *   of what counts as found
-  * @param mostOverlap
-  *   of two boxes of one kind; of such that overlap more, the one of the higher score counts
+  * @param form what the model takes
+  * @param boxes what it gives
+  * @param leastScore of what counts as found
+  * @param mostOverlap of two boxes of one kind; of such that overlap more, the one of the higher score counts
   */
 final class OnnxDetector(
     model: OnnxModel,
@@ -54,8 +50,7 @@ final class OnnxDetector(
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
 
-  /** @param bgr
-    *   blue, green, red of each pixel, in rows from the top
+  /** @param bgr blue, green, red of each pixel, in rows from the top
     */
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Vector[Box]] =
     for

@@ -10,10 +10,10 @@ import skein.airsim.Image
 /** What a model gave, by the names of its outputs: numbers, row by row, and their shape. */
 type Outputs = Map[String, OnnxModel.Output]
 
-/** Any model in ONNX form with one input of floats, such as a detector of objects. Any thread, several at once.
+/** Any model in ONNX form with one input of floats, such as a detector of objects. Any thread, several at
+  * once.
   *
-  * @param input
-  *   shape of its input; −1 where it takes any size
+  * @param input shape of its input; −1 where it takes any size
   */
 final class OnnxModel private (session: OrtSession, inputName: String, val input: Vector[Int])
     extends AutoCloseable:
@@ -45,17 +45,14 @@ final class OnnxModel private (session: OrtSession, inputName: String, val input
   def close(): Unit = session.close()
 
 object OnnxModel:
-  /** @param values
-    *   row by row; integers are given as floats
+  /** @param values row by row; integers are given as floats
     */
   final case class Output(shape: Vector[Int], values: Array[Float])
 
   private lazy val environment = OrtEnvironment.getEnvironment()
 
-  /** @param threads
-    *   that work on one image; several images at once (`Recognise`) need one each
-    * @return
-    *   or why the file is no such model
+  /** @param threads that work on one image; several images at once (`Recognise`) need one each
+    * @return or why the file is no such model
     */
   def load(file: Path, threads: Int = 1): Either[String, OnnxModel] =
     if !java.nio.file.Files.isReadable(file) then

@@ -6,11 +6,10 @@ import skein.fusion.PolarMeasurement
 import skein.scenario.Recogniser
 import skein.units.*
 
-/** Finds a vehicle by its looks: the box of the highest score. Which of several it is, it does not know. The bearing is that
-  * of the box's middle; the range follows from the box's width.
+/** Finds a vehicle by its looks: the box of the highest score. Which of several it is, it does not know. The
+  * bearing is that of the box's middle; the range follows from the box's width.
   *
-  * @param appearance
-  *   how wide what is looked for appears
+  * @param appearance how wide what is looked for appears
   */
 final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, appearance: VehicleDetector.Appearance)
     extends Recogniser:
@@ -20,8 +19,8 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, appearance:
       detector.find(width, height, bgr).map(_.headOption.map(polar))
     else Left(s"expected ${camera.width} × ${camera.height} pixels, came $width × $height")
 
-  /** What a box says of where its object is. Of something round that is seen askew, the image shows more than its width: a
-    * body of width w at azimuth α and depth d covers f·w / (d·cos α) pixels.
+  /** What a box says of where its object is. Of something round that is seen askew, the image shows more than
+    * its width: a body of width w at azimuth α and depth d covers f·w / (d·cos α) pixels.
     */
   def polar(box: Box): PolarMeasurement =
     val f     = camera.focalPx
@@ -42,14 +41,11 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, appearance:
 object VehicleDetector:
   /** How something looks to a detector.
     *
-    * @param width
-    *   its mean width, over all sides that it may show
-    * @param widthShare
-    *   standard deviation of a box's width over its mean, over all sides
-    * @param middleShare
-    *   standard deviation of a box's middle over its width
-    * @param deviationPx
-    *   standard deviation of a box's middle, and of its width, besides, in the camera's pixels
+    * @param width its mean width, over all sides that it may show
+    * @param widthShare standard deviation of a box's width over its mean, over all sides
+    * @param middleShare standard deviation of a box's middle over its width
+    * @param deviationPx standard deviation of a box's middle, and of its width, besides, in the camera's
+    *   pixels
     */
   final case class Appearance(width: Metres, widthShare: Double, middleShare: Double, deviationPx: Double)
 

@@ -5,14 +5,10 @@ import skein.units.*
 
 /** What a detector found in images of a range.
   *
-  * @param plain
-  *   images with a quadrotor that should be found
-  * @param bearingsDeg
-  *   errors of what was found, ascending
-  * @param ranges
-  *   measured over true range, ascending
-  * @param inDeviations
-  *   errors of the range over what the measurement says of itself, ascending
+  * @param plain images with a quadrotor that should be found
+  * @param bearingsDeg errors of what was found, ascending
+  * @param ranges measured over true range, ascending
+  * @param inDeviations errors of the range over what the measurement says of itself, ascending
   */
 final case class DetectorAccuracy(
     plain: Int,
@@ -38,10 +34,8 @@ object DetectorAccuracy:
     def recall: Double    = found.toDouble / byRange.map(_._2.plain).sum
     def precision: Double = found.toDouble / (found + falselyFound)
 
-  /** @param ranges
-    *   nearest and farthest of each row, m
-    * @param count
-    *   images of each row
+  /** @param ranges nearest and farthest of each row, m
+    * @param count images of each row
     */
   def measured(ranges: Seq[(Double, Double)], count: Int, seed: Long): Result =
     val detector = OnnxDetector(

@@ -7,9 +7,9 @@ import java.nio.{ByteBuffer, ByteOrder}
 import scala.util.Using
 import skein.units.*
 
-/** Draws the images that `examples/onnx-detector` teaches the detector by, as NumPy's files: `recognition/Test/runMain
-  * skein.recognition.drawDetectorImages FOLDER COUNT SEED`. They are of every second pixel of a camera of 800×600 and
-  * 100°, cut to 160×120.
+/** Draws the images that `examples/onnx-detector` teaches the detector by, as NumPy's files:
+  * `recognition/Test/runMain skein.recognition.drawDetectorImages FOLDER COUNT SEED`. They are of every
+  * second pixel of a camera of 800×600 and 100°, cut to 160×120.
   */
 @main def drawDetectorImages(folder: String, count: Int, seed: Long): Unit =
   val (width, height) = (160, 120)

@@ -48,7 +48,9 @@ class OnnxModelSuite extends munit.FunSuite:
       Some("expected 1 × 2 × 3 numbers, came 5")
     )
 
-/** A model of one node, written by hand: the largest value of each channel. ONNX's messages are protocol buffers. */
+/** A model of one node, written by hand: the largest value of each channel. ONNX's messages are protocol
+  * buffers.
+  */
 private object TinyModel:
   val brightest: Array[Byte] =
     val node  = field(1, text(1, "x") ++ text(2, "y") ++ text(4, "GlobalMaxPool"))

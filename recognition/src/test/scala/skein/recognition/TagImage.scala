@@ -8,10 +8,8 @@ import skein.units.*
 object TagImage:
   private val patterns = AprilTags.dictionary()
 
-  /** @param positionFrd
-    *   of the tag's middle, m
-    * @param turned
-    *   about its vertical axis; at 0 it faces against the camera's front
+  /** @param positionFrd of the tag's middle, m
+    * @param turned about its vertical axis; at 0 it faces against the camera's front
     */
   def apply(camera: Pinhole, id: Int, size: Double, positionFrd: Vector3, turned: Double): Image =
     val bytes = Array.tabulate(camera.width * camera.height * 3)(i =>

@@ -5,18 +5,19 @@ import java.lang.ref.WeakReference
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** What an image or a cloud consists of: bytes that nobody changes any more. They are kept as they came, or compressed by
-  * Zstandard, as recordings hold them. Equal where the bytes are.
+/** What an image or a cloud consists of: bytes that nobody changes any more. They are kept as they came, or
+  * compressed by Zstandard, as recordings hold them. Equal where the bytes are.
   *
-  * @param size
-  *   of the bytes
+  * @param size of the bytes
   */
 final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
 
   // Who opens a frame looks whether it is whole, and mostly wants its bytes at once.
   private var open = WeakReference[Array[Byte]](null)
 
-  /** Decompressed where they are kept compressed, again if nobody holds them any more. Nobody changes what comes. */
+  /** Decompressed where they are kept compressed, again if nobody holds them any more. Nobody changes what
+    * comes.
+    */
   def bytes: Array[Byte] =
     if !isPacked then kept
     else
@@ -55,8 +56,7 @@ object Blob:
 
   /** Of what [[Blob.packed]] gave.
     *
-    * @return
-    *   or what is wrong with it
+    * @return or what is wrong with it
     */
   def ofPacked(packed: Array[Byte]): Either[String, Blob] =
     val size = Zstd.getFrameContentSize(packed)

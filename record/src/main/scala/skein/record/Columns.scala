@@ -16,8 +16,8 @@ private[record] trait Columns[A]:
 
 /** One column as the table defines it.
   *
-  * @param older
-  *   what gives its value in SQL where a file of an older format lacks the column or has it with another type
+  * @param older what gives its value in SQL where a file of an older format lacks the column or has it with
+  *   another type
   */
 private[record] final case class Column(
     name: String,
@@ -156,9 +156,10 @@ private[record] object FieldColumns:
 
   given FieldColumns[SolverClock] = _ => columns[SolverClock]("solverClockOffset", "solverClockUncertainty")
 
-  /** An action by its name and numbers: `actionX` to `actionZ` are north, east and down of a velocity, m/s, or of a place,
-    * m; of [[Action.VelocityAt]] the third is an altitude, m; of [[Action.Attitude]] they are roll, pitch and yaw, rad,
-    * and `actionAmount` is the thrust; else that is a speed, m/s. `actionYaw` is rad, or rad/s where it is `Turning`.
+  /** An action by its name and numbers: `actionX` to `actionZ` are north, east and down of a velocity, m/s,
+    * or of a place, m; of [[Action.VelocityAt]] the third is an altitude, m; of [[Action.Attitude]] they are
+    * roll, pitch and yaw, rad, and `actionAmount` is the thrust; else that is a speed, m/s. `actionYaw` is
+    * rad, or rad/s where it is `Turning`.
     */
   given FieldColumns[Action] = _ =>
     columns[ActionCells](
@@ -199,8 +200,7 @@ private[record] object Columns:
 
   /** The columns of a case class: those of its fields, one after the other.
     *
-    * @param names
-    *   in the place of the fields' own, if any
+    * @param names in the place of the fields' own, if any
     */
   inline def columns[A](names: String*)(using mirror: Mirror.ProductOf[A]): Columns[A] =
     ofFields(
@@ -233,8 +233,8 @@ private[record] object Columns:
       case None          => definitions.foreach(_ => to.nothing())
     def read(cells: Cells): Option[A] = cells.nextOption(definitions.size)(columns.read(cells))
 
-  /** Optional columns of later formats. Where they are absent they are left out of the [[Digest]], so that it is that of
-    * the formats before.
+  /** Optional columns of later formats. Where they are absent they are left out of the [[Digest]], so that it
+    * is that of the formats before.
     */
   def added[A](columns: Columns[Option[A]]): Columns[Option[A]] = new Columns[Option[A]]:
     val definitions: Vector[Column]                   = columns.definitions

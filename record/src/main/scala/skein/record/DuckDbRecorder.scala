@@ -10,9 +10,10 @@ import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.{Failure, Success}
 
-/** Writes a flight into one DuckDB file while it flies, and gives its rows to others who write them elsewhere. Records wait in a bounded queue; a stream of its own, on the
-  * dispatcher for blocking work, commits them every [[DuckDbRecorder.commitInterval]] or every
-  * [[DuckDbRecorder.batchSize]] rows. What is committed survives a kill of the process.
+/** Writes a flight into one DuckDB file while it flies, and gives its rows to others who write them
+  * elsewhere. Records wait in a bounded queue; a stream of its own, on the dispatcher for blocking work,
+  * commits them every [[DuckDbRecorder.commitInterval]] or every [[DuckDbRecorder.batchSize]] rows. What is
+  * committed survives a kill of the process.
   */
 final class DuckDbRecorder private (
     capacity: Int,
@@ -29,7 +30,9 @@ final class DuckDbRecorder private (
     case large: (CameraImage | Cloud) => offerLarge(large)
     case _                            => enqueue(record)
 
-  /** Images and clouds are left out, and told of, where the disk is slower than they come: the flight goes on. */
+  /** Images and clouds are left out, and told of, where the disk is slower than they come: the flight goes
+    * on.
+    */
   private def offerLarge(record: CameraImage | Cloud): Unit =
     val (vehicle, name, at) = record match
       case one: CameraImage => (one.vehicle, one.camera, one.receivedAt)
@@ -61,8 +64,8 @@ object DuckDbRecorder:
   /** Records that may wait to be written: at 20 vehicles and 10 Hz about a minute. */
   val defaultCapacity = 65536
 
-  /** Of images and clouds among them: two seconds of four cameras of 640 × 480 pixels at 10 Hz. What comes then is left out,
-    * and is an event.
+  /** Of images and clouds among them: two seconds of four cameras of 640 × 480 pixels at 10 Hz. What comes
+    * then is left out, and is an event.
     */
   val mostWaitingBytes: Long = 96L * 1024 * 1024
 
@@ -77,8 +80,7 @@ object DuckDbRecorder:
 
   /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made.
     *
-    * @param beside
-    *   get every row that is committed, and are closed with this
+    * @param beside get every row that is committed, and are closed with this
     */
   def open(
       file: Path,

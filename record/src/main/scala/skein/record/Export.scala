@@ -11,8 +11,7 @@ object Export:
   /** Writes each table as `TABLE.parquet` into the folder, which is made if need be; files of these names are
     * replaced. Rows keep the order in which they were recorded. Blocks.
     *
-    * @return
-    *   the files written
+    * @return the files written
     */
   def parquet(recording: Path, directory: Path): Either[RecordError, Vector[Path]] =
     for

@@ -6,12 +6,9 @@ import skein.units.*
 
 /** A topic that a flight is shown by, and what its messages look like.
   *
-  * @param schema
-  *   JSON Schema; of binary messages a `FileDescriptorSet` of Protocol Buffers, in Base64
-  * @param isBinary
-  *   whether messages are of Protocol Buffers, else JSON
-  * @param newestOnly
-  *   whether an older message is of no use beside a newer one
+  * @param schema JSON Schema; of binary messages a `FileDescriptorSet` of Protocol Buffers, in Base64
+  * @param isBinary whether messages are of Protocol Buffers, else JSON
+  * @param newestOnly whether an older message is of no use beside a newer one
   */
 final case class Topic(
     name: String,
@@ -23,12 +20,9 @@ final case class Topic(
 
 /** A message of a topic. Its bytes are made when somebody first asks for them.
   *
-  * @param key
-  *   what it replaces the older messages of in its topic: those about the same vehicle
-  * @param known
-  *   when the controller knew, on its own clock
-  * @param published
-  *   the same, but for a prediction when it was made, and for a round trip when it began
+  * @param key what it replaces the older messages of in its topic: those about the same vehicle
+  * @param known when the controller knew, on its own clock
+  * @param published the same, but for a prediction when it was made, and for a round trip when it began
   */
 final class FlightMessage(
     val topic: String,
@@ -43,18 +37,15 @@ object FlightMessage:
   def json(topic: String, key: String, known: Instant, published: Instant)(text: => String): FlightMessage =
     FlightMessage(topic, key, known, published, () => text.getBytes(UTF_8))
 
-/** The rows of a flight as messages: every row on the topic `/skein/TABLE`, by the names of its columns, and beside them
-  * views of the same rows by Foxglove's schemas ([[FoxgloveViews]]). Rows are to come in their order.
+/** The rows of a flight as messages: every row on the topic `/skein/TABLE`, by the names of its columns, and
+  * beside them views of the same rows by Foxglove's schemas ([[FoxgloveViews]]). Rows are to come in their
+  * order.
   *
-  * @param from
-  *   the time of rows that say none and come before all others
-  * @param offset
-  *   from the simulator's clock to the controller's until a decision estimates it; without one, as if the first reading
-  *   had taken no time
-  * @param scene
-  *   what stands in the world
-  * @param form
-  *   of images and clouds
+  * @param from the time of rows that say none and come before all others
+  * @param offset from the simulator's clock to the controller's until a decision estimates it; without one,
+  *   as if the first reading had taken no time
+  * @param scene what stands in the world
+  * @param form of images and clouds
   */
 final class FlightTopics(
     vehicles: Vector[String],
@@ -71,8 +62,7 @@ final class FlightTopics(
   /** What is there before the first row. */
   def opening: Vector[FlightMessage] = views.opening(from).map(message(_, "", from, from))
 
-  /** @param number
-    *   the row's place in the recording
+  /** @param number the row's place in the recording
     */
   def of(number: Long, record: Record): Vector[FlightMessage] =
     known = knownAt(record).getOrElse(known)

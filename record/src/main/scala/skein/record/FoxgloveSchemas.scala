@@ -8,7 +8,9 @@ import scala.util.Using
   */
 private[record] object FoxgloveSchemas:
 
-  /** Those of binary messages, as `FileDescriptorSet` in Base64, by name: those of Foxglove, which are of the MIT licence. */
+  /** Those of binary messages, as `FileDescriptorSet` in Base64, by name: those of Foxglove, which are of the
+    * MIT licence.
+    */
   val binary: Map[String, String] = Vector("RawImage", "CompressedImage", "PointCloud").map: name =>
     val set = Using.resource(getClass.getResourceAsStream(s"foxglove/$name.fds"))(_.readAllBytes())
     s"foxglove.$name" -> Base64.getEncoder.encodeToString(set)

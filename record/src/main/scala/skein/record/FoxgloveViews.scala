@@ -6,10 +6,10 @@ import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** What viewers show of a flight, as messages of Foxglove's schemas, made from the rows in their order. Frames: `world` is
-  * east, north, up, as viewers draw; `world_ned` north, east, down, as all else of a flight; each vehicle's own is its
-  * body, front, right, down. Times in messages are when physics was sampled, on the controller's clock, as far as the
-  * offset of the simulator's was known by then.
+/** What viewers show of a flight, as messages of Foxglove's schemas, made from the rows in their order.
+  * Frames: `world` is east, north, up, as viewers draw; `world_ned` north, east, down, as all else of a
+  * flight; each vehicle's own is its body, front, right, down. Times in messages are when physics was
+  * sampled, on the controller's clock, as far as the offset of the simulator's was known by then.
   */
 private[record] final class FoxgloveViews(
     vehicles: Vector[String],
@@ -167,7 +167,9 @@ private[record] final class FoxgloveViews(
     "color" -> painted(rgb)
   )
 
-  /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it at once. */
+  /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it
+    * at once.
+    */
   private def trail(name: String, at: Instant, position: Vector3): Option[View] =
     val trail = trails.getOrElseUpdate(name, Trail(at))
     trail.points.append((at, position)): Unit
@@ -178,8 +180,8 @@ private[record] final class FoxgloveViews(
       def drawn  = entity(at, "world_ned", s"$name trail", lines = Vector(line(name, points, thickness = 2)))
       View.text(trailOf(name))(scene(drawn))
 
-  /** From where a vehicle was read to where it is expected when the command acts; around that, as far as the newest
-    * prediction was off.
+  /** From where a vehicle was read to where it is expected when the command acts; around that, as far as the
+    * newest prediction was off.
     */
   private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) =
     val there = Json.obj(
@@ -300,8 +302,7 @@ private[record] object FoxgloveViews:
     a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w
   )
 
-  /** @param rgb
-    *   0xrrggbb
+  /** @param rgb 0xrrggbb
     */
   private def painted(rgb: Int) =
     def part(shift: Int) = Json.number((rgb >> shift & 0xff) / 255.0)

@@ -6,8 +6,7 @@ import skein.units.*
 
 /** A camera or a lidar whose images or clouds are shown.
   *
-  * @param name
-  *   the lidar's; the camera's, with a slash and what it shows where that is not `Scene`
+  * @param name the lidar's; the camera's, with a slash and what it shows where that is not `Scene`
   */
 final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 
@@ -26,10 +25,8 @@ trait ImageEncoding:
   /** Of images, a name of [[FoxgloveSchemas.binary]]. */
   def imageSchema: String
 
-  /** @param at
-    *   its exposure, on the controller's clock
-    * @param frame
-    *   the camera's: right, down, front
+  /** @param at its exposure, on the controller's clock
+    * @param frame the camera's: right, down, front
     */
   def image(image: CameraImage, at: Instant, frame: String): Array[Byte]
 
@@ -60,8 +57,7 @@ object ImageEncoding:
 
   /** `foxglove.CompressedImage`.
     *
-    * @param format
-    *   for example `jpeg`
+    * @param format for example `jpeg`
     */
   def compressed(file: Array[Byte], format: String, at: Instant, frame: String): Array[Byte] =
     Protobuf(file.length + 128)

@@ -13,8 +13,7 @@ private[record] object Json:
       case other => out += other
     out.append('"').toString
 
-  /** @param number
-    *   finite, as all numbers of a recording are
+  /** @param number finite, as all numbers of a recording are
     */
   def number(number: Double): String = number.toString
 

@@ -14,23 +14,24 @@ import skein.units.*
 
 /** A recording as an MCAP file, for Foxglove, Lichtblick, PlotJuggler and Rerun, and back.
   *
-  * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns; these are the recording
-  * in full, and what `read` reads; but the pixels of an image and the points of a cloud are in the message behind its row,
-  * a `foxglove.RawImage` or a `foxglove.PointCloud`. Beside them stand views of the same rows by Foxglove's schemas ([[FoxgloveViews]]).
+  * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns; these are
+  * the recording in full, and what `read` reads; but the pixels of an image and the points of a cloud are in
+  * the message behind its row, a `foxglove.RawImage` or a `foxglove.PointCloud`. Beside them stand views of
+  * the same rows by Foxglove's schemas ([[FoxgloveViews]]).
   *
-  * Times of messages are on the controller's clock, ns. The log time is when the row's fact was known there: a reading
-  * was received, a decision made, a command sent or answered; of a row that says no such time, that of the row before. The
-  * publish time is the same, but for a prediction when it was made, and for a round trip when it began. When physics was
-  * sampled is in the message.
+  * Times of messages are on the controller's clock, ns. The log time is when the row's fact was known there:
+  * a reading was received, a decision made, a command sent or answered; of a row that says no such time, that
+  * of the row before. The publish time is the same, but for a prediction when it was made, and for a round
+  * trip when it began. When physics was sampled is in the message.
   */
 object McapRecording:
   private val About  = "skein"
   private val Binary = "protobuf"
 
-  /** Writes the file, or replaces it. Blocks; holds the whole recording in memory, images and clouds compressed.
+  /** Writes the file, or replaces it. Blocks; holds the whole recording in memory, images and clouds
+    * compressed.
     *
-    * @param scene
-    *   what stands in the world, by the recording's parameters
+    * @param scene what stands in the world, by the recording's parameters
     */
   def write(
       recording: Path,
@@ -71,8 +72,7 @@ object McapRecording:
 
   /** What stood in the world of a recording's flight, where that was ours.
     *
-    * @param scene
-    *   by the recording's parameters
+    * @param scene by the recording's parameters
     */
   def sceneOf(rows: Vector[(Long, Record)], scene: Map[String, String] => Scene): Scene =
     val isOurs = rows.exists:
@@ -81,7 +81,9 @@ object McapRecording:
     if isOurs then scene(rows.collect { case (_, ParameterRow(name, value)) => name -> value }.toMap)
     else Scene.Empty
 
-  /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
+  /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken
+    * no time.
+    */
   private def firstOffset(rows: Vector[(Long, Record)]): Span =
     val estimated =
       rows.iterator.collect { case (_, decision: DecisionRow) => decision.trueAge.map(_.clockOffset) }.flatten
@@ -136,8 +138,8 @@ object McapRecording:
       )
       counts(channel) += 1
 
-  /** Makes a recording of what `write` wrote; equal contents, so an equal [[Digest]]. Blocks; needs room for the rows as
-    * text beside the recording meanwhile.
+  /** Makes a recording of what `write` wrote; equal contents, so an equal [[Digest]]. Blocks; needs room for
+    * the rows as text beside the recording meanwhile.
     */
   def read(file: Path, recording: Path): Either[RecordError, Unit] =
     if Files.isDirectory(file) then Left(RecordError.NotARecording(file, "it is a folder"))
@@ -215,8 +217,7 @@ object McapRecording:
   /** `data`, in both messages. */
   private val BytesField = ImageEncoding.RawImageData.ensuring(_ == ImageEncoding.PointCloudData)
 
-  /** @param longest
-    *   line, in bytes, about
+  /** @param longest line, in bytes, about
     */
   private final case class Gathered(table: Table[?], file: Path, longest: Int)
 

@@ -9,9 +9,9 @@ import skein.mcap.McapWriter
 import skein.mcap.file.ChannelSink
 import skein.scene.Scene
 
-/** Writes a flight into an MCAP file while it flies: what [[McapRecording]] exports of its recording, message by message.
-  * Only until the first decision has estimated the offset between the clocks, poses are placed as if the first reading had
-  * taken no time. The file can be read up to its last second should the process end.
+/** Writes a flight into an MCAP file while it flies: what [[McapRecording]] exports of its recording, message
+  * by message. Only until the first decision has estimated the offset between the clocks, poses are placed as
+  * if the first reading had taken no time. The file can be read up to its last second should the process end.
   */
 final class McapRowSink private (channel: FileChannel, file: Path, heading: RecordingHeader, scene: Scene)
     extends RowSink:
@@ -57,8 +57,7 @@ object McapRowSink:
 
   /** Makes the file, which must not be there yet.
     *
-    * @param scene
-    *   what stands in the world
+    * @param scene what stands in the world
     */
   def open(
       file: Path,

@@ -4,8 +4,7 @@ import scala.concurrent.Future
 
 /** Records as `recorder` does, and shows every record to `observer`, which must not wait for anything.
   *
-  * @param keeps
-  *   what is recorded; all is shown
+  * @param keeps what is recorded; all is shown
   */
 final class ObservedRecorder(
     recorder: Recorder,

@@ -10,9 +10,9 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import scala.util.control.NonFatal
 
-/** Writes a flight into a Postgres database beside its recording: the same tables, with the same columns, in a schema that
-  * bears the flight's name. A thread of its own writes; where the database is slower than the flight, rows beyond
-  * [[PostgresRowSink.Capacity]] are left out; their number is reported at the end.
+/** Writes a flight into a Postgres database beside its recording: the same tables, with the same columns, in
+  * a schema that bears the flight's name. A thread of its own writes; where the database is slower than the
+  * flight, rows beyond [[PostgresRowSink.Capacity]] are left out; their number is reported at the end.
   */
 final class PostgresRowSink private (connection: Connection, schema: String, target: PostgresAddress)
     extends RowSink:
@@ -94,10 +94,8 @@ object PostgresRowSink:
 
   /** Connects, and makes the tables. Blocks.
     *
-    * @param url
-    *   `postgres://USER:PASSWORD@HOST:PORT/DATABASE`
-    * @return
-    *   or why not, without the password
+    * @param url `postgres://USER:PASSWORD@HOST:PORT/DATABASE`
+    * @return or why not, without the password
     */
   def open(url: String, heading: RecordingHeader): Either[String, PostgresRowSink] =
     for
@@ -169,8 +167,7 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
 
 /** Where a Postgres database is.
   *
-  * @param shown
-  *   without the password
+  * @param shown without the password
   */
 private[record] final case class PostgresAddress(jdbc: String, user: String, password: String, shown: String):
   def connect(): Connection = DriverManager.getConnection(jdbc, properties)

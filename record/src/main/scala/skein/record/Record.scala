@@ -5,12 +5,13 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** One row of a recording; each case class below is one table. Column names are the field names with the unit behind
-  * them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`, `Mps`, `Rad`,
-  * `RadPerS`. `validAt`, `actsAt` and `predictedFor` are on the simulator's clock, all other instants on the controller's.
+/** One row of a recording; each case class below is one table. Column names are the field names with the unit
+  * behind them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`,
+  * `Mps`, `Rad`, `RadPerS`. `validAt`, `actsAt` and `predictedFor` are on the simulator's clock, all other
+  * instants on the controller's.
   *
-  * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order in
-  * which all records of the flight were accepted.
+  * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order
+  * in which all records of the flight were accepted.
   */
 sealed trait Record
 
@@ -23,16 +24,11 @@ object Record:
 
 /** What was flown: exactly one row a recording.
   *
-  * @param loop
-  *   the label of a [[LoopKind]], or the name of a user's own loop
-  * @param id
-  *   names the flight in tables and pictures, for example `stream-vpn`
-  * @param clock
-  *   the label of a [[ClockKind]]
-  * @param simulator
-  *   `built-in`, or the address of another
-  * @param version
-  *   of the program that recorded
+  * @param loop the label of a [[LoopKind]], or the name of a user's own loop
+  * @param id names the flight in tables and pictures, for example `stream-vpn`
+  * @param clock the label of a [[ClockKind]]
+  * @param simulator `built-in`, or the address of another
+  * @param version of the program that recorded
   */
 final case class FlightRow(
     id: String,
@@ -64,10 +60,8 @@ final case class ParameterRow(name: String, value: String) extends Record
 
 /** A vehicle of the flight.
   *
-  * @param role
-  *   the name of a [[skein.policy.Role]], Skein's or a user's own
-  * @param startNed
-  *   the origin of its own frame in the world frame
+  * @param role the name of a [[skein.policy.Role]], Skein's or a user's own
+  * @param startNed the origin of its own frame in the world frame
   */
 final case class VehicleRow(name: String, role: String, speed: MetresPerSecond, startNed: Vector3)
     extends Record
@@ -82,19 +76,15 @@ object VehicleRow:
 
 /** One answer of the simulator.
   *
-  * @param sequence
-  *   counts the readings of this vehicle in the order in which they were asked for
+  * @param sequence counts the readings of this vehicle in the order in which they were asked for
   */
 final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
 
 /** One answer of a sensor.
   *
-  * @param sequence
-  *   counts the answers asked of this sensor, in the order in which they were asked for
-  * @param quantities
-  *   names of the numbers, with units
-  * @param numbers
-  *   as many
+  * @param sequence counts the answers asked of this sensor, in the order in which they were asked for
+  * @param quantities names of the numbers, with units
+  * @param numbers as many
   */
 final case class MeasurementRow(
     sequence: Long,
@@ -109,22 +99,15 @@ final case class MeasurementRow(
 
 /** An image of a vehicle's camera.
   *
-  * @param sequence
-  *   counts the images of this camera that came
-  * @param kind
-  *   what it shows, by AirSim's name, for example `Scene`
-  * @param encoding
-  *   `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, the lowest first, m
-  * @param fov
-  *   horizontal; absent where nobody has told
-  * @param positionNed
-  *   of the camera, world, when it was exposed
-  * @param orientation
-  *   from the camera's frame (front, right, down) to the world's
-  * @param validAt
-  *   when it was exposed
-  * @param pixels
-  *   in rows from the top, without gaps
+  * @param sequence counts the images of this camera that came
+  * @param kind what it shows, by AirSim's name, for example `Scene`
+  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, the lowest
+  *   first, m
+  * @param fov horizontal; absent where nobody has told
+  * @param positionNed of the camera, world, when it was exposed
+  * @param orientation from the camera's frame (front, right, down) to the world's
+  * @param validAt when it was exposed
+  * @param pixels in rows from the top, without gaps
   */
 final case class CameraImage(
     sequence: Long,
@@ -145,16 +128,11 @@ final case class CameraImage(
 
 /** A scan of a vehicle's lidar.
   *
-  * @param sequence
-  *   counts the scans of this lidar that came
-  * @param positionNed
-  *   of the lidar, world
-  * @param orientation
-  *   from the lidar's frame (front, right, down) to the world's
-  * @param validAt
-  *   when it was scanned
-  * @param xyz
-  *   of each point in the lidar's frame, m: three numbers of 32 bits, the lowest byte first
+  * @param sequence counts the scans of this lidar that came
+  * @param positionNed of the lidar, world
+  * @param orientation from the lidar's frame (front, right, down) to the world's
+  * @param validAt when it was scanned
+  * @param xyz of each point in the lidar's frame, m: three numbers of 32 bits, the lowest byte first
   */
 final case class Cloud(
     sequence: Long,
@@ -171,44 +149,29 @@ final case class Cloud(
 
 /** A measurement that a decision was made from.
   *
-  * @param vehicle
-  *   that was decided for, and that measured
-  * @param decision
-  *   the decision's sequence
-  * @param measurement
-  *   the measurement's sequence
+  * @param vehicle that was decided for, and that measured
+  * @param decision the decision's sequence
+  * @param measurement the measurement's sequence
   */
 final case class Sensing(vehicle: String, decision: Long, sensor: String, measurement: Long) extends Record
 
 /** One decision for one vehicle, with everything that it was made from.
   *
-  * @param sequence
-  *   counts the decisions for this vehicle
-  * @param own
-  *   the vehicle's own reading that was used; its columns begin with `own`
-  * @param opponent
-  *   the opponent's reading that was used; its columns begin with `opponent`
-  * @param relativeX
-  *   the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of other roles, the opponent
-  *   seen from the vehicle
-  * @param relativeY
-  *   the same, to the right of that heading
-  * @param headingBefore
-  *   commanded last to this vehicle
-  * @param opponentHeading
-  *   commanded last to the opponent, as far as known
-  * @param heading
-  *   the one chosen
-  * @param elapsed
-  *   since this vehicle's last decision; zero at the first
-  * @param trueAge
-  *   absent until the clocks' offset is known
-  * @param predicted
-  *   the predicted states of both vehicles, if the decision was made from them instead of the readings
-  * @param speed
-  *   the one chosen; absent where the vehicle always commands its own
-  * @param action
-  *   the action decided; absent where heading and speed say it, at the altitude of the start
+  * @param sequence counts the decisions for this vehicle
+  * @param own the vehicle's own reading that was used; its columns begin with `own`
+  * @param opponent the opponent's reading that was used; its columns begin with `opponent`
+  * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
+  *   other roles, the opponent seen from the vehicle
+  * @param relativeY the same, to the right of that heading
+  * @param headingBefore commanded last to this vehicle
+  * @param opponentHeading commanded last to the opponent, as far as known
+  * @param heading the one chosen
+  * @param elapsed since this vehicle's last decision; zero at the first
+  * @param trueAge absent until the clocks' offset is known
+  * @param predicted the predicted states of both vehicles, if the decision was made from them instead of the
+  *   readings
+  * @param speed the one chosen; absent where the vehicle always commands its own
+  * @param action the action decided; absent where heading and speed say it, at the altitude of the start
   */
 final case class DecisionRow(
     sequence: Long,
@@ -229,17 +192,13 @@ final case class DecisionRow(
     action: Option[Action] = None
 ) extends Record
 
-/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle, where the
-  * policy regards the whole team.
+/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle,
+  * where the policy regards the whole team.
   *
-  * @param decider
-  *   the vehicle that was decided for
-  * @param decision
-  *   the decision's sequence
-  * @param reading
-  *   the sequence of the reading of `vehicle` that was used
-  * @param predicted
-  *   where it was expected to be, if that was decided upon instead of the reading
+  * @param decider the vehicle that was decided for
+  * @param decision the decision's sequence
+  * @param reading the sequence of the reading of `vehicle` that was used
+  * @param predicted where it was expected to be, if that was decided upon instead of the reading
   */
 final case class Sighting(
     decider: String,
@@ -251,21 +210,14 @@ final case class Sighting(
 
 /** How a decision was planned.
   *
-  * @param decision
-  *   the sequence of the decision of `vehicle`
-  * @param candidates
-  *   flown by all searches together
-  * @param slices
-  *   that each of the searches finished before the deadline; all 0 where nothing was ready: then
+  * @param decision the sequence of the decision of `vehicle`
+  * @param candidates flown by all searches together
+  * @param slices that each of the searches finished before the deadline; all 0 where nothing was ready: then
   *   the last plan went on, or the policy decided
-  * @param cost
-  *   of the plan chosen; absent where none was tried
-  * @param took
-  *   from asking until the decision was there
-  * @param breaches
-  *   of hard limits within the plan's horizon
-  * @param course
-  *   where the plan leads; absent where the policy decided in its place
+  * @param cost of the plan chosen; absent where none was tried
+  * @param took from asking until the decision was there
+  * @param breaches of hard limits within the plan's horizon
+  * @param course where the plan leads; absent where the policy decided in its place
   */
 final case class Planned(
     vehicle: String,
@@ -280,19 +232,13 @@ final case class Planned(
 
 /** A decision that was made in another process, and the times of its ways there and back.
   *
-  * @param decision
-  *   the sequence of the decision of `vehicle`; the decision says when it was made, by what was known of the solver's
-  *   clock
-  * @param question
-  *   counts the questions for `vehicle`; those that are missing here were not answered in time
-  * @param askedAt
-  *   when the question left
-  * @param receivedAt
-  *   when the answer came
-  * @param thinking
-  *   from the question's coming to the solver to the answer's leaving, by the solver's clock
-  * @param clock
-  *   absent before the first answer of a solver
+  * @param decision the sequence of the decision of `vehicle`; the decision says when it was made, by what was
+  *   known of the solver's clock
+  * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
+  * @param askedAt when the question left
+  * @param receivedAt when the answer came
+  * @param thinking from the question's coming to the solver to the answer's leaving, by the solver's clock
+  * @param clock absent before the first answer of a solver
   */
 final case class SolvedRow(
     vehicle: String,
@@ -309,14 +255,14 @@ final case class SolvedRow(
 
 /** How the solver's clock stood to the controller's, as was known when a decision was asked for.
   *
-  * @param offset
-  *   the controller's clock minus the solver's
-  * @param uncertainty
-  *   the truth lies within ± this
+  * @param offset the controller's clock minus the solver's
+  * @param uncertainty the truth lies within ± this
   */
 final case class SolverClock(offset: Span, uncertainty: Span)
 
-/** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command acts. */
+/** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command
+  * acts.
+  */
 final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
 /** Where a vehicle was expected to be when the command acts. */
@@ -334,17 +280,14 @@ final case class Observations(
 
 /** How old the readings used were, from when physics was sampled.
   *
-  * @param clockOffset
-  *   the controller's clock minus the simulator's, as estimated then
-  * @param uncertainty
-  *   of the offset, and so of both ages: the truth lies within ± this
+  * @param clockOffset the controller's clock minus the simulator's, as estimated then
+  * @param uncertainty of the offset, and so of both ages: the truth lies within ± this
   */
 final case class TrueAge(own: Span, opponent: Span, clockOffset: Span, uncertainty: Span)
 
 /** The predicted states that a decision was made from instead of the readings.
   *
-  * @param actsAt
-  *   when the command was expected to act, on the simulator's clock
+  * @param actsAt when the command was expected to act, on the simulator's clock
   */
 final case class Predicted(
     actsAt: Instant,
@@ -356,18 +299,12 @@ final case class Predicted(
 
 /** A prediction whose moment has come and was read.
   *
-  * @param decider
-  *   the vehicle for whose decision it was made
-  * @param vehicle
-  *   whose place was predicted
-  * @param predictedFor
-  *   on the simulator's clock
-  * @param age
-  *   from the reading that was carried forward to the moment predicted for
-  * @param positionNed
-  *   as predicted
-  * @param error
-  *   distance to where the vehicle was then, between two readings interpolated
+  * @param decider the vehicle for whose decision it was made
+  * @param vehicle whose place was predicted
+  * @param predictedFor on the simulator's clock
+  * @param age from the reading that was carried forward to the moment predicted for
+  * @param positionNed as predicted
+  * @param error distance to where the vehicle was then, between two readings interpolated
   */
 final case class Prediction(
     decider: String,
@@ -379,19 +316,14 @@ final case class Prediction(
     error: Metres
 ) extends Record
 
-/** One velocity command as sent. What became of it is an [[Acknowledgement]] of its own, so that a command is on disk
-  * while its answer is outstanding.
+/** One velocity command as sent. What became of it is an [[Acknowledgement]] of its own, so that a command is
+  * on disk while its answer is outstanding.
   *
-  * @param sequence
-  *   counts the commands to this vehicle
-  * @param decision
-  *   the sequence of the decision that it carries out; absent for take-off, hover and the like
-  * @param velocityNorth
-  *   world frame
-  * @param velocityEast
-  *   world frame
-  * @param down
-  *   the altitude goal, NED
+  * @param sequence counts the commands to this vehicle
+  * @param decision the sequence of the decision that it carries out; absent for take-off, hover and the like
+  * @param velocityNorth world frame
+  * @param velocityEast world frame
+  * @param down the altitude goal, NED
   */
 final case class CommandRow(
     sequence: Long,
@@ -405,12 +337,9 @@ final case class CommandRow(
 
 /** How a command ended.
   *
-  * @param command
-  *   the command's sequence
-  * @param endedAt
-  *   when the answer came, or when it was given up
-  * @param outcome
-  *   `done`, `superseded`, or the error's text
+  * @param command the command's sequence
+  * @param endedAt when the answer came, or when it was given up
+  * @param outcome `done`, `superseded`, or the error's text
   */
 final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: String)
     extends Record
@@ -420,11 +349,10 @@ final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends
 
 /** Something out of the ordinary: every drop, skip, timeout, reconnect, pause.
   *
-  * @param vehicle
-  *   absent where it concerns all
-  * @param decision
-  *   where a deadline was missed, the sequence of the decision that the fallback made instead; absent where it made none.
-  *   Where something was learned, or a solver began anew, the sequence of the first decision after it
+  * @param vehicle absent where it concerns all
+  * @param decision where a deadline was missed, the sequence of the decision that the fallback made instead;
+  *   absent where it made none. Where something was learned, or a solver began anew, the sequence of the
+  *   first decision after it
   */
 final case class Event(
     at: Instant,
@@ -434,15 +362,14 @@ final case class Event(
     decision: Option[Long] = None
 ) extends Record
 
-/** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these rows if
-  * there are any, else from the readings.
+/** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these
+  * rows if there are any, else from the readings.
   */
 final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) extends Record
 
 /** How the flight ended: the last row. There is none where the recording broke off before.
   *
-  * @param reason
-  *   why it ended before its time
+  * @param reason why it ended before its time
   */
 final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
 
@@ -471,7 +398,9 @@ enum EventKind:
   /** A policy did not decide in time. */
   case DeadlineMissed
 
-  /** A solver in another process was started again, or another one answers: what policies remember begins anew. */
+  /** A solver in another process was started again, or another one answers: what policies remember begins
+    * anew.
+    */
   case SolverRestarted
 
   /** An answer came more than once; it counts once. */

@@ -12,7 +12,9 @@ enum RecordError(val message: String):
   /** The file could not be made, for example for want of the folder or of permission. */
   case CannotCreate(file: Path, reason: String) extends RecordError(s"cannot create recording $file: $reason")
 
-  /** The database refused rows, for example because the disk is full. What was committed before stays readable. */
+  /** The database refused rows, for example because the disk is full. What was committed before stays
+    * readable.
+    */
   case WriteFailed(file: Path, reason: String)
       extends RecordError(s"cannot write to recording $file: $reason")
 

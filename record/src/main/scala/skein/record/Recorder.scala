@@ -5,18 +5,18 @@ import scala.concurrent.Future
 /** Records what a flight does. */
 trait Recorder:
 
-  /** Takes one record; never blocks, from any thread. A record that cannot be kept makes [[failure]] complete; after
-    * a failure or [[close]], records are ignored, but for the [[Ending]]: it is the last row, and after a failure it is
-    * written as far as that is possible.
+  /** Takes one record; never blocks, from any thread. A record that cannot be kept makes [[failure]]
+    * complete; after a failure or [[close]], records are ignored, but for the [[Ending]]: it is the last row,
+    * and after a failure it is written as far as that is possible.
     */
   def offer(record: Record): Unit
 
-  /** Completes when a record could not be kept, and never otherwise. The flight must end then: vehicles hover, and
-    * the reason is shown.
+  /** Completes when a record could not be kept, and never otherwise. The flight must end then: vehicles
+    * hover, and the reason is shown.
     */
   def failure: Future[RecordError]
 
-  /** Writes what is still queued and closes. Completes with the number of rows written, or with the failure. Every
-    * call has the same result.
+  /** Writes what is still queued and closes. Completes with the number of rows written, or with the failure.
+    * Every call has the same result.
     */
   def close(): Future[Either[RecordError, Written]]

@@ -53,7 +53,9 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 
 private[record] object RecordingFile:
 
-  /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the first. */
+  /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the
+    * first.
+    */
   def create(file: Path, heading: RecordingHeader): Either[RecordError, RecordingFile] =
     free(file).flatMap: _ =>
       attempt(RecordError.CannotCreate(file, _)):

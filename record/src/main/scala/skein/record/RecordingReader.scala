@@ -40,7 +40,8 @@ object RecordingReader:
       RecordingFile.attempt(RecordError.NotARecording(file, _)):
         Table.all.flatMap(_.readNumbered(connection)).sortBy(_._1)
 
-  /** Opens for reading only, checks that it is a recording of a format that is read, and closes afterwards. */
+  /** Opens for reading only, checks that it is a recording of a format that is read, and closes afterwards.
+    */
   private[record] def withRecording[A](file: Path)(
       action: Connection => Either[RecordError, A]
   ): Either[RecordError, A] =

@@ -1,8 +1,8 @@
 package skein.record
 
-/** Takes a flight's rows beside its recording: those that are committed there, in their order, with their numbers. Called
-  * by one thread at a time, which is none of control's. What goes wrong is kept until somebody asks: the recording goes on
-  * without it.
+/** Takes a flight's rows beside its recording: those that are committed there, in their order, with their
+  * numbers. Called by one thread at a time, which is none of control's. What goes wrong is kept until
+  * somebody asks: the recording goes on without it.
   */
 trait RowSink:
   /** May take some milliseconds, in which the recording's queue grows. */

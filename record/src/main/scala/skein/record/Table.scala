@@ -10,10 +10,8 @@ import skein.record.Columns.*
 
 /** A table of a recording: the type of its rows, its name and its columns.
   *
-  * @param rows
-  *   their class
-  * @param since
-  *   the format that it came with: files of an older one do not have it, which reads as no rows
+  * @param rows their class
+  * @param since the format that it came with: files of an older one do not have it, which reads as no rows
   */
 private[record] final case class Table[A <: Record](
     name: String,
@@ -37,8 +35,8 @@ private[record] final case class Table[A <: Record](
   /** All rows in the order in which they were recorded. */
   def read(connection: Connection): Vector[A] = readNumbered(connection).map(_._2)
 
-  /** The same, each with its number. A column that may be null and is missing in an older file is absent, unless the
-    * older file says it in another way.
+  /** The same, each with its number. A column that may be null and is missing in an older file is absent,
+    * unless the older file says it in another way.
     */
   def readNumbered(connection: Connection): Vector[(Long, A)] =
     val present = columnsIn(connection)

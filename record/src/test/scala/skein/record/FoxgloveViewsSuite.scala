@@ -5,8 +5,8 @@ import skein.scene.SceneFile
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is for ever, colours lie
-  * between 0 and 1, and the quaternion that turns nothing is 1 in `w` and 0 else.
+/** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is for ever,
+  * colours lie between 0 and 1, and the quaternion that turns nothing is 1 in `w` and 0 else.
   */
 class FoxgloveViewsSuite extends munit.FunSuite:
   private val names = Vector("Pursuer", "Evader") ++ (3 to 6).map(number => s"Vehicle$number")

@@ -6,8 +6,9 @@ import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.units.Clock
 
-/** A process that records one truth row every millisecond into the file of its first argument until it is killed or
-  * recording fails, for 20 s at most, and prints each row's number, or the reason, when it has been offered.
+/** A process that records one truth row every millisecond into the file of its first argument until it is
+  * killed or recording fails, for 20 s at most, and prints each row's number, or the reason, when it has been
+  * offered.
   */
 object RecordUntilStopped:
   def main(arguments: Array[String]): Unit =

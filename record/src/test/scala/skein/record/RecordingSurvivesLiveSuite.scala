@@ -22,7 +22,9 @@ class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhur
     val reader = BufferedReader(InputStreamReader(process.getInputStream))
     Iterator.continually(reader.readLine()).takeWhile(_ != null)
 
-  /** Kills a process that records into `file`, checks what is left, and tells how old the last row kept was, ms. */
+  /** Kills a process that records into `file`, checks what is left, and tells how old the last row kept was,
+    * ms.
+    */
   private def killed(file: Path): Double =
     val process  = child(file)
     val reported = lines(process)

@@ -1,7 +1,7 @@
 package skein.scene
 
-/** The AprilTag family 36h11 (Olson, "AprilTag: A robust and flexible visual fiducial system", ICRA 2011): six by six
-  * cells, 587 tags, any two of which differ in 11 cells and more however they are turned.
+/** The AprilTag family 36h11 (Olson, "AprilTag: A robust and flexible visual fiducial system", ICRA 2011):
+  * six by six cells, 587 tags, any two of which differ in 11 cells and more however they are turned.
   */
 object AprilTag:
   /** Cells of a tag's pattern across: six of data, a black border and a white margin of one each. */

@@ -4,27 +4,26 @@ import skein.units.Vector3
 
 /** A body that touches a scene's object.
   *
-  * @param normal
-  *   of unit length, away from the object
-  * @param depthM
-  *   how far to go along it to be free
-  * @param point
-  *   of the body's surface, the deepest within the object
+  * @param normal of unit length, away from the object
+  * @param depthM how far to go along it to be free
+  * @param point of the body's surface, the deepest within the object
   */
 final case class Contact(item: Int, normal: Vector3, depthM: Double, point: Vector3)
 
 object Contact:
 
-  /** The deepest contact of a box with a scene's objects, the ground aside. By separating axes: the faces' normals of both,
-    * not the edges' products, so that a box counts as touching a little before its edge meets another edge.
+  /** The deepest contact of a box with a scene's objects, the ground aside. By separating axes: the faces'
+    * normals of both, not the edges' products, so that a box counts as touching a little before its edge
+    * meets another edge.
     *
-    * @param half
-    *   of the box' lengths, m
+    * @param half of the box' lengths, m
     */
   def of(scene: Scene, box: Placement, half: Vector3): Option[Contact] =
     scene.solids.iterator.flatMap(touch(_, box, half)).maxByOption(_.depthM)
 
-  /** How far a body may go at least before it can touch anything: from its centre to the nearest object, less their reach. */
+  /** How far a body may go at least before it can touch anything: from its centre to the nearest object, less
+    * their reach.
+    */
   def clearanceM(scene: Scene, centre: Vector3, reachM: Double): Double =
     scene.solids.iterator.map(solid => (solid.centre - centre).norm - solid.reachM - reachM)
       .minOption.getOrElse(Double.PositiveInfinity)

@@ -5,16 +5,12 @@ import skein.units.Vector3
 
 /** A lidar that turns around its down axis. The defaults are AirSim's for multirotors.
   *
-  * @param place
-  *   on the vehicle
-  * @param rangeM
-  *   what is farther gives no point
-  * @param horizontalFovDeg
-  *   from, to, clockwise from the front; other points are dropped, as in AirSim, and where both are equal none is
-  * @param noiseM
-  *   standard deviation of the range
-  * @param fresh
-  *   whether a scan is taken when it is asked for, of that instant, instead of once a turn
+  * @param place on the vehicle
+  * @param rangeM what is farther gives no point
+  * @param horizontalFovDeg from, to, clockwise from the front; other points are dropped, as in AirSim, and
+  *   where both are equal none is
+  * @param noiseM standard deviation of the range
+  * @param fresh whether a scan is taken when it is asked for, of that instant, instead of once a turn
   */
 final case class Lidar(
     channels: Int = 16,
@@ -32,8 +28,8 @@ final case class Lidar(
   /** Rays of one turn: at most 100,000, as in AirSim. */
   val rays: Int = math.min(Lidar.MostRays, math.round(pointsPerSecond.toDouble / rotationsPerSecond).toInt)
 
-  /** Directions in the lidar's frame, three numbers each. One ray after another is the next channel's, from the upper one
-    * down, and a channel's angular step is a turn over its rays, as AirSim has them.
+  /** Directions in the lidar's frame, three numbers each. One ray after another is the next channel's, from
+    * the upper one down, and a channel's angular step is a turn over its rays, as AirSim has them.
     */
   private lazy val directions: Array[Double] =
     val perChannel     = math.max(1, math.round(rays.toDouble / channels)).toDouble
@@ -59,12 +55,9 @@ final case class Lidar(
 
   /** Points and the items that they lie on, from a vehicle at this place in the world.
     *
-    * @param except
-    *   the item that the vehicle is
-    * @param origin
-    *   of the frame that points are told in, in the world, unless it is the sensor's own
-    * @param count
-    *   of the scan: of which numbers its noise is
+    * @param except the item that the vehicle is
+    * @param origin of the frame that points are told in, in the world, unless it is the sensor's own
+    * @param count of the scan: of which numbers its noise is
     */
   def scan(moment: Moment, vehicle: Placement, except: Int, origin: Vector3, count: Long): Lidar.Points =
     val sensor = vehicle.outside(place)
@@ -102,9 +95,7 @@ object Lidar:
   /** Of one scan: AirSim's limit. */
   val MostRays = 100_000
 
-  /** @param xyz
-    *   three numbers a point, m
-    * @param items
-    *   one a point
+  /** @param xyz three numbers a point, m
+    * @param items one a point
     */
   final case class Points(xyz: Array[Float], items: Array[Int])

@@ -2,8 +2,8 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** Everything that is there at one instant: the scene, and vehicles where they are. Its items are counted: 0 is the ground,
-  * then come the objects, then the vehicles.
+/** Everything that is there at one instant: the scene, and vehicles where they are. Its items are counted: 0
+  * is the ground, then come the objects, then the vehicles.
   */
 final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
@@ -32,8 +32,7 @@ final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
   /** Whether nothing stands between two points. The ground hides what lies below it.
     *
-    * @param except
-    *   an item that does not stand in the way: the one that looks
+    * @param except an item that does not stand in the way: the one that looks
     */
   def sees(from: Vector3, to: Vector3, except: Int = Item.Nothing): Boolean =
     val way = to - from
@@ -43,7 +42,7 @@ final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
     )
 
 object Moment:
-  /** What lies no deeper than this lies on the ground: places that come as a latitude and a 32-bit altitude are no better,
-    * m.
+  /** What lies no deeper than this lies on the ground: places that come as a latitude and a 32-bit altitude
+    * are no better, m.
     */
   val GroundToleranceM = 0.001

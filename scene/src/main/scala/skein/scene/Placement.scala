@@ -2,11 +2,10 @@ package skein.scene
 
 import skein.units.{Quaternion, Vector3}
 
-/** Where something is and how it is turned: leads from its own frame (front, right, down) to the one that it is placed
-  * in, such as the world (north, east, down). Metres.
+/** Where something is and how it is turned: leads from its own frame (front, right, down) to the one that it
+  * is placed in, such as the world (north, east, down). Metres.
   *
-  * @param orientation
-  *   a unit quaternion
+  * @param orientation a unit quaternion
   */
 final class Placement(val position: Vector3, val orientation: Quaternion = Quaternion.Identity):
   import orientation.{w, x, y, z}

@@ -2,8 +2,9 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** Rays from one place: what of a moment each of them meets first. The bodies are sorted into sectors around the place, by
-  * a stand-in for the azimuth that needs no arc tangent, and within each by how near they can be; so a ray tests few.
+/** Rays from one place: what of a moment each of them meets first. The bodies are sorted into sectors around
+  * the place, by a stand-in for the azimuth that needs no arc tangent, and within each by how near they can
+  * be; so a ray tests few.
   */
 final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
   import Rays.*
@@ -21,7 +22,9 @@ final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
   /** The item that the last ray has met. */
   var item: Int = Item.Nothing
 
-  /** How far the ray in this direction, of unit length, goes until it meets something, m; infinite if not within range. */
+  /** How far the ray in this direction, of unit length, goes until it meets something, m; infinite if not
+    * within range.
+    */
   def cast(dx: Double, dy: Double, dz: Double): Double =
     item = Item.Nothing
     var least = Double.PositiveInfinity

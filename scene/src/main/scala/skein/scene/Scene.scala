@@ -2,11 +2,9 @@ package skein.scene
 
 /** What stands in a world: flat ground at z = 0 under a sky, and objects. North, east, down, m.
   *
-  * @param groundRgb
-  *   colours are 0xrrggbb
-  * @param vehicleTagM
-  *   side of the AprilTag that every vehicle bears on its front, right, back and left, with the number of its place among
-  *   the vehicles; 0: none
+  * @param groundRgb colours are 0xrrggbb
+  * @param vehicleTagM side of the AprilTag that every vehicle bears on its front, right, back and left, with
+  *   the number of its place among the vehicles; 0: none
   */
 final case class Scene(
     objects: Vector[SceneObject] = Vector.empty,

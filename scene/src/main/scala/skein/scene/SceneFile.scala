@@ -9,8 +9,7 @@ import skein.units.Vector3
 
 /** Why a scene cannot be used.
   *
-  * @param place
-  *   file and line, as far as known
+  * @param place file and line, as far as known
   */
 final case class SceneError(place: String, problem: String):
   def message: String = s"$place: $problem"
@@ -28,8 +27,7 @@ object SceneFile:
     val text = String(getClass.getResourceAsStream(s"$name.conf").readAllBytes, "UTF-8")
     parse(text, s"$name.conf").fold(error => throw IllegalStateException(error.message), identity)
 
-  /** @param from
-    *   what errors call it
+  /** @param from what errors call it
     */
   def parse(text: String, from: String): Either[SceneError, Scene] =
     try

@@ -4,10 +4,8 @@ import skein.units.Vector3
 
 /** Something with a name that stands somewhere, made of convex parts.
   *
-  * @param place
-  *   in the world: north, east, down, m
-  * @param id
-  *   for segmentation, 0 to 255; None: by its name
+  * @param place in the world: north, east, down, m
+  * @param id for segmentation, 0 to 255; None: by its name
   */
 final case class SceneObject(
     name: String,
@@ -25,10 +23,8 @@ final case class SceneObject(
     parts.map(part => Solid(item, part.shape, place.outside(part.at), part.rgb))
 
 object SceneObject:
-  /** @param at
-    *   in its object's frame
-    * @param rgb
-    *   0xrrggbb
+  /** @param at in its object's frame
+    * @param rgb 0xrrggbb
     */
   final case class Part(shape: Shape, at: Placement, rgb: Int)
 

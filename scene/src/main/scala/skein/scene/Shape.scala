@@ -4,24 +4,21 @@ import skein.units.Vector3
 
 /** A convex shape around its own origin: front, right, down, m. */
 enum Shape:
-  /** @param half
-    *   of its lengths
+  /** @param half of its lengths
     */
   case Box(half: Vector3)
 
   /** An upright pole of eight sides.
     *
-    * @param radiusM
-    *   to its edges
-    * @param halfM
-    *   of its height
+    * @param radiusM to its edges
+    * @param halfM of its height
     */
   case Pole(radiusM: Double, halfM: Double)
 
   /** A plate of 2 mm that shows an AprilTag of family 36h11 to the front.
     *
-    * @param sideM
-    *   of its black square, which is what detectors call its width; a white margin of an eighth of it is around
+    * @param sideM of its black square, which is what detectors call its width; a white margin of an eighth of
+    *   it is around
     */
   case Tag(number: Int, sideM: Double)
 

@@ -4,10 +4,8 @@ import skein.units.Vector3
 
 /** A convex body in the world, as faces. Immutable once made.
   *
-  * @param item
-  *   whose part it is, as [[Moment]] counts
-  * @param corners
-  *   x, y, z of each, NED, m
+  * @param item whose part it is, as [[Moment]] counts
+  * @param corners x, y, z of each, NED, m
   */
 final private[skein] class Solid private (
     val item: Int,
@@ -17,7 +15,9 @@ final private[skein] class Solid private (
     val reachM: Double
 ):
 
-  /** How far along a ray it is entered: in lengths of the direction, 0 from inside, infinite if not within `limit`. */
+  /** How far along a ray it is entered: in lengths of the direction, 0 from inside, infinite if not within
+    * `limit`.
+    */
   def hit(ox: Double, oy: Double, oz: Double, dx: Double, dy: Double, dz: Double, limit: Double): Double =
     var enter = 0.0
     var leave = limit
@@ -34,12 +34,9 @@ final private[skein] class Solid private (
 
 private[skein] object Solid:
 
-  /** @param nx
-    *   unit normal outwards; inside is where n·p ≤ `d`
-    * @param loop
-    *   corners, counter-clockwise seen from outside
-    * @param rgb
-    *   in this light, 0xrrggbb
+  /** @param nx unit normal outwards; inside is where n·p ≤ `d`
+    * @param loop corners, counter-clockwise seen from outside
+    * @param rgb in this light, 0xrrggbb
     */
   final class Face(
       val nx: Double,
@@ -53,11 +50,9 @@ private[skein] object Solid:
 
   /** Cells painted on a face.
     *
-    * @param origin
-    *   of the upper left cell's upper left corner
-    * @param across
-    *   from it to the next column's, over the squared length of a cell: a place's column is its product with this;
-    *   `down` likewise
+    * @param origin of the upper left cell's upper left corner
+    * @param across from it to the next column's, over the squared length of a cell: a place's column is its
+    *   product with this; `down` likewise
     */
   final class Pattern(val white: Array[Boolean], val origin: Vector3, val across: Vector3, val down: Vector3)
 

@@ -5,7 +5,8 @@ import java.util.zip.CRC32
 import skein.scene.render.*
 import skein.units.Vector3
 
-/** CPU time of images and scans, beside a witness of what was drawn: `scene/Test/runMain skein.scene.speed`. */
+/** CPU time of images and scans, beside a witness of what was drawn: `scene/Test/runMain skein.scene.speed`.
+  */
 @main def speed(): Unit =
   val threads = ManagementFactory.getThreadMXBean
   val view    = View(Placement.turned(Vector3(0, 0, -3), 2, -5, 10), 1280, 720, 90)

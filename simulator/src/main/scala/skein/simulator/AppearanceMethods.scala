@@ -2,9 +2,9 @@ package skein.simulator
 
 import skein.airsim.wire.{Pose, Vector3r}
 
-/** Functions whose effect only an eye would notice, and no function could ask for again: their arguments are checked, as
-  * AirSim's are, and nothing comes of them. What would change things that do not exist here (lights, textures, materials)
-  * says so as AirSim does of a name it does not know.
+/** Functions whose effect only an eye would notice, and no function could ask for again: their arguments are
+  * checked, as AirSim's are, and nothing comes of them. What would change things that do not exist here
+  * (lights, textures, materials) says so as AirSim does of a name it does not know.
   */
 private[simulator] object AppearanceMethods:
   import ServerMethod.*

@@ -9,15 +9,15 @@ import upack.*
 
 /** How AirSim's server reads an argument of this type: the conversions of msgpack-c, which its rpclib uses.
   *
-  *   - A number may come as an integer where a float is wanted, never as a boolean, a string or nil; a float is no
-  *     integer, and an integer out of its type's range is none.
+  *   - A number may come as an integer where a float is wanted, never as a boolean, a string or nil; a float
+  *     is no integer, and an integer out of its type's range is none.
   *   - A string may come as str or as bin, which old clients send.
-  *   - A map's missing keys keep their defaults and further keys are passed over, at any depth; a map with a key that is
-  *     no string, or another kind of value in its place, is refused.
+  *   - A map's missing keys keep their defaults and further keys are passed over, at any depth; a map with a
+  *     key that is no string, or another kind of value in its place, is refused.
   *   - What is refused is told as `std::bad_cast`, with no word about where.
   *
-  * Otherwise than AirSim it refuses numbers that are not finite, or too large for a 32-bit float where one is wanted:
-  * they would poison physics for good.
+  * Otherwise than AirSim it refuses numbers that are not finite, or too large for a 32-bit float where one is
+  * wanted: they would poison physics for good.
   */
 private[simulator] trait Argument[A]:
   /** Throws [[BadArgument]]. */

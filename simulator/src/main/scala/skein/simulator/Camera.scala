@@ -5,12 +5,9 @@ import skein.units.{Quaternion, Vector3}
 
 /** A camera that a vehicle carries: where it sits, its lens and its film.
   *
-  * @param position
-  *   on the vehicle, front right down, m
-  * @param orientation
-  *   against the vehicle's
-  * @param distortion
-  *   K1, K2, K3, P1, P2 of the Brown-Conrady model
+  * @param position on the vehicle, front right down, m
+  * @param orientation against the vehicle's
+  * @param distortion K1, K2, K3, P1, P2 of the Brown-Conrady model
   */
 final private[simulator] case class Camera(
     position: Vector3,

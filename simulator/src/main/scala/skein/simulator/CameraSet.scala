@@ -4,15 +4,14 @@ import skein.units.{Quaternion, Vector3}
 
 /** The cameras that vehicles of a kind carry without being told to.
   *
-  * @param aliases
-  *   numbers that older clients use, and other names of the same cameras
+  * @param aliases numbers that older clients use, and other names of the same cameras
   */
 final private[simulator] case class CameraSet(places: Map[String, Camera], aliases: Map[String, String])
 
 private[simulator] object CameraSet:
 
-  /** Those of AirSim's multirotor. Its places are in a binary file that nobody can read here, but for the 25 cm between the
-    * front left and the front right one; so these are ours.
+  /** Those of AirSim's multirotor. Its places are in a binary file that nobody can read here, but for the 25
+    * cm between the front left and the front right one; so these are ours.
     */
   val OfMultirotor: CameraSet = CameraSet(
     Map(
@@ -33,8 +32,8 @@ private[simulator] object CameraSet:
     )
   )
 
-  /** Those of AirSim's car (`CarPawn`), and half a metre higher and farther to the front and back: our car is longer and
-    * higher than its buggy, and they would look at it from inside.
+  /** Those of AirSim's car (`CarPawn`), and half a metre higher and farther to the front and back: our car is
+    * longer and higher than its buggy, and they would look at it from inside.
     */
   val OfCar: CameraSet = CameraSet(
     Map(

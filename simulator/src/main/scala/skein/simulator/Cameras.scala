@@ -5,8 +5,7 @@ import skein.units.{Quaternion, Vector3}
 
 /** The vehicles' cameras: AirSim's and those of the settings, and what clients have made of them.
   *
-  * @param equipment
-  *   of the settings
+  * @param equipment of the settings
   */
 final private[simulator] class Cameras(equipment: SensorSettings):
   private val changed  = mutable.Map.empty[(Int, String), Camera]
@@ -20,8 +19,7 @@ final private[simulator] class Cameras(equipment: SensorSettings):
       vehicle.cameras.places.contains(own) || equipment.cameras.get(called).exists(_.contains(own))
     )(own)
 
-  /** @param index
-    *   of the vehicle
+  /** @param index of the vehicle
     */
   def apply(index: Int, vehicle: SimulatedVehicle, name: String): Camera =
     changed.getOrElse((index, name), initial(vehicle, name))
@@ -45,8 +43,7 @@ final private[simulator] class Cameras(equipment: SensorSettings):
 
 /** What is looked for in images.
   *
-  * @param meshes
-  *   names, which may hold wild cards
+  * @param meshes names, which may hold wild cards
   */
 final private[simulator] case class DetectionFilter(meshes: Set[String] = Set.empty, radiusCm: Float = 20_000)
 

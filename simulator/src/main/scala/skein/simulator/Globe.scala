@@ -21,8 +21,8 @@ private[simulator] object Globe:
   def pressureAltitudeM(pressurePa: Double): Double =
     (1 - StrictMath.pow(pressurePa / SeaLevelPressure, 0.190284)) * 145366.45 * 0.3048
 
-  /** The field of a dipole whose pole lies at 80.31° N, 72.62° W, NED, gauss. Its direction errs by some 10°, its
-    * strength by up to a third.
+  /** The field of a dipole whose pole lies at 80.31° N, 72.62° W, NED, gauss. Its direction errs by some 10°,
+    * its strength by up to a third.
     */
   def magneticFieldNed(place: GeoLocation): Vector3 =
     val latitude = math.toRadians(place.latitudeDeg)

@@ -3,9 +3,9 @@ package skein.simulator
 import skein.airsim.wire.*
 import skein.units.*
 
-/** AirSim's default GPS (`GpsSimple`): silent for its first second, its dilutions of precision falling from 100 to 0.1
-  * with a time constant of 0.9 s, so that it has a fix in three dimensions after some 3.2 s. It tells the truth as it is
-  * now; AirSim's is 0.2 s late and tells it every 20 ms.
+/** AirSim's default GPS (`GpsSimple`): silent for its first second, its dilutions of precision falling from
+  * 100 to 0.1 with a time constant of 0.9 s, so that it has a fix in three dimensions after some 3.2 s. It
+  * tells the truth as it is now; AirSim's is 0.2 s late and tells it every 20 ms.
   */
 private[simulator] object Gps:
   def read(vehicle: SimulatedVehicle, at: Instant): GpsData =

@@ -5,13 +5,10 @@ import skein.link.Address
 
 /** Autopilots that fly the vehicles: the simulator gives them sensors and takes their rotors' controls.
   *
-  * @param ports
-  *   a vehicle's each, in their order; of PX4 by the simulator's own transport, which is TCP where that is real, of the
-  *   others UDP. Vehicles without a port have no autopilot
-  * @param stateTo
-  *   where Betaflight takes its state
-  * @param seed
-  *   of the sensors' noise; each vehicle has its own
+  * @param ports a vehicle's each, in their order; of PX4 by the simulator's own transport, which is TCP where
+  *   that is real, of the others UDP. Vehicles without a port have no autopilot
+  * @param stateTo where Betaflight takes its state
+  * @param seed of the sensors' noise; each vehicle has its own
   */
 final case class HilSettings(
     autopilot: AutopilotKind,

@@ -5,8 +5,9 @@ import skein.hil.{AutopilotInterface, SensorTruth, Sensors}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** The vehicles of a simulation with autopilots outside: an autopilot's channel is a vehicle's. The simulator's clock stops
-  * wherever sensors are due, and goes on as the autopilots let it. A vehicle without an autopilot is AirSim's.
+/** The vehicles of a simulation with autopilots outside: an autopilot's channel is a vehicle's. The
+  * simulator's clock stops wherever sensors are due, and goes on as the autopilots let it. A vehicle without
+  * an autopilot is AirSim's.
   */
 private[simulator] final class HilVehicles(simulation: Simulation, settings: HilSettings)
     extends PeerProtocol,

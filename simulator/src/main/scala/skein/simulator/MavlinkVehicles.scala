@@ -6,9 +6,9 @@ import skein.mavlink.{CommonDialect, Message}
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** The vehicles of a simulation as MAVLink vehicles, with system numbers in their order: bytes of peers go in, bytes
-  * for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is disarmed; before and after,
-  * AirSim's API can fly it.
+/** The vehicles of a simulation as MAVLink vehicles, with system numbers in their order: bytes of peers go
+  * in, bytes for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is
+  * disarmed; before and after, AirSim's API can fly it.
   */
 private[simulator] final class MavlinkVehicles(simulation: Simulation, settings: MavlinkSettings)
     extends PeerProtocol:
@@ -53,7 +53,8 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
   def nextDue: Option[Instant] =
     channels.valuesIterator.flatMap(_.nextDue).minOption.map(startedAt + _)
 
-  /** Frames with a wrong checksum, of an unknown message or of a wrong content, of all peers since the start. */
+  /** Frames with a wrong checksum, of an unknown message or of a wrong content, of all peers since the start.
+    */
   def damaged: Long = damagedBefore + channels.valuesIterator.map(_.damaged).sum
 
   def unanswered: Long = 0

@@ -4,14 +4,13 @@ import skein.airsim.wire.YawMode
 import skein.units.*
 import skein.vehicle.{PathFollowing, Setpoint}
 
-/** A move under way. AirSim's calls loop every 20 ms of simulated time: look at the vehicle, renew its goal, end when
-  * done or when their time is over (`MultirotorApiBase`).
+/** A move under way. AirSim's calls loop every 20 ms of simulated time: look at the vehicle, renew its goal,
+  * end when done or when their time is over (`MultirotorApiBase`).
   */
 private[simulator] trait Move:
   /** One turn of that loop.
     *
-    * @param elapsed
-    *   since the move began; zero at the first turn
+    * @param elapsed since the move began; zero at the first turn
     */
   def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress
 
@@ -28,8 +27,8 @@ private[simulator] enum MoveProgress:
   case Ended(result: Boolean, goal: Option[Setpoint])
 
 private[simulator] object Move:
-  /** A move as it is asked for: made when its turn comes, from the vehicle as it is then. `Left` is the text of the
-    * exception that AirSim throws.
+  /** A move as it is asked for: made when its turn comes, from the vehicle as it is then. `Left` is the text
+    * of the exception that AirSim throws.
     */
   type Order = SimulatedMultirotor => Either[String, Move]
 
@@ -86,7 +85,9 @@ private[simulator] object Move:
 
   val ApproximatelyZeroMps = 0.05
 
-  /** At most three years: AirSim's "no limit" is the greatest 32-bit float, more than a clock in nanoseconds can count. */
+  /** At most three years: AirSim's "no limit" is the greatest 32-bit float, more than a clock in nanoseconds
+    * can count.
+    */
   def span(seconds: Float): Span = Span.ofSeconds(math.min(seconds.toDouble, 1e8))
 
   /** Degrees, −180 to 180. */

@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** Functions that move one vehicle, and answer when the move ends. Angles in radians where the name says roll and
-  * pitch, in degrees for yaw modes and rotations, as in AirSim.
+/** Functions that move one vehicle, and answer when the move ends. Angles in radians where the name says roll
+  * and pitch, in degrees for yaw modes and rotations, as in AirSim.
   */
 private[simulator] object MoveMethods:
   import ServerMethod.many

@@ -4,7 +4,9 @@ import skein.scene.{Placement, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Airframe
 
-/** What a multirotor looks like: its box, two beams across, four rotors, and tags on its sides where the scene wants them. */
+/** What a multirotor looks like: its box, two beams across, four rotors, and tags on its sides where the
+  * scene wants them.
+  */
 private[skein] object MultirotorBody:
   import SceneObject.Part
 

@@ -2,8 +2,8 @@ package skein.simulator
 
 import java.util.regex.{Pattern, PatternSyntaxException}
 
-/** A client's regular expression, matched against whole names within a stated effort: some expressions would otherwise
-  * take for ever on one name.
+/** A client's regular expression, matched against whole names within a stated effort: some expressions would
+  * otherwise take for ever on one name.
   */
 final private[simulator] class NamePattern private (pattern: Pattern):
   import NamePattern.*

@@ -3,10 +3,10 @@ package skein.simulator
 import skein.scene.{Contact, Placement, Scene}
 import skein.units.{Instant, Quaternion, Vector3}
 
-/** What of a scene's objects one vehicle touches. It remembers how far the vehicle can go before it touches anything.
+/** What of a scene's objects one vehicle touches. It remembers how far the vehicle can go before it touches
+  * anything.
   *
-  * @param startNed
-  *   of the vehicle's own frame in the world
+  * @param startNed of the vehicle's own frame in the world
   */
 final private[simulator] class Obstacles(startNed: Vector3):
   // Of this scene it can touch nothing until it is so far from there.
@@ -14,12 +14,9 @@ final private[simulator] class Obstacles(startNed: Vector3):
   private var freeAt = Vector3.Zero
   private var freeM  = 0.0
 
-  /** @param centre
-    *   of the box around the vehicle, in the world
-    * @param half
-    *   of the box' lengths, m
-    * @param orientation
-    *   of the vehicle; computed only where something is near
+  /** @param centre of the box around the vehicle, in the world
+    * @param half of the box' lengths, m
+    * @param orientation of the vehicle; computed only where something is near
     */
   def touched(scene: Scene, centre: Vector3, half: Vector3)(orientation: => Quaternion): Option[Contact] =
     if (scene eq freeOf) && (centre - freeAt).norm < freeM then None
@@ -31,8 +28,7 @@ final private[simulator] class Obstacles(startNed: Vector3):
 
   /** As a client is told of it.
     *
-    * @param positionNed
-    *   of the vehicle, in its own frame
+    * @param positionNed of the vehicle, in its own frame
     */
   def told(scene: Scene, contact: Contact, at: Instant, positionNed: Vector3): Touch = Touch(
     at,

@@ -7,10 +7,8 @@ import skein.vehicle.{PathFollowing, Setpoint}
 
 /** How a path is flown.
   *
-  * @param lookaheadM
-  *   how far ahead on the path to aim; negative: by the speed
-  * @param adaptive
-  *   how much of the distance from the path is added to that
+  * @param lookaheadM how far ahead on the path to aim; negative: by the speed
+  * @param adaptive how much of the distance from the path is added to that
   */
 final private[simulator] case class Travel(
     drivetrain: Int,
@@ -23,10 +21,10 @@ private[simulator] object Travel:
   /** What AirSim's own moves use. */
   val Plain: Travel = Travel(0, YawMode.Still, -1, 1)
 
-/** Flies along a path by aiming at a point ahead on it, with a velocity command (`MultirotorApiBase::moveOnPath`).
+/** Flies along a path by aiming at a point ahead on it, with a velocity command
+  * (`MultirotorApiBase::moveOnPath`).
   *
-  * @param points
-  *   the first is where the vehicle was at the start
+  * @param points the first is where the vehicle was at the start
   */
 final private[simulator] class PathMove private (
     points: Vector[Vector3],

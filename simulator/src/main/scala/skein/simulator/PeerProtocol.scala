@@ -2,14 +2,12 @@ package skein.simulator
 
 import skein.units.Instant
 
-/** The vehicles of a simulation by another protocol than AirSim's: bytes of peers go in, bytes for them come out. Not
-  * thread-safe.
+/** The vehicles of a simulation by another protocol than AirSim's: bytes of peers go in, bytes for them come
+  * out. Not thread-safe.
   */
 private[simulator] trait PeerProtocol:
-  /** @param systems
-    *   that the peer sees; none is all
-    * @param isDatagrams
-    *   whether it speaks by datagrams, and not by a stream
+  /** @param systems that the peer sees; none is all
+    * @param isDatagrams whether it speaks by datagrams, and not by a stream
     */
   def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit
 

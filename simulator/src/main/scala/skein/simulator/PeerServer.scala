@@ -14,10 +14,8 @@ import skein.units.Span
 
 /** Where peers reach vehicles by another protocol than AirSim's.
   *
-  * @param streams
-  *   by the simulator's own transport, which is TCP where that is real
-  * @param datagrams
-  *   by datagrams, whatever the transport
+  * @param streams by the simulator's own transport, which is TCP where that is real
+  * @param datagrams by datagrams, whatever the transport
   */
 private[simulator] final case class PeerPorts(
     streams: Vector[PeerPort] = Vector.empty,
@@ -26,14 +24,10 @@ private[simulator] final case class PeerPorts(
 
 /** A port of some vehicles. It answers everybody who speaks to it.
   *
-  * @param systems
-  *   the vehicles, from 1; none is all
-  * @param mostPeers
-  *   at a time
-  * @param tells
-  *   who is told without having asked
-  * @param isOneWay
-  *   whether only that one is told, and what others send counts as its
+  * @param systems the vehicles, from 1; none is all
+  * @param mostPeers at a time
+  * @param tells who is told without having asked
+  * @param isOneWay whether only that one is told, and what others send counts as its
   */
 private[simulator] final case class PeerPort(
     at: Address,
@@ -59,8 +53,7 @@ private[simulator] object PeerPorts:
 
 /** What is done with what peers send. Each call may come from any thread. */
 private[simulator] trait Peers:
-  /** @param isDatagrams
-    *   whether it speaks by datagrams, and not by a stream
+  /** @param isDatagrams whether it speaks by datagrams, and not by a stream
     */
   def joined(
       channel: Long,
@@ -76,8 +69,7 @@ private[simulator] trait Peers:
 
 /** The open ports.
   *
-  * @param addresses
-  *   with the actual ports: those of streams, then those of datagrams
+  * @param addresses with the actual ports: those of streams, then those of datagrams
   */
 private[simulator] final class PeerServer(
     val addresses: Vector[Address],

@@ -4,16 +4,12 @@ import java.util.concurrent.atomic.AtomicLong
 
 /** What peers of MAVLink, or autopilots, lost since the start.
   *
-  * @param damaged
-  *   messages that came with a wrong checksum, of an unknown kind or of a wrong content
-  * @param dropped
-  *   pieces for peers that did not take them in time
-  * @param turnedAway
-  *   peers beyond the most at a time
-  * @param ignored
-  *   datagrams of peers beyond the most at a port, or that came faster than they were dealt with
-  * @param unanswered
-  *   times that an autopilot in lockstep did not answer within a second, and time went on without it
+  * @param damaged messages that came with a wrong checksum, of an unknown kind or of a wrong content
+  * @param dropped pieces for peers that did not take them in time
+  * @param turnedAway peers beyond the most at a time
+  * @param ignored datagrams of peers beyond the most at a port, or that came faster than they were dealt with
+  * @param unanswered times that an autopilot in lockstep did not answer within a second, and time went on
+  *   without it
   */
 final case class PeerStats(
     damaged: Long = 0,

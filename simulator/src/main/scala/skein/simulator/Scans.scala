@@ -5,8 +5,9 @@ import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
 import skein.scene.{Lidar, Moment, Placement, Scene, SceneObject}
 import skein.units.*
 
-/** The vehicles' lidars. Each takes a scan once a turn by the simulator's clock, a whole turn of one instant; what it is
-  * asked for is the newest. Where everything was at that instant is noted; the rays are only cast if somebody asks.
+/** The vehicles' lidars. Each takes a scan once a turn by the simulator's clock, a whole turn of one instant;
+  * what it is asked for is the newest. Where everything was at that instant is noted; the rays are only cast
+  * if somebody asks.
   */
 final private[simulator] class Scans(lidars: Vector[Scans.Carried]):
   private val notes = mutable.Map.empty[Scans.Carried, Scan]
@@ -36,8 +37,7 @@ private[simulator] object Scans:
 
 /** A scan that has been taken: what it needs to be computed, once.
   *
-  * @param origin
-  *   of the vehicle's own frame in the world
+  * @param origin of the vehicle's own frame in the world
   */
 final private[simulator] class Scan(
     val at: Instant,
@@ -53,8 +53,7 @@ final private[simulator] class Scan(
     val moment = Moment(scene, vehicles)
     lidar.scan(moment, place, moment.itemOf(vehicle), origin, count)
 
-  /** @param idOf
-    *   the items' segmentation ids
+  /** @param idOf the items' segmentation ids
     */
   def data(idOf: Int => Int): LidarData =
     val sensor = place.outside(lidar.place)

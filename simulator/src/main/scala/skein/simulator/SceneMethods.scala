@@ -6,8 +6,8 @@ import skein.airsim.wire.*
 import skein.scene.Placement
 import skein.units.*
 
-/** Functions of what is in the scene, and where: the ground, the scene's objects and vehicles. There are no assets, levels or
-  * meshes.
+/** Functions of what is in the scene, and where: the ground, the scene's objects and vehicles. There are no
+  * assets, levels or meshes.
   */
 private[simulator] object SceneMethods:
   import ServerMethod.*

@@ -5,8 +5,8 @@ import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
 import skein.scene.{Moment, Placement, Scene, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 
-/** The objects of the scene under their names, which are those of the vehicles and `Ground`, and what clients have set
-  * of them: scales and segmentation ids.
+/** The objects of the scene under their names, which are those of the vehicles and `Ground`, and what clients
+  * have set of them: scales and segmentation ids.
   */
 final private[simulator] class SceneObjects(world: World):
   import SceneObjects.*
@@ -45,8 +45,8 @@ final private[simulator] class SceneObjects(world: World):
     thing(name).flatMap(world.scene.objects(_).id).getOrElse(defaultId(name))
   )
 
-  /** Gives these objects this id, at most 255; whether there was one. A negative id only hides an object from the image
-    * of segmentation in AirSim, and changes nothing here.
+  /** Gives these objects this id, at most 255; whether there was one. A negative id only hides an object from
+    * the image of segmentation in AirSim, and changes nothing here.
     */
   def setId(which: String => Boolean, id: Int): Boolean =
     val found = names.filter(which)
@@ -81,7 +81,9 @@ private[simulator] object SceneObjects:
 
   private val LargestId = 255
 
-  /** AirSim's: 5 and the sum of the letters of the name in lower case, modulo 256 (`InitializeObjectStencilID`). */
+  /** AirSim's: 5 and the sum of the letters of the name in lower case, modulo 256
+    * (`InitializeObjectStencilID`).
+    */
   def defaultId(name: String): Int =
     val lower =
       name.map(letter => if letter >= 'A' && letter <= 'Z' then (letter + 'a' - 'A').toChar else letter)

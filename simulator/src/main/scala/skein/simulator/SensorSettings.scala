@@ -3,12 +3,11 @@ package skein.simulator
 import skein.airsim.{SensorKind, SettingsError, SettingsSection}
 import skein.scene.{Lidar, Placement}
 
-/** What vehicles carry by a `settings.json`: cameras, lidars and distance sensors. Keys and defaults are AirSim's; of a
-  * lidar there are three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh` (a scan of the instant at which it is asked
-  * for).
+/** What vehicles carry by a `settings.json`: cameras, lidars and distance sensors. Keys and defaults are
+  * AirSim's; of a lidar there are three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh`
+  * (a scan of the instant at which it is asked for).
   *
-  * @param captures
-  *   of `CameraDefaults`, by image type
+  * @param captures of `CameraDefaults`, by image type
   */
 final private[simulator] case class SensorSettings(
     captures: Map[Int, SensorSettings.Capture],
@@ -33,8 +32,7 @@ private[simulator] object SensorSettings:
 
   /** A camera of the settings.
     *
-    * @param place
-    *   on the vehicle; None: where the built-in one of its name is
+    * @param place on the vehicle; None: where the built-in one of its name is
     */
   final case class Carried(place: Option[Placement], captures: Map[Int, Capture])
 

@@ -24,10 +24,8 @@ private[simulator] enum CallOutcome:
 
 /** A function that the simulator's server has, with as many parameters as AirSim's.
   *
-  * @param arguments
-  *   how each is read; throws [[BadArgument]] if it cannot be taken
-  * @param run
-  *   what to do with what was read
+  * @param arguments how each is read; throws [[BadArgument]] if it cannot be taken
+  * @param run what to do with what was read
   */
 final private[simulator] class ServerMethod(
     val name: String,

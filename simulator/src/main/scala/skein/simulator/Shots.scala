@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.scene.render.{Kind, Raster, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
 
-/** Images that were asked for together: all of one instant, and, where they are of one camera and size, of one pass.
-  * Taken once, on any thread.
+/** Images that were asked for together: all of one instant, and, where they are of one camera and size, of
+  * one pass. Taken once, on any thread.
   */
 final private[simulator] class Shots private (
     moment: Moment,
@@ -41,8 +41,7 @@ final private[simulator] class Shots private (
         Array(grey, grey, grey)
 
 private[simulator] object Shots:
-  /** @param response
-    *   what is known of it before it is drawn
+  /** @param response what is known of it before it is drawn
     */
   final case class Wanted(view: View, kind: Kind, response: ImageResponse)
 

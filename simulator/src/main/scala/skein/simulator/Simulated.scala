@@ -20,7 +20,9 @@ private[simulator] trait Simulated:
 
   private[simulator] def equipment: SensorSettings
 
-  /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the controller's. */
+  /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the
+    * controller's.
+    */
   private[simulator] def recording: Boolean
 
   private[simulator] def recording_=(on: Boolean): Unit

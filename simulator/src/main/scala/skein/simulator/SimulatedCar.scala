@@ -6,8 +6,8 @@ import skein.scene.{Contact, Scene, SceneObject}
 import skein.units.*
 import skein.vehicle.{CarControls, CarState, SingleTrack}
 
-/** One car: a [[skein.vehicle.SingleTrack]] on level ground at the height of its start, with one gear forwards and one
-  * backwards. Its position is that of its centre of mass, on the ground.
+/** One car: a [[skein.vehicle.SingleTrack]] on level ground at the height of its start, with one gear
+  * forwards and one backwards. Its position is that of its centre of mass, on the ground.
   */
 final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrigin: GeoLocation)
     extends SimulatedVehicle(settings, worldOrigin):
@@ -128,7 +128,9 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
 
   private def velocityOf(state: CarState) = Vector3(state.northMps, state.eastMps, 0)
 
-  /** In a gear chosen by hand the pedal drives to where that leads; else a negative throttle drives backwards. */
+  /** In a gear chosen by hand the pedal drives to where that leads; else a negative throttle drives
+    * backwards.
+    */
   private def acting: CarControls =
     if !controlled then CarControls.Neutral
     else

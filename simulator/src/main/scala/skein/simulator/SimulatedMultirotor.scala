@@ -68,8 +68,9 @@ final private[simulator] class SimulatedMultirotor(
     if scene.objects.nonEmpty then meet(scene, at)
     noticeTakeoffAndLanding()
 
-  /** AirSim's response to a collision, with the contact taken at the centre of mass, so that it turns nothing: what moves
-    * into the object bounces, what slides along it is slowed, and who comes down more than sideways stays.
+  /** AirSim's response to a collision, with the contact taken at the centre of mass, so that it turns
+    * nothing: what moves into the object bounces, what slides along it is slowed, and who comes down more
+    * than sideways stays.
     */
   private def meet(scene: Scene, at: Instant): Unit =
     val centre = settings.startNed + state.positionNed
@@ -106,24 +107,24 @@ final private[simulator] class SimulatedMultirotor(
   /** Lets an autopilot outside fly it, whose setpoint holds until the next; None: it is AirSim's again. */
   def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
-  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, also if the API has had
-    * control before. A vehicle that held its position thus falls: the throttle of an absent remote control is idle, and
-    * of a vehicle that is at rest under it AirSim takes for granted that it has landed, so that it is not caught by
-    * holding a position either.
+  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, also if the
+    * API has had control before. A vehicle that held its position thus falls: the throttle of an absent
+    * remote control is idle, and of a vehicle that is at rest under it AirSim takes for granted that it has
+    * landed, so that it is not caught by holding a position either.
     */
   def setApiControl(on: Boolean): Unit =
     controlled = on
     goal = remoteGoal
 
-  /** Moves the sticks. They fly an armed vehicle that the API does not control: angles (rates, if the first switch is on),
-    * yaw rate and throttle. AirSim looks at them every 12 ms only.
+  /** Moves the sticks. They fly an armed vehicle that the API does not control: angles (rates, if the first
+    * switch is on), yaw rate and throttle. AirSim looks at them every 12 ms only.
     */
   def steer(sticks: RcData): Unit =
     remote = sticks
     if !controlled then goal = remoteGoal
 
-  /** Arms or disarms; only the API in control can, and only an armed vehicle can be disarmed. One that is armed already is
-    * left alone. Moves drive a disarmed vehicle too, as in AirSim.
+  /** Arms or disarms; only the API in control can, and only an armed vehicle can be disarmed. One that is
+    * armed already is left alone. Moves drive a disarmed vehicle too, as in AirSim.
     */
   def arm(on: Boolean): Boolean =
     val may = controlled && (on || armed)
@@ -132,15 +133,17 @@ final private[simulator] class SimulatedMultirotor(
       goal = if on then Setpoint.Armed else Setpoint.Disarmed
     may
 
-  /** Puts it elsewhere, in its own frame; its motion, its goal and its rotors stay as they are, and it stands on nothing. */
+  /** Puts it elsewhere, in its own frame; its motion, its goal and its rotors stay as they are, and it stands
+    * on nothing.
+    */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
     val sinceSample = positionAt(at) - state.positionNed
     state.place(positionNed - sinceSample, orientation.normalized)
     state.grounded = false
     jumped += 1
 
-  /** Lets it hover at this place, level and at rest, as if it had long done so. It must be above the ground and under api
-    * control.
+  /** Lets it hover at this place, level and at rest, as if it had long done so. It must be above the ground
+    * and under api control.
     */
   def hoverAt(positionNed: Vector3, yawRad: Double, at: Instant): Unit =
     require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
@@ -165,7 +168,9 @@ final private[simulator] class SimulatedMultirotor(
     tuned = rotorcraft.tuned(gains)
     state.restartController()
 
-  /** Puts it into this state of motion, in its own frame; its flight controller is not asked. It stands on nothing. */
+  /** Puts it into this state of motion, in its own frame; its flight controller is not asked. It stands on
+    * nothing.
+    */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     val acceleration        = kinematics.linear_acceleration.toVector
     val angularVelocity     = kinematics.angular_velocity.toVector
@@ -202,8 +207,8 @@ final private[simulator] class SimulatedMultirotor(
   def accelerationNed: Vector3        = state.accelerationNed
   def angularAccelerationFrd: Vector3 = state.angularAccelerationFrd
 
-  /** Position at `at`, up to one step after the last: carried on at constant acceleration, which errs by less than
-    * 0.1 µm at 10 m/s³ of jerk.
+  /** Position at `at`, up to one step after the last: carried on at constant acceleration, which errs by less
+    * than 0.1 µm at 10 m/s³ of jerk.
     */
   def positionAt(at: Instant): Vector3 =
     val s = sinceSample(at)

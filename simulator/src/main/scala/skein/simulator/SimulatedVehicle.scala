@@ -9,8 +9,7 @@ import skein.units.*
   *
   * Changed by [[World]] alone.
   *
-  * @param worldOrigin
-  *   of the world's NED frame on the globe
+  * @param worldOrigin of the world's NED frame on the globe
   */
 private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings, worldOrigin: GeoLocation):
   /** The start on the globe. */
@@ -69,10 +68,8 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   /** What it looks like.
     *
-    * @param number
-    *   of the vehicle in its world
-    * @param tagM
-    *   side of the tags on it; 0 for none
+    * @param number of the vehicle in its world
+    * @param tagM side of the tags on it; 0 for none
     */
   def parts(number: Int, tagM: Double): Vector[SceneObject.Part]
 

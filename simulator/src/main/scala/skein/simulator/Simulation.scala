@@ -12,23 +12,23 @@ final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[M
 /** What a call is answered: its result, or what draws it, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
 
-/** A result that takes a while to compute, such as an image: of the moment at which it was asked for, whenever and on
-  * whatever thread that is done.
+/** A result that takes a while to compute, such as an image: of the moment at which it was asked for,
+  * whenever and on whatever thread that is done.
   */
 final class DeferredResult(work: () => Msg | Encoded):
   def result(): Msg | Encoded = work()
 
-/** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
-  * ends. A pure function of what it is told; equal calls at equal times give equal answers.
+/** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or
+  * when a move ends. A pure function of what it is told; equal calls at equal times give equal answers.
   *
-  * Its own clock is the world's. While it runs, that advances with the time it is told, `speed` times as fast; while it
-  * is paused, only as far as calls continue it. A call of `simContinueForTime` is answered as soon as physics has been
-  * computed, which is far sooner than the time it advances by; AirSim takes that time on the wall clock.
+  * Its own clock is the world's. While it runs, that advances with the time it is told, `speed` times as
+  * fast; while it is paused, only as far as calls continue it. A call of `simContinueForTime` is answered as
+  * soon as physics has been computed, which is far sooner than the time it advances by; AirSim takes that
+  * time on the wall clock.
   *
-  * @param startedAt
-  *   when it starts, by the clock that all later times are told of, and the simulator's clock at that moment
-  * @param save
-  *   writes a file that a client has asked for to a path, and says whether it could
+  * @param startedAt when it starts, by the clock that all later times are told of, and the simulator's clock
+  *   at that moment
+  * @param save writes a file that a client has asked for to a path, and says whether it could
   */
 final class Simulation(
     val settings: SimulatorSettings,
@@ -70,8 +70,8 @@ final class Simulation(
     workers.offer(call)
     settle(at)
 
-  /** Lets time pass up to `at`. Its work is bounded: what does not fit is done by the next calls of it while time stands
-    * still, or else skipped, and counted by [[behind]].
+  /** Lets time pass up to `at`. Its work is bounded: what does not fit is done by the next calls of it while
+    * time stands still, or else skipped, and counted by [[behind]].
     */
   def advance(at: Instant): Unit =
     world.heldTo.foreach(_.told(at))
@@ -107,8 +107,8 @@ final class Simulation(
   private[simulator] def comesTo(simulated: Instant): Option[Instant] =
     Option.unless(paused || continuing.nonEmpty)(wallTime(simulated))
 
-  /** Simulated time that was skipped because it was too much to compute at once, or because an autopilot in lockstep was
-    * too slow: the simulator's clock is that much behind.
+  /** Simulated time that was skipped because it was too much to compute at once, or because an autopilot in
+    * lockstep was too slow: the simulator's clock is that much behind.
     */
   def behind: Span = lag
 
@@ -194,7 +194,9 @@ final class Simulation(
         answers += SimulatorAnswer(call.token, Left(Rpclib.threw(call.method, call.params.size, text)))
         workers.release(vehicle, at)
 
-  /** Physics takes far longer than a lock's way to its next holder, so that the moves that wait for one have it first. */
+  /** Physics takes far longer than a lock's way to its next holder, so that the moves that wait for one have
+    * it first.
+    */
   private def continueFor(span: Span, token: Long, at: Instant): Unit =
     workers.lastHandover.foreach(handOver(_, at))
     val first = continuing.isEmpty

@@ -17,16 +17,16 @@ import skein.signal.Kinematics
 import skein.units.*
 import upack.Msg
 
-/** The built-in simulator behind a socket, or whatever a [[Transport]] has: it speaks AirSim's wire, so that any of its
-  * clients can fly it.
+/** The built-in simulator behind a socket, or whatever a [[Transport]] has: it speaks AirSim's wire, so that
+  * any of its clients can fly it.
   *
-  * One actor holds the [[Simulation]]. Physics is computed up to the clock's present whenever a call comes and whenever
-  * a move may end, and every 50 ms at the latest; while the simulator is paused, nothing runs.
+  * One actor holds the [[Simulation]]. Physics is computed up to the clock's present whenever a call comes
+  * and whenever a move may end, and every 50 ms at the latest; while the simulator is paused, nothing runs.
   *
-  * Calls are run in rounds over the connections ([[CallLines]]), so that no client waits for all that another has sent,
-  * and one that asks now and then goes first; those of a connection that has closed before their turn are not run. If
-  * the simulation itself fails, which is a defect, it stops listening, closes every connection and says so through
-  * [[failed]].
+  * Calls are run in rounds over the connections ([[CallLines]]), so that no client waits for all that another
+  * has sent, and one that asks now and then goes first; those of a connection that has closed before their
+  * turn are not run. If the simulation itself fails, which is a defect, it stops listening, closes every
+  * connection and says so through [[failed]].
   */
 final class SimulatorServer private (
     server: RpcServer,
@@ -41,7 +41,9 @@ final class SimulatorServer private (
   /** Where it listens, with the actual port. */
   def address: Address = server.address
 
-  /** Where it listens for MAVLink, or for autopilots, with the actual ports: by its transport, then by datagrams. */
+  /** Where it listens for MAVLink, or for autopilots, with the actual ports: by its transport, then by
+    * datagrams.
+    */
   def peerAddresses: Vector[Address] = peers.fold(Vector.empty)(_.addresses)
 
   def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
@@ -71,10 +73,8 @@ final class SimulatorServer private (
 
 object SimulatorServer:
 
-  /** @param at
-    *   on the simulator's clock
-    * @param vehicles
-    *   world NED
+  /** @param at on the simulator's clock
+    * @param vehicles world NED
     */
   final case class Truth(at: Instant, vehicles: Vector[(name: String, kinematics: Kinematics)])
 
@@ -158,8 +158,7 @@ object SimulatorServer:
   /** Calls run before other work of the process has its turn: some 0.5 ms. */
   private val CallsAtOnce = 32
 
-  /** @param work
-    *   whether [[Message.Work]] is on its way
+  /** @param work whether [[Message.Work]] is on its way
     */
   final private class Running(
       simulation: Simulation,
@@ -272,7 +271,8 @@ object SimulatorServer:
       case Right(drawing: DeferredResult) => promise.completeWith(Future(Right(drawing.result())))
       case Right(value: (Msg | Encoded))  => promise.success(Right(value))
 
-    /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection. */
+    /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection.
+      */
     private def takeCalls(): Unit =
       var left = CallsAtOnce
       while left > 0 && simulation.isFree do

@@ -22,21 +22,14 @@ enum Overload:
 
 /** What a built-in simulator is.
   *
-  * @param address
-  *   where it listens; port 0 takes a free one
-  * @param speed
-  *   of its clock against the machine's, on top of the settings' `ClockSpeed`
-  * @param losesCancel
-  *   asked whenever a move comes that replaces another, for tests of clients: where it says so, the other one is not
-  *   cancelled. AirSim loses a cancel that comes while a move is about to begin
-  * @param scene
-  *   what stands in the world
-  * @param mavlink
-  *   where its vehicles are reached by MAVLink, too
-  * @param hil
-  *   which autopilots outside fly its vehicles; then they are not reached by MAVLink
-  * @param kind
-  *   what its multirotors are; without one, AirSim's quadrotors
+  * @param address where it listens; port 0 takes a free one
+  * @param speed of its clock against the machine's, on top of the settings' `ClockSpeed`
+  * @param losesCancel asked whenever a move comes that replaces another, for tests of clients: where it says
+  *   so, the other one is not cancelled. AirSim loses a cancel that comes while a move is about to begin
+  * @param scene what stands in the world
+  * @param mavlink where its vehicles are reached by MAVLink, too
+  * @param hil which autopilots outside fly its vehicles; then they are not reached by MAVLink
+  * @param kind what its multirotors are; without one, AirSim's quadrotors
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -53,7 +46,9 @@ final case class SimulatorSettings(
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
-  /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]] says so. */
+  /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]]
+    * says so.
+    */
   private[simulator] def equipment: SensorSettings =
     SensorSettings.read(world.text).getOrElse(SensorSettings.None)
 
@@ -69,7 +64,9 @@ final case class SimulatorSettings(
       case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
 
 object SimulatorSettings:
-  /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all clients: images. */
+  /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all
+    * clients: images.
+    */
   val Limits: ServerLimits = ServerLimits(
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),
     heldBytesInCommon = 256 << 20

@@ -5,10 +5,8 @@ import skein.units.*
 
 /** Where and when a vehicle touched something, in its own frame.
   *
-  * @param normal
-  *   away from what it touched
-  * @param pointNed
-  *   of contact
+  * @param normal away from what it touched
+  * @param pointNed of contact
   */
 final private[simulator] case class Touch(
     at: Instant,

@@ -6,8 +6,8 @@ import skein.scene.Rays
 import skein.units.*
 import upickle.default.Writer
 
-/** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay; AirSim's GPS
-  * tells it 0.2 s late.
+/** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay;
+  * AirSim's GPS tells it 0.2 s late.
   */
 private[simulator] object VehicleMethods:
   import ServerMethod.*
@@ -187,8 +187,9 @@ private[simulator] object VehicleMethods:
       Globe.airDensity(altitude).toFloat
     )
 
-  /** Thrust and torque as at sea level: AirSim tells them before it scales them by the density of the air. The torque is
-    * that on the body, whose sign AirSim counts upwards: negative for the two rotors that turn counter-clockwise.
+  /** Thrust and torque as at sea level: AirSim tells them before it scales them by the density of the air.
+    * The torque is that on the body, whose sign AirSim counts upwards: negative for the two rotors that turn
+    * counter-clockwise.
     */
   private def rotors(vehicle: SimulatedMultirotor, at: Instant) =
     val thrusts =

@@ -8,18 +8,16 @@ import scala.util.Try
 import skein.scene.Moment
 import skein.units.Vector3
 
-/** A grid of cubes, each empty or not, in the `binvox` format (a header in text, then pairs of value and count, runs of
-  * x fastest, then up, then y), as AirSim's `simCreateVoxelGrid` writes it.
+/** A grid of cubes, each empty or not, in the `binvox` format (a header in text, then pairs of value and
+  * count, runs of x fastest, then up, then y), as AirSim's `simCreateVoxelGrid` writes it.
   */
 private[simulator] object VoxelGrid:
 
   /** Cells at most: 256 to each side. */
   val LargestCells: Long = 256L * 256 * 256
 
-  /** @param sizeM
-    *   lengths along north, east and up
-    * @return
-    *   the file, or what is wrong with the request
+  /** @param sizeM lengths along north, east and up
+    * @return the file, or what is wrong with the request
     */
   def render(
       moment: Moment,

@@ -5,23 +5,22 @@ import skein.units.*
 
 /** Which request runs when, as in AirSim's server: a fixed number of worker threads, one lock per vehicle.
   *
-  * A request waits until a worker is free. A move holds its worker until it ends, and its vehicle's lock. A move that
-  * finds the lock taken cancels the one that holds it, and gets the lock a little later. That is AirSim's flaw: another
-  * move that comes within this while sees nothing left to cancel and waits behind, for the whole of the one before it.
-  * A burst of moves thus runs to the end of many, and holds so many workers that all else waits.
+  * A request waits until a worker is free. A move holds its worker until it ends, and its vehicle's lock. A
+  * move that finds the lock taken cancels the one that holds it, and gets the lock a little later. That is
+  * AirSim's flaw: another move that comes within this while sees nothing left to cancel and waits behind, for
+  * the whole of the one before it. A burst of moves thus runs to the end of many, and holds so many workers
+  * that all else waits.
   *
-  * The worker of the move that has ended takes the next request at once. Whether it or the lock on its way is first is a
-  * race, in which the lock wins 5 times of 8 here, evenly spread: then a move that the worker takes cancels the one that
-  * has just got the lock. Seen at AirSim: a burst of 8 four-second moves on two vehicles' six workers holds a ping up for
-  * 4 s, one of 20 for 24 s. From these two figures is that share.
+  * The worker of the move that has ended takes the next request at once. Whether it or the lock on its way is
+  * first is a race, in which the lock wins 5 times of 8 here, evenly spread: then a move that the worker
+  * takes cancels the one that has just got the lock. Seen at AirSim: a burst of 8 four-second moves on two
+  * vehicles' six workers holds a ping up for 4 s, one of 20 for 24 s. From these two figures is that share.
   *
-  * Pure bookkeeping: it is told the time, and the caller does what it says. What waits is bounded by who calls: a
-  * server lets each connection have a limited number of requests unanswered.
+  * Pure bookkeeping: it is told the time, and the caller does what it says. What waits is bounded by who
+  * calls: a server lets each connection have a limited number of requests unanswered.
   *
-  * @param limit
-  *   number of workers; AirSim has one for each vehicle and four more
-  * @param handover
-  *   how long a lock is on its way to the move that waits; zero lets the newest move win always
+  * @param limit number of workers; AirSim has one for each vehicle and four more
+  * @param handover how long a lock is on its way to the move that waits; zero lets the newest move win always
   */
 final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   require(limit > 0, s"the number of workers must be positive, not $limit")
@@ -47,8 +46,8 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   /** The next request, if a worker is free for it. */
   def take(): Option[Job] = Option.when(busy < limit && jobs.nonEmpty)(jobs.dequeue())
 
-  /** The request taken is a move: its worker is held from now on. True: it has the lock and starts. False: it waits,
-    * and the vehicle's move is to be cancelled.
+  /** The request taken is a move: its worker is held from now on. True: it has the lock and starts. False: it
+    * waits, and the vehicle's move is to be cancelled.
     */
   def acquire(vehicle: Int, flight: Flight): Boolean =
     val lock = locks(vehicle)

@@ -6,14 +6,14 @@ import skein.scene.{Lidar, Placement, Scene, SceneObject}
 import skein.units.*
 import skein.vehicle.{PathFollowing, RotorcraftKind}
 
-/** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] says what time it is.
+/** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] says what time
+  * it is.
   *
-  * Physics keeps a grid of whole steps from `start`, while the clock may stand anywhere between two of them: physics
-  * has then been stepped up to the last grid point, and readings are carried on from there. So the clock advances by
-  * exactly what it is told, and how that is cut into pieces does not change the flight.
+  * Physics keeps a grid of whole steps from `start`, while the clock may stand anywhere between two of them:
+  * physics has then been stepped up to the last grid point, and readings are carried on from there. So the
+  * clock advances by exactly what it is told, and how that is cut into pieces does not change the flight.
   *
-  * @param start
-  *   the clock's first reading
+  * @param start the clock's first reading
   */
 final class World(
     settings: WorldSettings,
@@ -53,8 +53,7 @@ final class World(
 
   /** A vehicle that moves and pilots are made for.
     *
-    * @throws IllegalArgumentException
-    *   if it is none
+    * @throws IllegalArgumentException if it is none
     */
   private[simulator] def multirotor(vehicle: Int): SimulatedMultirotor = vehicles(vehicle) match
     case multirotor: SimulatedMultirotor => multirotor
@@ -89,8 +88,8 @@ final class World(
   /** What time depends on beside the clock. */
   private[simulator] def heldTo: Option[Lockstep] = lockstep
 
-  /** Advances physics and moves up to this time, in order, or as far as [[holdTo]] lets it. Cost: 0.13 µs a vehicle and
-    * step.
+  /** Advances physics and moves up to this time, in order, or as far as [[holdTo]] lets it. Cost: 0.13 µs a
+    * vehicle and step.
     */
   def advanceTo(to: Instant): Unit =
     for held <- lockstep do
@@ -112,8 +111,7 @@ final class World(
 
   /** Starts a move, in place of none: [[cancelMove]] first. It may end at once.
     *
-    * @param token
-    *   given back when the move ends
+    * @param token given back when the move ends
     */
   private[simulator] def startMove(vehicle: Int, token: Long, move: Move): Unit =
     moves(vehicle) = Some(Running(token, move, clock, clock))

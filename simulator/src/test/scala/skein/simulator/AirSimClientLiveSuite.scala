@@ -9,7 +9,9 @@ import skein.policy.Yaw
 import skein.rpc.{RpcClient, RpcError, RpcSettings}
 import skein.units.*
 
-/** The typed client against the built-in simulator over real sockets, its clock ten times as fast as the machine's. */
+/** The typed client against the built-in simulator over real sockets, its clock ten times as fast as the
+  * machine's.
+  */
 class AirSimClientLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("airsim-client")
   import system.dispatcher

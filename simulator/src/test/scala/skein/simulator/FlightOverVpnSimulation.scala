@@ -11,8 +11,8 @@ import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Simulator, client and the paper's busy link between them, in virtual time: a minute of two vehicles steered at
-  * 10 Hz.
+/** Simulator, client and the paper's busy link between them, in virtual time: a minute of two vehicles
+  * steered at 10 Hz.
   */
 class FlightOverVpnSimulation extends munit.FunSuite:
 

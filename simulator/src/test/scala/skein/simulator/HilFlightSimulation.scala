@@ -10,7 +10,9 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 object HilFlightSimulation:
-  /** What came of a flight: all bytes that the autopilot was told, as a digest, and where the vehicle truly was then. */
+  /** What came of a flight: all bytes that the autopilot was told, as a digest, and where the vehicle truly
+    * was then.
+    */
   final case class Flight(
       digest: String,
       positionNed: Vector3,
@@ -21,8 +23,7 @@ object HilFlightSimulation:
 
   /** The server, PX4's interface and a small autopilot behind it, in virtual time, for so long.
     *
-    * @param speed
-    *   of the simulator's clock against virtual time
+    * @param speed of the simulator's clock against virtual time
     */
   def fly(seed: Long, lasting: Span, speed: Double = 1): Flight =
     val began          = System.nanoTime()

@@ -12,8 +12,7 @@ import skein.link.{Address, Transport}
 private[simulator] object HilPeer:
   /** Completes when it has been told the sensors of so much time, µs; then it hangs up.
     *
-    * @param on
-    *   is given every piece that comes, before it is answered
+    * @param on is given every piece that comes, before it is answered
     */
   def fly(autopilot: SmallAutopilot, untilUsec: Long, to: Address, transport: Transport)(
       on: Array[Byte] => Unit = _ => ()

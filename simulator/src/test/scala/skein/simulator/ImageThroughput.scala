@@ -36,12 +36,13 @@ private final class Received:
 /** Of one camera. */
 private val MostOnTheWay = 4
 
-/** Raw images of 1280 × 720 from the built-in simulator to a client of the same process, over TCP on loopback: four cameras
-  * at 60 Hz each, at most four images of each on their way, one connection for each and one for all; then as many as will come; then the same by the official Python
-  * client, one call for all four, where it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
+/** Raw images of 1280 × 720 from the built-in simulator to a client of the same process, over TCP on
+  * loopback: four cameras at 60 Hz each, at most four images of each on their way, one connection for each
+  * and one for all; then as many as will come; then the same by the official Python client, one call for all
+  * four, where it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
   *
-  * Each row tells what was asked for, what came, how many images had the exposure of another, and as its witness the CRC of
-  * all stamps.
+  * Each row tells what was asked for, what came, how many images had the exposure of another, and as its
+  * witness the CRC of all stamps.
   */
 @main def imageThroughput(seconds: Int): Unit =
   given system: ActorSystem = ActorSystem("images")
@@ -61,8 +62,7 @@ private val MostOnTheWay = 4
   val process =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
 
-  /** @param perSecond
-    *   of each camera; 0: each is asked anew when its image has come
+  /** @param perSecond of each camera; 0: each is asked anew when its image has come
     */
   def row(name: String, connections: Int, perSecond: Int, lastsS: Double, isShown: Boolean = true): Unit =
     val rpc =

@@ -11,8 +11,8 @@ import skein.mavlink.*
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies three at once.
-  * Runs where Python can install that package; it fetches it once per user.
+/** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies
+  * three at once. Runs where Python can install that package; it fetches it once per user.
   */
 class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavsdk")

@@ -4,20 +4,17 @@ import scala.util.Random
 import scala.util.control.NonFatal
 import upack.*
 
-/** Calls that no honest client makes, of every method in the simulator's table: each parameter in its turn is nil, of
-  * another type, not finite, huge, deep; some are missing, some too many. What is right for a parameter is found by
-  * asking its own reader, so a new method is fuzzed as soon as it stands in the table.
+/** Calls that no honest client makes, of every method in the simulator's table: each parameter in its turn is
+  * nil, of another type, not finite, huge, deep; some are missing, some too many. What is right for a
+  * parameter is found by asking its own reader, so a new method is fuzzed as soon as it stands in the table.
   */
 private[simulator] object MethodFuzz:
 
   final case class FuzzCall(method: String, params: Seq[Msg])
 
-  /** @param methods
-    *   the table
-    * @param vehicle
-    *   the name of a vehicle that exists
-    * @param file
-    *   a path that a simulator may write a voxel grid to; without it none is written
+  /** @param methods the table
+    * @param vehicle the name of a vehicle that exists
+    * @param file a path that a simulator may write a voxel grid to; without it none is written
     */
   final class Calls(methods: Seq[ServerMethod], vehicle: String, file: Option[String] = None):
     private val palette = plain(vehicle) ++ file.map(Str(_)) ++ nested(vehicle)

@@ -15,7 +15,9 @@ class MethodFuzzSuite extends munit.FunSuite:
       |  "CameraDefaults": {"CaptureSettings": [{"Width": 40, "Height": 24}]}}""".stripMargin
   private val calls = MethodFuzz.Calls(Simulation.methods, vehicles.head)
 
-  /** Every call is answered: at once, but for moves, which the next move of their vehicle or a cancellation ends. */
+  /** Every call is answered: at once, but for moves, which the next move of their vehicle or a cancellation
+    * ends.
+    */
   private def fuzz(all: Iterator[MethodFuzz.FuzzCall], clue: String): Int =
     val bench  = Bench(vehicles, overload = Overload.Never, scene = scene, text = carrying).ready()
     var tokens = Vector.empty[(Long, MethodFuzz.FuzzCall)]

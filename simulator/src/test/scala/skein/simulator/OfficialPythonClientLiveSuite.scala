@@ -9,8 +9,9 @@ import skein.link.{Address, TcpTransport}
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim` package of
-  * PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it once per user.
+/** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim`
+  * package of PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it
+  * once per user.
   */
 class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("official-python-client")
@@ -53,7 +54,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
 
   private def flyOnce(script: String, world: WorldSettings): Unit =
     val settings = SimulatorSettings(world, Address("127.0.0.1", 0), speed = 5)
-    val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
+    val server   = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
     try
       val (status, output) = OfficialPythonClient.run(script, s"${server.address.port}")
       println(output)

@@ -17,17 +17,18 @@ import skein.rpc.*
 import skein.units.*
 import upack.{Msg, Null, Str}
 
-/** The built-in simulator besieged over loopback sockets, beside an honest client that polls a vehicle's state: fuzz by
-  * method first, then each attack on its own. Every row says how long the honest client waited while it lasted, and
-  * after the attackers had left.
+/** The built-in simulator besieged over loopback sockets, beside an honest client that polls a vehicle's
+  * state: fuzz by method first, then each attack on its own. Every row says how long the honest client waited
+  * while it lasted, and after the attackers had left.
   *
-  * Three processes, since a greedy client is not in the server's: this one is the server (its workers unlimited, for
-  * endless moves hold AirSim's workers for ever, by its design) and the honest client, the attackers run in a second.
+  * Three processes, since a greedy client is not in the server's: this one is the server (its workers
+  * unlimited, for endless moves hold AirSim's workers for ever, by its design) and the honest client, the
+  * attackers run in a second.
   *
   * The actor system is set as the command `serve` sets its own.
   *
-  * Arguments: calls of the fuzz (default 1,000,000), seconds for each attack (default 20), seed (default 1), and the
-  * attacks, with commas between (default all of them).
+  * Arguments: calls of the fuzz (default 1,000,000), seconds for each attack (default 20), seed (default 1),
+  * and the attacks, with commas between (default all of them).
   */
 object Siege:
   def main(args: Array[String]): Unit =
@@ -170,8 +171,8 @@ private final class Connection(port: Int):
 
   def close(): Unit = socket.close()
 
-/** The other side of [[Siege]], in a process of its own; loopback only. Arguments: attack, port, amount, seed; for the fuzz, a file
-  * that voxel grids may be written to.
+/** The other side of [[Siege]], in a process of its own; loopback only. Arguments: attack, port, amount,
+  * seed; for the fuzz, a file that voxel grids may be written to.
   */
 object Attackers:
   def main(args: Array[String]): Unit =

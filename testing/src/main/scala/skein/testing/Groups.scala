@@ -8,9 +8,9 @@ trait Timing extends Unhurried
 /** Mostly waits, for other programs or for the real clock: runs beside those that compute. */
 trait Waiting extends Unhurried
 
-/** Takes long: whole processes, foreign programs, minutes by the clock. Run by `testAll` alone, in a JVM of its own, which it
-  * may change for good: before a live flight its compilers are told to give way, and on a busy machine everything behind it
-  * would be interpreted.
+/** Takes long: whole processes, foreign programs, minutes by the clock. Run by `testAll` alone, in a JVM of
+  * its own, which it may change for good: before a live flight its compilers are told to give way, and on a
+  * busy machine everything behind it would be interpreted.
   */
 trait Lengthy extends Unhurried
 

@@ -8,7 +8,8 @@ import munit.Assertions.assume
 import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 
-/** Packages of PyPI in a virtual environment of their own, kept in the user's cache under their versions' names.
+/** Packages of PyPI in a virtual environment of their own, kept in the user's cache under their versions'
+  * names.
   *
   * @param imports
   *   what Python can import when all is there

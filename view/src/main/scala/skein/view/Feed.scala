@@ -4,12 +4,11 @@ import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
 import skein.record.{Record, ImagingSensor}
 
-/** Takes a flight's records to viewers. Bounded, and the newest wins; of the images of a camera, and of the clouds of a
-  * lidar, the newest alone waits. `offer` takes no lock: a viewer's thread that the
-  * system has put off cannot hold up a flight.
+/** Takes a flight's records to viewers. Bounded, and the newest wins; of the images of a camera, and of the
+  * clouds of a lidar, the newest alone waits. `offer` takes no lock: a viewer's thread that the system has
+  * put off cannot hold up a flight.
   *
-  * @param capacity
-  *   records that wait; as many more as threads offer at one moment may for that moment
+  * @param capacity records that wait; as many more as threads offer at one moment may for that moment
   */
 final class Feed(capacity: Int = Feed.DefaultCapacity):
   private val queue   = ConcurrentLinkedQueue[Record]()

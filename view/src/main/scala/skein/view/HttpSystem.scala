@@ -7,10 +7,8 @@ import scala.concurrent.ExecutionContext
 /** What a small HTTP server runs on: an actor system of its own, with bounds for whoever connects. */
 object HttpSystem:
 
-  /** @param threads
-    *   all that it has
-    * @param more
-    *   of `pekko.http.server`
+  /** @param threads all that it has
+    * @param more of `pekko.http.server`
     */
   def apply(name: String, threads: ExecutionContext, more: String): ActorSystem =
     val bounds = ConfigFactory.parseString(more).atPath("pekko.http.server")

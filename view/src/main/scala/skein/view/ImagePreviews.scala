@@ -9,8 +9,8 @@ import scala.util.Using
 import skein.record.{CameraImage, ImageEncoding}
 import skein.units.Instant
 
-/** What viewers see of images and clouds while a flight flies: JPEGs of up to [[ImagePreviews.MostWide]] pixels to a side,
-  * and a share of the points. Exact ones are in the recording.
+/** What viewers see of images and clouds while a flight flies: JPEGs of up to [[ImagePreviews.MostWide]]
+  * pixels to a side, and a share of the points. Exact ones are in the recording.
   */
 private[view] object ImagePreviews extends ImageEncoding:
   val MostWide    = 480

@@ -6,18 +6,15 @@ import skein.units.{Instant, Span}
 
 /** Something besides the records that is shown of a flight, asked for now and then.
   *
-  * @param json
-  *   as the topic's schema says
+  * @param json as the topic's schema says
   */
 final case class Gauge(topic: Topic, every: Span, json: () => String)
 
-/** A flight while it flies. Its records come by `feed`; of a camera's images and of a lidar's clouds up to ten a second are
-  * shown.
+/** A flight while it flies. Its records come by `feed`; of a camera's images and of a lidar's clouds up to
+  * ten a second are shown.
   *
-  * @param scene
-  *   what stands in its world
-  * @param sensors
-  *   whose images and clouds come
+  * @param scene what stands in its world
+  * @param sensors whose images and clouds come
   */
 final class LiveShow(
     heading: RecordingHeader,

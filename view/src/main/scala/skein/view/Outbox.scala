@@ -2,11 +2,11 @@ package skein.view
 
 import scala.collection.immutable.{Queue, TreeMap, VectorMap}
 
-/** What waits for one viewer. The newest wins: where more waits than may, the oldest is lost, first of the subscription
-  * that has too much, then of all. Notices of the server are few, one a key, and go before everything.
+/** What waits for one viewer. The newest wins: where more waits than may, the oldest is lost, first of the
+  * subscription that has too much, then of all. Notices of the server are few, one a key, and go before
+  * everything.
   *
-  * @param lost
-  *   messages, since the viewer came
+  * @param lost messages, since the viewer came
   */
 final case class Outbox[A] private (
     limits: ViewerLimits,
@@ -22,8 +22,7 @@ final case class Outbox[A] private (
   /** A newer notice takes the place of an older one with its key. */
   def noticed(key: String, message: A): Outbox[A] = copy(notices = notices.updated(key, message))
 
-  /** @param most
-    *   of this subscription that may wait
+  /** @param most of this subscription that may wait
     */
   def offered(subscription: Long, message: A, size: Int, most: Int = limits.waiting): Outbox[A] =
     val places2 = places.updated(subscription, places.getOrElse(subscription, Queue.empty).enqueue(next))

@@ -4,16 +4,11 @@ import skein.units.{Instant, Span}
 
 /** Where a recording is played: a pure clock that can stand, jump and run at another speed.
   *
-  * @param start
-  *   of the recording
-  * @param end
-  *   of the recording, where it stops
-  * @param at
-  *   the recorded time at `since`
-  * @param since
-  *   on the clock of whoever asks
-  * @param speed
-  *   recorded seconds per second, more than 0
+  * @param start of the recording
+  * @param end of the recording, where it stops
+  * @param at the recorded time at `since`
+  * @param since on the clock of whoever asks
+  * @param speed recorded seconds per second, more than 0
   */
 final case class Playback private (
     start: Instant,
@@ -31,8 +26,8 @@ final case class Playback private (
 
   def hasEnded(now: Instant): Boolean = position(now) >= end
 
-  /** Plays on, or stands, from where it is now or from another time, which is held between start and end. To play from
-    * the end is to play from the start.
+  /** Plays on, or stands, from where it is now or from another time, which is held between start and end. To
+    * play from the end is to play from the start.
     */
   def controlled(playing: Boolean, speed: Double, seek: Option[Instant], now: Instant): Playback =
     val wanted = seek.getOrElse(position(now))

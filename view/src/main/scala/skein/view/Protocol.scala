@@ -17,10 +17,8 @@ enum ClientMessage:
 
   /** To play or to stop, how fast, and from where.
     *
-    * @param speed
-    *   recorded seconds per second
-    * @param request
-    *   names it in the answer
+    * @param speed recorded seconds per second
+    * @param request names it in the answer
     */
   case Playback(playing: Boolean, speed: Double, seek: Option[Instant], request: String)
 
@@ -29,8 +27,8 @@ enum ClientMessage:
 
 /** Foxglove's WebSocket protocol: pure, bytes and texts in and out.
   *
-  * After `foxglove/ws-protocol`, docs/spec.md, and for playback the WebSocket server of the Foxglove SDK. Binary messages
-  * are little-endian.
+  * After `foxglove/ws-protocol`, docs/spec.md, and for playback the WebSocket server of the Foxglove SDK.
+  * Binary messages are little-endian.
   */
 object Protocol:
 
@@ -39,12 +37,9 @@ object Protocol:
 
   /** How a recording is played.
     *
-    * @param speed
-    *   recorded seconds per second
-    * @param seeked
-    *   whether the time has jumped
-    * @param request
-    *   that this answers; empty where it answers none
+    * @param speed recorded seconds per second
+    * @param seeked whether the time has jumped
+    * @param request that this answers; empty where it answers none
     */
   final case class Playing(status: Status, now: Instant, speed: Double, seeked: Boolean, request: String)
 
@@ -53,10 +48,8 @@ object Protocol:
 
   /** The first message to every viewer.
     *
-    * @param recorded
-    *   begin and end of a recording that can be played; absent while a flight flies
-    * @param session
-    *   another after a restart
+    * @param recorded begin and end of a recording that can be played; absent while a flight flies
+    * @param session another after a restart
     */
   def serverInfo(name: String, session: String, recorded: Option[(Instant, Instant)]): String =
     val info = ujson.Obj(
@@ -110,8 +103,7 @@ object Protocol:
 
   /** A text message of a viewer.
     *
-    * @return
-    *   or what was wrong with it
+    * @return or what was wrong with it
     */
   def read(text: String): Either[String, ClientMessage] =
     try

@@ -6,10 +6,8 @@ import skein.units.Instant
 
 /** A recording, played.
   *
-  * @param rows
-  *   in their order, with their numbers
-  * @param scene
-  *   what stood in its world
+  * @param rows in their order, with their numbers
+  * @param scene what stood in its world
   */
 final class RecordedShow(
     id: String,
@@ -96,10 +94,8 @@ object RecordedShow:
         ImagePreviews
       ))
 
-  /** @param rows
-    *   of one recording, its heading first
-    * @param scene
-    *   what stood in its world, by the recording's parameters
+  /** @param rows of one recording, its heading first
+    * @param scene what stood in its world, by the recording's parameters
     */
   def of(
       rows: Vector[(Long, Record)],

@@ -9,8 +9,7 @@ final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long
   private lazy val byChannel: Map[Long, Iterable[Long]] =
     chosen.groupMap((_, channel) => channel)((subscription, _) => subscription)
 
-  /** @return
-    *   or why not
+  /** @return or why not
     */
   def added(subscription: Long, channel: Long): Either[String, Subscriptions] =
     if !channels(channel) then Left(s"there is no channel $channel")

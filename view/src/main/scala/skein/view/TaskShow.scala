@@ -5,11 +5,11 @@ import scala.collection.immutable.VectorMap
 import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
-/** Shows work other than a flight: a search, a sweep, a training. The one who does the work publishes what is new, from
-  * any thread, and waits for nothing; of what is said again before a viewer's turn, the newest is shown.
+/** Shows work other than a flight: a search, a sweep, a training. The one who does the work publishes what is
+  * new, from any thread, and waits for nothing; of what is said again before a viewer's turn, the newest is
+  * shown.
   *
-  * @param id
-  *   of the work
+  * @param id of the work
   */
 final class TaskShow(id: String, limits: ViewerLimits = ViewerLimits())
     extends Show(id, TaskShow.topics, limits):
@@ -17,10 +17,8 @@ final class TaskShow(id: String, limits: ViewerLimits = ViewerLimits())
 
   /** How far it is.
     *
-    * @param unit
-    *   of what is counted, for example `episodes`
-    * @param line
-    *   what else is to be said now
+    * @param unit of what is counted, for example `episodes`
+    * @param line what else is to be said now
     */
   def progress(title: String, done: Long, expected: Long, unit: String, line: String): Unit = say(
     TaskShow.progress,
@@ -36,10 +34,8 @@ final class TaskShow(id: String, limits: ViewerLimits = ViewerLimits())
 
   /** A line that grows; one with the same title takes its place.
     *
-    * @param x
-    *   name of the axis, with its unit
-    * @param points
-    *   the oldest of too many are thinned out
+    * @param x name of the axis, with its unit
+    * @param points the oldest of too many are thinned out
     */
   def curve(title: String, x: String, y: String, points: Vector[(Double, Double)]): Unit = say(
     TaskShow.curve,
@@ -54,8 +50,8 @@ final class TaskShow(id: String, limits: ViewerLimits = ViewerLimits())
 
   /** A map that grows; one with the same title takes its place.
     *
-    * @param rows
-    *   of its cells, those of the lowest y first; absent cells are not known yet, and so are rows at the end
+    * @param rows of its cells, those of the lowest y first; absent cells are not known yet, and so are rows
+    *   at the end
     */
   def landscape(
       title: String,
@@ -94,8 +90,7 @@ final class TaskShow(id: String, limits: ViewerLimits = ViewerLimits())
     Left("what is being done cannot be played")
 
 object TaskShow:
-  /** @param name
-    *   with its unit
+  /** @param name with its unit
     */
   final case class Axis(name: String, values: Vector[Double])
 

@@ -13,12 +13,12 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.concurrent.duration.*
 import skein.units.Clock
 
-/** Serves the page and Foxglove's protocol for some flights, on loopback. It has an actor system of its own, so that
-  * viewers and flights share no threads.
+/** Serves the page and Foxglove's protocol for some flights, on loopback. It has an actor system of its own,
+  * so that viewers and flights share no threads.
   *
-  * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
-  * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` control a
-  * flight ([[FlightControl]]), and `POST /hover` pauses all.
+  * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket;
+  * `/flights` lists them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`,
+  * `…/continue` and `…/abort` control a flight ([[FlightControl]]), and `POST /hover` pauses all.
   */
 final class ViewServer private (
     binding: Http.ServerBinding,
@@ -45,14 +45,10 @@ object ViewServer:
   /** Foxglove's usual port. */
   val DefaultPort = 8765
 
-  /** @param port
-    *   0 for any that is free
-    * @param threads
-    *   what it runs on
-    * @param origins
-    *   other sites whose pages may connect
-    * @return
-    *   fails where it cannot listen
+  /** @param port 0 for any that is free
+    * @param threads what it runs on
+    * @param origins other sites whose pages may connect
+    * @return fails where it cannot listen
     */
   def start(
       shows: Shows,

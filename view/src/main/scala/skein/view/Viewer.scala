@@ -10,8 +10,7 @@ private[view] final case class ServerBytes(bytes: ByteString) extends ServerMess
 
 /** One who looks: what it subscribed to, and what waits for it. From any thread.
   *
-  * @param wake
-  *   called where something waits again, after [[take]] has found nothing
+  * @param wake called where something waits again, after [[take]] has found nothing
   */
 private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake: () => Unit):
   @volatile private var subscriptions = Subscriptions.none(limits, channels)
@@ -29,8 +28,7 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
       subscriptions = left
       outbox = outbox.unsubscribed(subscription)
 
-  /** @param newestOnly
-    *   whether what waits of this subscription is of no use any more
+  /** @param newestOnly whether what waits of this subscription is of no use any more
     */
   def offer(subscription: Long, logTime: Instant, payload: ByteString, newestOnly: Boolean = false): Unit =
     val message = ServerBytes(Protocol.messageData(subscription, logTime, payload))

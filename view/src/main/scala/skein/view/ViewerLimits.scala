@@ -2,18 +2,12 @@ package skein.view
 
 /** What viewers may take.
   *
-  * @param connections
-  *   open at once; one more is closed at once
-  * @param messageBytes
-  *   of one message of a viewer
-  * @param subscriptions
-  *   of one viewer
-  * @param refusals
-  *   messages of one viewer that are none, before it is turned out
-  * @param waiting
-  *   messages that wait for one viewer, of each of its subscriptions
-  * @param waitingBytes
-  *   of all that waits for one viewer
+  * @param connections open at once; one more is closed at once
+  * @param messageBytes of one message of a viewer
+  * @param subscriptions of one viewer
+  * @param refusals messages of one viewer that are none, before it is turned out
+  * @param waiting messages that wait for one viewer, of each of its subscriptions
+  * @param waitingBytes of all that waits for one viewer
   */
 final case class ViewerLimits(
     connections: Int = 32,

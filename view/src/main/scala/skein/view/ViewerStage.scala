@@ -7,9 +7,9 @@ import skein.units.Clock
 
 /** One viewer's connection: what it says comes in whole, what it is shown goes out.
   *
-  * '''Emits when''' downstream pulls and something waits for the viewer. '''Backpressures when''' never; what waits is
-  * bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever way, or the viewer has said
-  * too much that is none of the protocol. '''Cancels when''' downstream cancels.
+  * '''Emits when''' downstream pulls and something waits for the viewer. '''Backpressures when''' never; what
+  * waits is bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever way, or the
+  * viewer has said too much that is none of the protocol. '''Cancels when''' downstream cancels.
   */
 private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalCounts)
     extends GraphStage[FlowShape[Message, Message]]:

@@ -9,14 +9,13 @@ import scala.util.Random
 import skein.record.Samples
 import skein.units.Clock
 
-/** Writes frames to a server that are none, are cut off, claim what they are not, or say nothing of the protocol: on one
-  * connection after the other, a new one where the server ends the last.
+/** Writes frames to a server that are none, are cut off, claim what they are not, or say nothing of the
+  * protocol: on one connection after the other, a new one where the server ends the last.
   */
 private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
   private val random = Random(seed)
 
-  /** @return
-    *   connections that it took
+  /** @return connections that it took
     */
   def write(frames: Int): Int =
     var (written, connections) = (0, 0)
@@ -69,12 +68,13 @@ private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
     Array(first.toByte, (0x80 | payload.length).toByte) ++ mask ++
       payload.zipWithIndex.map((byte, at) => (byte ^ mask(at % 4)).toByte)
 
-/** Writes requests to a server that are none, or ask for what they may not: on one connection after the other. */
+/** Writes requests to a server that are none, or ask for what they may not: on one connection after the
+  * other.
+  */
 private[view] final class MalformedRequests(port: Int, seed: Long):
   private val random = Random(seed)
 
-  /** @return
-    *   connections that it took
+  /** @return connections that it took
     */
   def write(requests: Int): Int =
     var (written, connections) = (0, 0)
@@ -115,8 +115,8 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
             s"HTTP/1.1\r\n${host}X-Skein-Token: ${letters(16)}\r\nContent-Length: 0\r\n\r\n"
         )
 
-/** How a server bears as many malformed frames, then as many malformed requests, and then a thousand connections that stay
-  * open, while somebody looks: a million, for the figure.
+/** How a server bears as many malformed frames, then as many malformed requests, and then a thousand
+  * connections that stay open, while somebody looks: a million, for the figure.
   */
 @main def bearMalformedFrames(frames: Int): Unit =
   val shows = Shows()

@@ -8,8 +8,8 @@ import scala.concurrent.duration.*
 import scala.concurrent.{BlockContext, CanAwait}
 import skein.vtime.agent.{Environment, Redirect}
 
-/** The run-to-completion loop: one thread, a first-in-first-out queue of tasks, and timers. Time advances to the next
-  * timer only when the queue is empty.
+/** The run-to-completion loop: one thread, a first-in-first-out queue of tasks, and timers. Time advances to
+  * the next timer only when the queue is empty.
   *
   * Made, run and left on the thread that starts it. All other threads may only read [[nanoTime]].
   */
@@ -64,12 +64,15 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
 
   def blocked(call: String): VirtualTimeException = fail(Problem.Blocked(call))
 
-  /** The global context and those made by `ExecutionContext.fromExecutor` share a prefix of their class names. */
+  /** The global context and those made by `ExecutionContext.fromExecutor` share a prefix of their class
+    * names.
+    */
   def submitted(executionContext: Object): Unit =
     if executionContext.getClass.getName.startsWith("scala.concurrent.impl.ExecutionContextImpl") then
       throw fail(Problem.LeftTheLoop(executionContext.toString))
 
-  /** `Await` and `blocking`. Pekko awaits its own actors while a system starts: then the queue is run first. */
+  /** `Await` and `blocking`. Pekko awaits its own actors while a system starts: then the queue is run first.
+    */
   def blockOn[A](thunk: => A)(using CanAwait): A =
     if !booting then throw blocked("Await or blocking")
     while !queue.isEmpty do
@@ -117,8 +120,8 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
     else if tasksThisTime % Loop.tasksPerLook == 0 then lookAtProcessor()
     task.run()
 
-  /** Not at every task, since it takes as long as a short one; from the first look on, so that one long task counts for
-    * nothing.
+  /** Not at every task, since it takes as long as a short one; from the first look on, so that one long task
+    * counts for nothing.
     */
   private def lookAtProcessor(): Unit =
     val taken = Loop.processorNanos()

@@ -10,7 +10,9 @@ enum Problem:
   /** The agent that redirects the clock is not at work in this JVM, or came too late for some classes. */
   case NoAgent(detail: String)
 
-  /** A thread other than the loop's handed it a task or a timer, so the order of events would depend on chance. */
+  /** A thread other than the loop's handed it a task or a timer, so the order of events would depend on
+    * chance.
+    */
   case ForeignThread(thread: String, action: String)
 
   /** Code on the loop would have blocked the only thread that could unblock it. */
@@ -25,7 +27,8 @@ enum Problem:
   /** Sockets and name look-ups answer in real time and are not supported. */
   case Sockets
 
-  /** Very many tasks ran and time did not advance; `running` holds what ran at the end, most frequent first. */
+  /** Very many tasks ran and time did not advance; `running` holds what ran at the end, most frequent first.
+    */
   case Livelock(at: FiniteDuration, tasks: Long, running: Seq[(String, Int)])
 
   /** Nothing is left to run and no timer is set, yet the future is not completed. */

@@ -11,9 +11,9 @@ private final class Timer(val dueNanos: Long, val sequence: Long, val task: Runn
     val byTime = java.lang.Long.compare(dueNanos, other.dueNanos)
     if byTime != 0 then byTime else java.lang.Long.compare(sequence, other.sequence)
 
-/** Timers by time and sequence. A cancelled one stays until it is due or until half of the queue is cancelled, so
-  * that cancelling costs nothing and yet the queue never holds more than twice what is wanted, plus
-  * [[TimerQueue.slack]].
+/** Timers by time and sequence. A cancelled one stays until it is due or until half of the queue is
+  * cancelled, so that cancelling costs nothing and yet the queue never holds more than twice what is wanted,
+  * plus [[TimerQueue.slack]].
   */
 private final class TimerQueue:
   private val heap      = PriorityQueue[Timer]()

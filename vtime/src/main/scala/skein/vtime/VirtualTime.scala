@@ -11,15 +11,14 @@ import skein.vtime.agent.{Agent, Redirect}
 /** Runs actors and streams deterministically and without waiting: see the package's documentation. */
 object VirtualTime:
 
-  /** Starts an actor system in virtual time on the calling thread, runs it until the future of `body` is completed,
-    * and terminates it.
+  /** Starts an actor system in virtual time on the calling thread, runs it until the future of `body` is
+    * completed, and terminates it.
     *
-    * @param seed
-    *   determines all of Pekko's own randomness. Equal seeds and equal bodies give equal runs, to the nanosecond.
-    * @throws VirtualTimeException
-    *   when something escapes virtual time, or the future can never be completed: see [[Problem]]
-    * @throws Throwable
-    *   with which the future failed
+    * @param seed determines all of Pekko's own randomness. Equal seeds and equal bodies give equal runs, to
+    *   the nanosecond.
+    * @throws VirtualTimeException when something escapes virtual time, or the future can never be completed:
+    *   see [[Problem]]
+    * @throws Throwable with which the future failed
     */
   def run[A](seed: Long, limits: RunLimits = RunLimits(), config: Config = ConfigFactory.load())(
       body: ActorSystem => Future[A]
@@ -43,8 +42,7 @@ object VirtualTime:
 
   /** The loop's clock, in nanoseconds since the Unix epoch; it starts at 2000-01-01T00:00:00Z.
     *
-    * @throws IllegalArgumentException
-    *   if `system` does not run in virtual time
+    * @throws IllegalArgumentException if `system` does not run in virtual time
     */
   def clock(system: ClassicActorSystemProvider): () => Long =
     system.classicSystem.scheduler match

@@ -4,11 +4,10 @@ import java.lang.Thread.State
 import java.lang.management.ManagementFactory
 import scala.concurrent.duration.*
 
-/** Ends a run whose thread stands still, waiting in one task for a lock, a latch or an answer that nobody on the loop can
-  * give. Looks every half of `patience` (real time).
+/** Ends a run whose thread stands still, waiting in one task for a lock, a latch or an answer that nobody on
+  * the loop can give. Looks every half of `patience` (real time).
   *
-  * @param begun
-  *   how many tasks the thread has begun so far
+  * @param begun how many tasks the thread has begun so far
   */
 private final class Watchdog(
     thread: Thread,
@@ -48,19 +47,16 @@ private object Watchdog:
 
   /** What the watchdog sees of the loop's thread.
     *
-    * @param waits
-    *   whether it waits at this moment
-    * @param begun
-    *   tasks begun so far
-    * @param processorNanos
-    *   processor time it has had so far; -1 where the JVM cannot tell
+    * @param waits whether it waits at this moment
+    * @param begun tasks begun so far
+    * @param processorNanos processor time it has had so far; -1 where the JVM cannot tell
     */
   final case class Look(waits: Boolean, begun: Long, processorNanos: Long)
 
   val LooksNeeded = 3
 
-  /** On a machine that is busy otherwise a thread may be met waiting again and again, though it works in between, as
-    * while classes load: what has had the processor since the look before does not stand still.
+  /** On a machine that is busy otherwise a thread may be met waiting again and again, though it works in
+    * between, as while classes load: what has had the processor since the look before does not stand still.
     */
   def standsStill(looks: Seq[Look]): Boolean =
     looks.size >= LooksNeeded && looks.forall(look => look.waits && look == looks.head)

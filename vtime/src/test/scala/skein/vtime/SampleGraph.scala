@@ -12,7 +12,9 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import scala.util.Random
 
-/** Two vehicles' worth of ticks, asks that sometimes time out, joins, buffers, throttles, delays and restarts. */
+/** Two vehicles' worth of ticks, asks that sometimes time out, joins, buffers, throttles, delays and
+  * restarts.
+  */
 private object SampleGraph:
 
   /** SHA-256 of every event, with its time. */

@@ -4,8 +4,8 @@ import skein.units.Instant
 import upickle.default.ReadWriter
 import upickle.implicits.serializeDefaults
 
-/** What a car's pedals, wheel and gear lever do. Throttle and steering −1 to 1, brake 0 to 1; `manual_gear` counts only
-  * with `is_manual_gear`, −1 is reverse.
+/** What a car's pedals, wheel and gear lever do. Throttle and steering −1 to 1, brake 0 to 1; `manual_gear`
+  * counts only with `is_manual_gear`, −1 is reverse.
   */
 @serializeDefaults(true)
 final private[skein] case class CarControls(

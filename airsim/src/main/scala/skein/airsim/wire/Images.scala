@@ -6,8 +6,8 @@ import upack.{Binary, Msg, Str}
 import upickle.default.{ReadWriter, writeMsg}
 import upickle.implicits.serializeDefaults
 
-/** What an image is asked for; `image_type` is an [[ImageType]]'s number. Of Cosys-AirSim's further key nothing is
-  * asked, and its server does without.
+/** What an image is asked for; `image_type` is an [[ImageType]]'s number. Of Cosys-AirSim's further key
+  * nothing is asked, and its server does without.
   */
 final private[skein] case class ImageRequest(
     camera_name: String,
@@ -24,15 +24,11 @@ private[skein] enum ImageType:
 
 /** An image.
   *
-  * @param image_data_uint8
-  *   a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from the top, without gaps; empty if
-  *   `pixels_as_float`
-  * @param image_data_float
-  *   one number a pixel, rows from the top; empty unless `pixels_as_float`
-  * @param camera_position
-  *   in the frame of the camera's vehicle, NED, m
-  * @param time_stamp
-  *   of the exposure, on the simulator's clock
+  * @param image_data_uint8 a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from
+  *   the top, without gaps; empty if `pixels_as_float`
+  * @param image_data_float one number a pixel, rows from the top; empty unless `pixels_as_float`
+  * @param camera_position in the frame of the camera's vehicle, NED, m
+  * @param time_stamp of the exposure, on the simulator's clock
   */
 @serializeDefaults(true)
 final private[skein] case class ImageResponse(

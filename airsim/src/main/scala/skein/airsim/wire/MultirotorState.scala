@@ -4,8 +4,8 @@ import skein.units.Instant
 import upickle.default.ReadWriter
 import upickle.implicits.serializeDefaults
 
-/** What a client of ours reads of `getMultirotorState`; further keys, which differ between AirSim and its forks, are
-  * passed over.
+/** What a client of ours reads of `getMultirotorState`; further keys, which differ between AirSim and its
+  * forks, are passed over.
   */
 final private[skein] case class MultirotorReading(
     kinematics_estimated: KinematicsState,
@@ -39,7 +39,9 @@ private[skein] object CollisionInfo:
   val None: CollisionInfo =
     CollisionInfo(false, 0, Instant.Epoch, Vector3r.Zero, Vector3r.Zero, Vector3r.Zero, "", -1)
 
-/** A remote control's sticks, −1 to 1 (throttle 0 to 1). Clients send fewer keys, and others, than AirSim sends back. */
+/** A remote control's sticks, −1 to 1 (throttle 0 to 1). Clients send fewer keys, and others, than AirSim
+  * sends back.
+  */
 @serializeDefaults(true)
 final private[skein] case class RcData(
     timestamp: Instant = Instant.Epoch,

@@ -8,14 +8,10 @@ import upickle.implicits.serializeDefaults
 
 /** One scan.
   *
-  * @param time_stamp
-  *   when it was taken, on the simulator's clock
-  * @param point_cloud
-  *   x, y, z of each point, m, in the frame that the lidar's settings name
-  * @param pose
-  *   of the lidar, in its vehicle's frame
-  * @param segmentation
-  *   one id for each point; Cosys-AirSim sends names instead, which are passed over
+  * @param time_stamp when it was taken, on the simulator's clock
+  * @param point_cloud x, y, z of each point, m, in the frame that the lidar's settings name
+  * @param pose of the lidar, in its vehicle's frame
+  * @param segmentation one id for each point; Cosys-AirSim sends names instead, which are passed over
   */
 @serializeDefaults(true)
 final private[skein] case class LidarData(

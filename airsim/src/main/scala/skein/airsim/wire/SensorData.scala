@@ -29,8 +29,8 @@ final private[skein] case class MagnetometerData(
 final private[skein] case class GpsData(time_stamp: Instant, gnss: GnssReport, is_valid: Boolean)
     derives ReadWriter
 
-/** `eph` and `epv` are the dilutions of precision, `velocity` NED in m/s, `fix_type` 3 a three-dimensional fix,
-  * `time_utc` microseconds.
+/** `eph` and `epv` are the dilutions of precision, `velocity` NED in m/s, `fix_type` 3 a three-dimensional
+  * fix, `time_utc` microseconds.
   */
 final private[skein] case class GnssReport(
     geo_point: GeoPoint,

@@ -15,8 +15,8 @@ final private[skein] case class EnvironmentState(
 
 final private[skein] case class RotorStates(rotors: Seq[RotorState], timestamp: Instant) derives ReadWriter
 
-/** Thrust in N and torque in N·m (AirSim calls it `torque_scaler`), both as at sea level; the torque is negative for
-  * rotors that turn counter-clockwise. Speed in rad/s, never negative.
+/** Thrust in N and torque in N·m (AirSim calls it `torque_scaler`), both as at sea level; the torque is
+  * negative for rotors that turn counter-clockwise. Speed in rad/s, never negative.
   */
 final private[skein] case class RotorState(thrust: Float, torque_scaler: Float, speed: Float)
     derives ReadWriter

@@ -1,7 +1,7 @@
 package skein.mutation
 
-/** Changes after which the program does what it did, or what would have been as good a choice: nobody could notice them,
-  * and they do not count.
+/** Changes after which the program does what it did, or what would have been as good a choice: nobody could
+  * notice them, and they do not count.
   *
   * @param line
   *   what the changed line contains

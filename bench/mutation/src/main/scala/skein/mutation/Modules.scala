@@ -61,8 +61,8 @@ private object Modules:
       mutant <- mutants if !known.exists(_.covers(mutant, source))
     yield mutant
 
-  /** The classes that a pattern such as `skein.flow.*` names: suites and laws, without those that need sockets or the
-    * real clock unless they are named.
+  /** The classes that a pattern such as `skein.flow.*` names: suites and laws, without those that need
+    * sockets or the real clock unless they are named.
     */
   def suites(folders: Vector[String], pattern: String): Vector[String] =
     val prefix = pattern.takeWhile(_ != '*')

@@ -86,7 +86,9 @@ object Score:
       s"${percent(share)} % (${percent(middle - half)} … ${percent(middle + half)}) of ${judged.size}, $survived not noticed" +
         (if endless > 0 then s", $endless by not ending" else "")
 
-/** Runs mutants of one module, one after the other, in a [[Worker]] that is started again where one does not end. */
+/** Runs mutants of one module, one after the other, in a [[Worker]] that is started again where one does not
+  * end.
+  */
 private final class Session(module: Module, quick: Boolean):
   private val pool               = Executors.newCachedThreadPool()
   private given ExecutionContext = ExecutionContext.fromExecutor(pool)

@@ -40,8 +40,8 @@ object Named:
     Named(View, ".forall(held => aligned(reading).isNewer(reading.state, held.state))", ".forall(_ => true)")
   )
 
-  /** A wrong sign within the estimate of the offset is held between its bounds, and so to the uncertainty that is told:
-    * no flight can tell, but the units can.
+  /** A wrong sign within the estimate of the offset is held between its bounds, and so to the uncertainty
+    * that is told: no flight can tell, but the units can.
     */
   private val torture = Vector(
     Named(View, ".forall(held => aligned(reading).isNewer(reading.state, held.state))", ".forall(_ => true)"),

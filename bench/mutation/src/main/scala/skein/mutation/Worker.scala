@@ -13,14 +13,14 @@ import scala.collection.mutable
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 
-/** Compiles one changed file after the other, and runs suites upon it. A process of its own, because a mutant may never
-  * end. Reads from its standard input a line of the file with the changed source, or `-` for none, and the suites, with
-  * blanks between; answers each by a line: `invalid`, `killed` and by which suite, `late` where a test ran into its own
-  * time limit, or `survived`.
+/** Compiles one changed file after the other, and runs suites upon it. A process of its own, because a mutant
+  * may never end. Reads from its standard input a line of the file with the changed source, or `-` for none,
+  * and the suites, with blanks between; answers each by a line: `invalid`, `killed` and by which suite,
+  * `late` where a test ran into its own time limit, or `survived`.
   *
-  * The first question is for no change. From it on it knows which classes each suite loads and how long it takes, and
-  * runs only those upon a change that load a class of the changed file, the quickest first. What cannot know of the
-  * changed file is loaded once for all of them.
+  * The first question is for no change. From it on it knows which classes each suite loads and how long it
+  * takes, and runs only those upon a change that load a class of the changed file, the quickest first. What
+  * cannot know of the changed file is loaded once for all of them.
   */
 object Worker:
 

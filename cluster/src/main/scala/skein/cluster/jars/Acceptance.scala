@@ -6,12 +6,9 @@ import scala.collection.immutable.ArraySeq
 
 /** Which programs of others a worker runs, and how it comes by them.
   *
-  * @param digests
-  *   of the programs; others are refused, whoever offers them
-  * @param store
-  *   for what is not on this process's own class path
-  * @param own
-  *   the class path of this process: what is there already need not come
+  * @param digests of the programs; others are refused, whoever offers them
+  * @param store for what is not on this process's own class path
+  * @param own the class path of this process: what is there already need not come
   */
 final class Acceptance(
     digests: Set[Sha256],
@@ -31,10 +28,8 @@ final class Acceptance(
 
   /** Gets a program. What has come is held to its digest before this returns.
     *
-    * @param piece
-    *   of something by its digest, from an offset on; empty where there is nothing
-    * @param tell
-    *   what comes, in a line for a person
+    * @param piece of something by its digest, from an offset on; empty where there is nothing
+    * @param tell what comes, in a line for a person
     */
   private[cluster] def fetch(digest: Sha256, tell: String => Unit)(
       piece: (Sha256, Long) => Either[NotFetched, ArraySeq[Byte]]
@@ -76,7 +71,6 @@ object Acceptance:
 
 /** A program that is here, checked.
   *
-  * @param main
-  *   the class whose `main` starts the commands
+  * @param main the class whose `main` starts the commands
   */
 final case class Fetched(digest: Sha256, main: String, classPath: Vector[Path])

@@ -24,8 +24,8 @@ object ClassPath:
     val (sha256, bytes) = Sha256.written(write(part, _))
     Jar(sha256, bytes)
 
-  /** A jar as it is. A folder as a jar with the same bytes on every machine: names in their order, neither compressed nor
-    * dated.
+  /** A jar as it is. A folder as a jar with the same bytes on every machine: names in their order, neither
+    * compressed nor dated.
     */
   private[jars] def write(part: Path, to: OutputStream): Unit =
     if !Files.isDirectory(part) then Files.copy(part, to): Unit

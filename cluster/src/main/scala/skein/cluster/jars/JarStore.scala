@@ -6,7 +6,9 @@ import java.nio.file.{FileSystems, Files, Path, StandardCopyOption}
 import scala.collection.immutable.ArraySeq
 import scala.util.Using
 
-/** Jars that came from elsewhere, by what is in them. Each is checked whenever it is asked for, before anybody runs it. */
+/** Jars that came from elsewhere, by what is in them. Each is checked whenever it is asked for, before
+  * anybody runs it.
+  */
 final class JarStore(val folder: Path):
 
   /** Where a jar lies, if it is here and whole. */
@@ -18,8 +20,7 @@ final class JarStore(val folder: Path):
 
   /** Takes a jar in, by pieces one after the other. It is here once it is whole, and what it should be.
     *
-    * @param piece
-    *   that begins at an offset; empty where there is nothing
+    * @param piece that begins at an offset; empty where there is nothing
     */
   private[jars] def add(jar: Jar)(
       piece: Long => Either[NotFetched, ArraySeq[Byte]]

@@ -2,17 +2,14 @@ package skein.cluster.jars
 
 /** A jar, by what is in it.
   *
-  * @param bytes
-  *   its size
+  * @param bytes its size
   */
 final case class Jar(sha256: Sha256, bytes: Long)
 
 /** A program that another machine can run: what its class path holds, and where it starts.
   *
-  * @param main
-  *   the class whose `main` starts the commands
-  * @param jars
-  *   in the order of the class path
+  * @param main the class whose `main` starts the commands
+  * @param jars in the order of the class path
   */
 final case class Program(main: String, jars: Vector[Jar]):
 

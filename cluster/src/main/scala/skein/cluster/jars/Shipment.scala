@@ -9,18 +9,15 @@ import scala.util.Using
 
 /** A program whose bytes others may have, in pieces that they ask for.
   *
-  * @param files
-  *   of its jars
-  * @param made
-  *   jars of folders, deleted at the end
+  * @param files of its jars
+  * @param made jars of folders, deleted at the end
   */
 final class Shipment private (val program: Program, files: Map[Sha256, Path], made: Vector[Path])
     extends AutoCloseable:
 
   /** What begins at an offset of a jar, or of the program's own text; nothing where that has no such bytes.
     *
-    * @return
-    *   or why it cannot be read
+    * @return or why it cannot be read
     */
   private[cluster] def piece(content: Sha256, offset: Long): Either[String, ArraySeq[Byte]] =
     if content == program.digest then
@@ -42,8 +39,7 @@ object Shipment:
 
   /** A program of what this process runs by. Reads all of it.
     *
-    * @param main
-    *   the class whose `main` starts the commands
+    * @param main the class whose `main` starts the commands
     */
   def of(main: String, classPath: Vector[Path] = ClassPath.current): Either[String, Shipment] =
     val made = Vector.newBuilder[Path]

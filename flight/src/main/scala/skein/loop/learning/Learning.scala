@@ -7,14 +7,12 @@ enum Learning:
 
   /** By a learner beside the flight.
     *
-    * @param learner
-    *   a new one, for a flight of this seed
+    * @param learner a new one, for a flight of this seed
     */
   case Beside(explore: Double, learner: Long => FlownLearner)
 
   /** As it did before.
     *
-    * @param news
-    *   what was new before which decision
+    * @param news what was new before which decision
     */
   case Again(explore: Double, news: Map[Long, Vector[LearnerUpdate]])

@@ -4,18 +4,14 @@ import skein.policy.*
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.units.Radians
 
-/** A network that changes while it flies, between two decisions and never in one. It tries out: normal noise is added to
-  * what it would do, drawn from the seed and the decision's number. Decided again from the recorded versions, a flight is
-  * the same.
+/** A network that changes while it flies, between two decisions and never in one. It tries out: normal noise
+  * is added to what it would do, drawn from the seed and the decision's number. Decided again from the
+  * recorded versions, a flight is the same.
   *
-  * @param first
-  *   decides until there is news
-  * @param version
-  *   what other parameters make
-  * @param explore
-  *   the noise's deviation, as a share of the most that it turns
-  * @param note
-  *   told of all news, with the number of the decision that comes next
+  * @param first decides until there is news
+  * @param version what other parameters make
+  * @param explore the noise's deviation, as a share of the most that it turns
+  * @param note told of all news, with the number of the decision that comes next
   */
 final class LearningPolicy(
     first: LearnedPolicy,

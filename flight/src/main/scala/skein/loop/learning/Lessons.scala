@@ -13,8 +13,7 @@ trait Lessons:
 
   /** What is new; asked once before each decision. Never blocks.
     *
-    * @param decision
-    *   its number
+    * @param decision its number
     */
   def news(decision: Long): Vector[LearnerUpdate]
 
@@ -25,18 +24,15 @@ trait Lessons:
 
 /** What is new of a learner.
   *
-  * @param text
-  *   for a person
-  * @param parameters
-  *   of the policy that decides from now on, if it is another
+  * @param text for a person
+  * @param parameters of the policy that decides from now on, if it is another
   */
 final case class LearnerUpdate(text: String, parameters: Option[Vector[Double]] = None)
 
-/** Lessons by a learner that runs beside the flight: it may be slow, hang or fail, and no decision waits for it. Of versions
-  * between two decisions the last counts.
+/** Lessons by a learner that runs beside the flight: it may be slow, hang or fail, and no decision waits for
+  * it. Of versions between two decisions the last counts.
   *
-  * @param on
-  *   what it learns on
+  * @param on what it learns on
   */
 final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using ActorSystem) extends Lessons:
   import LessonsBeside.*
@@ -105,8 +101,8 @@ object LessonsBeside:
 
 /** The same lessons again. One thread at a time.
   *
-  * @param recorded
-  *   what was new before which decision; where that was made in the policy's place, it is new before the next
+  * @param recorded what was new before which decision; where that was made in the policy's place, it is new
+  *   before the next
   */
 final class LessonsAgain(recorded: Map[Long, Vector[LearnerUpdate]]) extends Lessons:
   private var left = recorded.toVector.sortBy(_._1)

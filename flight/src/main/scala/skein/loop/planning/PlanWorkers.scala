@@ -7,15 +7,14 @@ import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
-/** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so that what
-  * each finds depends on the number of its slices alone.
+/** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so
+  * that what each finds depends on the number of its slices alone.
   */
 trait PlanWorkers extends AutoCloseable:
 
   /** Begins a search.
     *
-    * @param warm
-    *   to begin with
+    * @param warm to begin with
     */
   def begin(problem: PlanProblem, warm: JointPlan): PlanSearch
 
@@ -35,11 +34,10 @@ trait PlanSearch:
   /** Ends it: what each search has found, the same from now on. */
   def finish(): Vector[JointPlan]
 
-/** Searches at once, on the caller's thread, when its result is asked for: as many slices as are set, whatever the clock
-  * says. So virtual time is deterministic.
+/** Searches at once, on the caller's thread, when its result is asked for: as many slices as are set,
+  * whatever the clock says. So virtual time is deterministic.
   *
-  * @param slices
-  *   of each search; for several vehicles as many more as they need to get equally many
+  * @param slices of each search; for several vehicles as many more as they need to get equally many
   */
 final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
   require(searches > 0 && searches <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} searches")
@@ -56,12 +54,11 @@ final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
 
   def close(): Unit = ()
 
-/** Searches on threads of its own until it is asked for the result; several problems take turns, slice by slice.
+/** Searches on threads of its own until it is asked for the result; several problems take turns, slice by
+  * slice.
   *
-  * @param threads
-  *   and searches per problem
-  * @param factory
-  *   of threads that should give way to those of control
+  * @param threads and searches per problem
+  * @param factory of threads that should give way to those of control
   */
 final class ThreadedPlanWorkers(threads: Int, factory: ThreadFactory) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
@@ -106,8 +103,7 @@ private object ThreadedPlanWorkers:
 
     /** Searches one slice more. A failure ends the search; whoever asks for its result is told.
       *
-      * @return
-      *   whether more are wanted
+      * @return whether more are wanted
       */
     def improve(by: JointPlanner): Boolean =
       if ended.get.isEmpty then

@@ -6,7 +6,9 @@ import skein.planning.*
 import skein.testing.Optimised
 import skein.vehicle.{PlaneReading, ReducedModel}
 
-/** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is not. */
+/** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is
+  * not.
+  */
 class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
   private val objective = PlanCost(CommandLimits.paperPursuer, cruiseSpeed = 10)

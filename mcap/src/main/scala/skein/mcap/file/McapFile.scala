@@ -9,8 +9,8 @@ import skein.mcap.*
 /** MCAP files on a disk. Errors of the disk itself are thrown as `IOException`. */
 object McapFile:
 
-  /** A new file, or one in the place of an older one, with what `body` writes; finished if it returns. If it throws, the
-    * file can be read up to the last chunk.
+  /** A new file, or one in the place of an older one, with what `body` writes; finished if it returns. If it
+    * throws, the file can be read up to the last chunk.
     */
   def write[A](path: Path, options: WriterOptions = WriterOptions())(body: McapWriter => A): A =
     Using.resource(FileChannel.open(path, CREATE, TRUNCATE_EXISTING, WRITE)): channel =>
@@ -24,6 +24,8 @@ object McapFile:
     Using.resource(FileChannel.open(path, READ)): channel =>
       IndexedReader.open(FileSource(channel), limits).map(body)
 
-  /** Reads all records in the file's order and holds every CRC; the stream must not be used after `body` returns. */
+  /** Reads all records in the file's order and holds every CRC; the stream must not be used after `body`
+    * returns.
+    */
   def stream[A](path: Path, limits: McapLimits = McapLimits())(body: RecordStream => A): A =
     Using.resource(FileChannel.open(path, READ))(channel => body(RecordStream(channel, limits)))

@@ -114,7 +114,9 @@ private[render] object Layer:
   /** Of a tag's black cells, 0xrrggbb. */
   private val Ink = 0x0a0a0a
 
-  /** Inverse depth at the middles of a row's pixels, from `from` on: what it changes by a pixel, and its first. */
+  /** Inverse depth at the middles of a row's pixels, from `from` on: what it changes by a pixel, and its
+    * first.
+    */
   private def line(surfaces: Surfaces, face: Int, row: Int, from: Int): (Float, Float) =
     val slope = surfaces.a(face)
     (slope.toFloat, (surfaces.c(face) + surfaces.b(face) * (row + 0.5) + slope * (from + 0.5)).toFloat)

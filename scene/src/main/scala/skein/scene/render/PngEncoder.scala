@@ -5,14 +5,13 @@ import java.nio.ByteBuffer
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** PNG files of images of few colours, fast, and the same bytes on every machine: each pixel less the one above it, in
-  * one deflate block of fixed codes whose only matches are runs. What is as in the row above, most of a drawn image, is
-  * found by comparing arrays.
+/** PNG files of images of few colours, fast, and the same bytes on every machine: each pixel less the one
+  * above it, in one deflate block of fixed codes whose only matches are runs. What is as in the row above,
+  * most of a drawn image, is found by comparing arrays.
   */
 object PngEncoder:
 
-  /** @param bgr
-    *   three bytes a pixel: blue, green, red; rows from the top
+  /** @param bgr three bytes a pixel: blue, green, red; rows from the top
     */
   def encode(bgr: Array[Byte], width: Int, height: Int): Array[Byte] =
     require(bgr.length == width * height * 3, s"${bgr.length} bytes for $width × $height pixels")

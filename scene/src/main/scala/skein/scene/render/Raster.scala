@@ -2,8 +2,7 @@ package skein.scene.render
 
 /** Kinds of images.
   *
-  * @param drawnAs
-  *   the kind that it is derived from
+  * @param drawnAs the kind that it is derived from
   */
 enum Kind:
   /** Colours. */

@@ -3,17 +3,15 @@ package skein.scene.render
 import skein.scene.{Item, Moment, Solid}
 import skein.units.Vector3
 
-/** Draws what a camera sees of a moment, in one pass for all kinds of images. Flat colours in one light: no shadows, no
-  * haze, no lens. Deterministic: the same moment and view give the same bytes on every machine, as only additions,
-  * products, quotients and square roots of floating-point numbers decide them. Cost of 1280 × 720 with 60 boxes: below
-  * 1.5 ms of one core for [[Kind.Scene]].
+/** Draws what a camera sees of a moment, in one pass for all kinds of images. Flat colours in one light: no
+  * shadows, no haze, no lens. Deterministic: the same moment and view give the same bytes on every machine,
+  * as only additions, products, quotients and square roots of floating-point numbers decide them. Cost of
+  * 1280 × 720 with 60 boxes: below 1.5 ms of one core for [[Kind.Scene]].
   */
 object Renderer:
 
-  /** @param except
-    *   an item that is not drawn: who bears the camera
-    * @param idOf
-    *   each item's id for segmentation, 0 to 255
+  /** @param except an item that is not drawn: who bears the camera
+    * @param idOf each item's id for segmentation, 0 to 255
     */
   def draw(
       moment: Moment,
@@ -31,8 +29,7 @@ object Renderer:
 
   /** The items of which something is seen, each with the least box around its pixels.
     *
-    * @param except
-    *   an item that is not drawn
+    * @param except an item that is not drawn
     */
   def extents(moment: Moment, view: View, except: Int = Item.Nothing): Vector[Extent] =
     val surfaces = seen(moment, view, except)

@@ -3,10 +3,12 @@ package skein.scene.render
 import skein.scene.Solid
 import skein.units.Vector3
 
-/** The faces that a view may show, projected: for each the rows that it covers, where it begins and ends in each, and its
-  * inverse depth, which is linear on the image: a·x + b·y + c at the pixel (x, y)'s upper left corner, 1/m.
+/** The faces that a view may show, projected: for each the rows that it covers, where it begins and ends in
+  * each, and its inverse depth, which is linear on the image: a·x + b·y + c at the pixel (x, y)'s upper left
+  * corner, 1/m.
   *
-  * A pixel belongs to a face if its middle does, so that faces that share an edge neither overlap there nor leave a gap.
+  * A pixel belongs to a face if its middle does, so that faces that share an edge neither overlap there nor
+  * leave a gap.
   */
 final private[render] class Surfaces(view: View):
   import view.{focalPx, height, place, width}

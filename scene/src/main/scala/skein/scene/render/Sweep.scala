@@ -2,9 +2,10 @@ package skein.scene.render
 
 import java.util.Arrays
 
-/** Which face is seen where. Row by row, the faces that begin and end along it are passed from left to right; the nearest
-  * one of those passed is seen until it ends, another one begins, or one behind comes through it. So the cost depends on
-  * the number of edges, not of pixels, and visibility is exact whatever the order of the faces.
+/** Which face is seen where. Row by row, the faces that begin and end along it are passed from left to right;
+  * the nearest one of those passed is seen until it ends, another one begins, or one behind comes through it.
+  * So the cost depends on the number of edges, not of pixels, and visibility is exact whatever the order of
+  * the faces.
   */
 final private[render] class Sweep(view: View, surfaces: Surfaces):
   import surfaces.{bottom, first, spans, top}
@@ -97,7 +98,9 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
 
   private def inverseAt(face: Int, x: Int): Double = inverse(face) + surfaces.a(face) * x
 
-  /** The open face seen at this pixel; closes those that have ended. Of equally near ones the one added first. */
+  /** The open face seen at this pixel; closes those that have ended. Of equally near ones the one added
+    * first.
+    */
   private def nearestAt(x: Int): Int =
     var best   = Layer.Sky
     var bestAt = 0.0

@@ -4,8 +4,7 @@ import skein.scene.Placement
 
 /** A pinhole camera: looks to the front of where it is placed.
   *
-  * @param fovDeg
-  *   horizontal, below 180
+  * @param fovDeg horizontal, below 180
   */
 final case class View(place: Placement, width: Int, height: Int, fovDeg: Double):
   require(width > 0 && height > 0 && fovDeg > 0 && fovDeg < 180, s"no view: $width × $height, $fovDeg°")

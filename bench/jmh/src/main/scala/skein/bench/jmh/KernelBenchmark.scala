@@ -7,8 +7,8 @@ import skein.forward.{DelayTable, Duel, LoopTiming, Rollout}
 import skein.lanes.DuelBatch
 import skein.simd.WorldRandom
 
-/** How many million agent-steps a second do the engines of forward simulation make, on one thread? `stream` over `vpn`,
-  * 60 s, the reduced model; an agent-step is 0.1 s of one agent.
+/** How many million agent-steps a second do the engines of forward simulation make, on one thread? `stream`
+  * over `vpn`, 60 s, the reduced model; an agent-step is 0.1 s of one agent.
   */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.Throughput))

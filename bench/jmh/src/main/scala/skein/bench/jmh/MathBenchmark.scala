@@ -5,8 +5,8 @@ import org.openjdk.jmh.annotations.*
 import skein.bench.SinCos
 import skein.simd.LaneMath
 
-/** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions of numbers a
-  * second, on one thread.
+/** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions
+  * of numbers a second, on one thread.
   */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.Throughput))

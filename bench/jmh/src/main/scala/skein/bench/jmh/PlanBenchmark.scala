@@ -5,8 +5,8 @@ import org.openjdk.jmh.annotations.*
 import skein.bench.PlanBench
 import skein.planning.*
 
-/** How many million manoeuvres does the planner draw, fly, price and search upon in a second, on one thread? Each is 2 s
-  * of pursuer and evader in 20 steps.
+/** How many million manoeuvres does the planner draw, fly, price and search upon in a second, on one thread?
+  * Each is 2 s of pursuer and evader in 20 steps.
   */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.Throughput))

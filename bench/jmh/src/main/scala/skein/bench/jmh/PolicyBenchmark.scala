@@ -7,8 +7,9 @@ import skein.forward.{DelayTable, Delays, LoopTiming}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{ChauffeurEvader, Policy, PolicyFamily}
 
-/** What does a family of policies cost? Millions of agent-steps a second, on one thread: 1,024 candidates of the family,
-  * drawn from its space, fly one episode of 60 s of `stream` over `vpn` against the chauffeur's evader.
+/** What does a family of policies cost? Millions of agent-steps a second, on one thread: 1,024 candidates of
+  * the family, drawn from its space, fly one episode of 60 s of `stream` over `vpn` against the chauffeur's
+  * evader.
   */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.Throughput))

@@ -6,8 +6,8 @@ import skein.lanes.QuadrotorKernel
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 
-/** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? By lanes,
-  * `QuadrotorKernel.VEHICLES` of them side by side, and one alone by the scalar reference.
+/** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? By
+  * lanes, `QuadrotorKernel.VEHICLES` of them side by side, and one alone by the scalar reference.
   */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.Throughput))
