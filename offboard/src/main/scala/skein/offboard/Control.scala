@@ -65,9 +65,21 @@ final case class Control(
   import Control.*
 
   /** Whether it can be flown: it was heard, its clock is known and so is where its frame is. */
-  def isReady: Boolean = origin.isDefined && isAligned && estimate.newest.isDefined
+  def isReady: Boolean = missing.isEmpty
 
-  private def isAligned = clock.exists(_.exchanges >= settings.exchanges)
+  /** What it has not told yet and must have, before it can be flown. */
+  def missing: Vector[String] =
+    if heardAt.isEmpty then Vector("any message")
+    else
+      Vector(
+        Option.when(origin.isEmpty)("GPS_GLOBAL_ORIGIN"),
+        Option.when(!isAligned)(s"answers to TIMESYNC ($exchanged of ${settings.exchanges} came)"),
+        Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
+      ).flatten
+
+  private def exchanged = clock.fold(0)(_.exchanges)
+
+  private def isAligned = exchanged >= settings.exchanges
 
   /** @return an answer of the next sample to `token`
     */

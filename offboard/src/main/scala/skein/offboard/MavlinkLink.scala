@@ -178,10 +178,11 @@ object MavlinkLink:
       .flatMap:
         case true  => Future.successful(Right(link))
         case false =>
-          val silent = systems.filterNot(number => link.control(number).isReady)
+          val missing = systems.map(number => number -> link.control(number).missing).filter(_._2.nonEmpty)
+          val told    = missing.map((number, what) => s"$number lacks ${what.mkString(", ")}")
           link.close().map(_ =>
             Left(VehicleError.Unreachable(
               s"expected MAVLink systems ${systems.mkString(", ")} within " +
-                s"${within.toSeconds.round} s, but nothing usable came of ${silent.mkString(", ")}"
+                s"${within.toSeconds.round} s; ${told.mkString("; ")}"
             ))
           )

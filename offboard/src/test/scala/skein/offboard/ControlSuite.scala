@@ -192,6 +192,19 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(counts.take(7).sum, 6)
     assert((4 to 5).contains(counts.drop(7).sum), counts.toString)
 
+  test("what a vehicle has not told yet is named"):
+    val unheard = Control(1, OffboardSettings(exchanges = 5))
+    assertEquals(unheard.missing, Vector("any message"))
+    val heard = unheard.heard(heartbeat(offboard, true), at(10)).next
+    assertEquals(
+      heard.missing,
+      Vector(
+        "GPS_GLOBAL_ORIGIN",
+        "answers to TIMESYNC (0 of 5 came)",
+        "ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION"
+      )
+    )
+
   test("a sample answers all readings that wait, in the flight's frame, with the bounds that TIMESYNC gives"):
     val synced =
       known().copy(originNed = Vector3(10, 0, 0)).heard(Timesync(theirs(30).toNanos, at(15).toNanos), at(50))

@@ -1,7 +1,7 @@
 package skein.simulator
 
 import java.io.File
-import java.net.{DatagramSocket, InetAddress, Socket}
+import java.net.{DatagramSocket, InetAddress, Socket, SocketTimeoutException}
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import scala.jdk.CollectionConverters.*
@@ -58,8 +58,14 @@ private object Betaflight:
 
   private def log(folder: Path): String = Files.readString(folder.resolve("log"))
 
-  /** Sets it up by its command line, which restarts it: it ends. */
-  def configure(firmware: Path, folder: Path): Unit =
+  /** Sets it up by its command line, which restarts it: it ends. Now and then it does not answer there: then
+    * it is started anew.
+    */
+  def configure(firmware: Path, folder: Path, tries: Int = 3): Unit =
+    try configureOnce(firmware, folder)
+    catch case _: SocketTimeoutException if tries > 1 => configure(firmware, folder, tries - 1)
+
+  private def configureOnce(firmware: Path, folder: Path): Unit =
     val process = start(firmware, folder)
     try
       Using.resource(Socket(loopback, Cli)): socket =>
@@ -78,7 +84,7 @@ private object Betaflight:
         def awake(tries: Int): Unit =
           say("#")
           try prompt(): Unit
-          catch case _: java.net.SocketTimeoutException if tries > 1 => awake(tries - 1)
+          catch case _: SocketTimeoutException if tries > 1 => awake(tries - 1)
         awake(tries = 20)
         socket.setSoTimeout(10_000)
         // Ends a line of several such signs, and is nothing after one.
