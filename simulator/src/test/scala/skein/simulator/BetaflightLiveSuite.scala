@@ -40,7 +40,8 @@ class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
     val telling =
       Iterator.continually(fly()).take(3).flatten.find(flight => hovered(flight) || isCalm(flight))
     // .ci/run counts such lines.
-    if telling.isEmpty then println("INCONCLUSIVE: the machine is too busy for Betaflight's loop, or it hangs")
+    if telling.isEmpty then
+      println("INCONCLUSIVE: the machine is too busy for Betaflight's loop, or it hangs")
     assume(telling.isDefined, "inconclusive")
     assert(telling.exists(hovered), telling.map(_.track).mkString)
 
