@@ -1,5 +1,6 @@
 package skein.lanes
 
+import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
@@ -43,13 +44,28 @@ private[skein] final class FixedFormula(
   private[lanes] def inputsOf(own: Array[Double]): Array[Double] = bound.inputs.map(own(_))
 
   /** For the object that it was compiled for. */
-  def call: FixedFormula.Call = FixedFormula.Call(this, parameters.map(_.toFloat), own, own + extra)
+  def call: FixedFormula.Call = call(of)
+
+  /** For another that [[fits]]. */
+  def call(other: AnyRef): FixedFormula.Call =
+    FixedFormula.Call(this, parametersOf(other).map(_.toFloat), own, own + extra)
 
 private[skein] object FixedFormula:
-  /** @param alike so many of the method's last inputs are the same in all worlds
+  private val known = ConcurrentHashMap[(Class[?], String, Int), Forms[AnyRef, FixedFormula]]()
+
+  /** The formula that an object's method is, which may have been compiled for another object.
+    *
+    * @param alike so many of the method's last inputs are the same in all worlds
     */
   def of(target: AnyRef, method: String, alike: Int): FixedFormula =
-    FixedFormula(Formula.of(target, method).fold(throw _, identity), target, alike)
+    known
+      .computeIfAbsent(
+        (target.getClass, method, alike),
+        _ =>
+          Forms[AnyRef, FixedFormula](_.fits(_)): one =>
+            Formula.of(one, method).map(FixedFormula(_, one, alike))
+      )(target)
+      .fold(throw _, identity)
 
   /** Mutable. */
   final class Call(formula: FixedFormula, parameters: Array[Float], own: Int, inputs: Int):

@@ -162,7 +162,7 @@ private object PlanKernel:
           case Some((formula, call)) if formula.fits(target) => call.take(target)
           case _                                             =>
             val formula = FixedFormula.of(target, method, alike)
-            val call    = formula.call
+            val call    = formula.call(target)
             bind(call)
             known = Some((formula, call))
         last = Some(target)
