@@ -1,6 +1,7 @@
 package skein.budget
 
 import skein.plot.*
+import skein.search.WholeFlights
 import skein.units.Decimals.significant
 
 /** How far the objective is off the truth, by latency and jitter, one panel per period: the contour where it
@@ -12,9 +13,6 @@ object BudgetFigure:
   private val mark   = Colour(0x111111)
   private val limit  = Stroke(Colour(0x111111), 1.8)
   private val empty  = Colour(0xf0f0f0)
-
-  /** Drawn where the objective never came to a number. */
-  private val Most = 1e6
 
   /** @param maps of the same question at several periods
     */
@@ -49,9 +47,7 @@ object BudgetFigure:
       budget.meansMs.map(_ / per),
       budget.jittersMs.map(_ / per),
       budget.jittersMs.indices.toVector.map: i =>
-        budget.meansMs.indices.toVector.map(j =>
-          budget.deviation(i, j).map(off => (off * factor).max(-Most).min(Most))
-        )
+        budget.meansMs.indices.toVector.map(j => budget.deviation(i, j).map(_ * factor))
     )
     val panel = Panel(
       PlotAxis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
@@ -93,13 +89,16 @@ object BudgetFigure:
         ) ++ panel.xAxis ++ panel.yAxis
     )
 
-  /** The largest deviation of most cells: a few wild ones shall not make the others pale. */
+  /** The largest deviation of most cells: a few wild ones shall not make the others pale, nor those with a
+    * flight that never came to a measure.
+    */
   private def largest(map: BudgetMap): Double =
     val (factor, _) = map.tolerance.shown(map.unit)
     val sizes       =
       for
         i   <- map.budget.jittersMs.indices
         j   <- map.budget.meansMs.indices
-        off <- map.budget.deviation(i, j) if off.isFinite
+        off <- map.budget.deviation(i, j)
+        if off.abs * map.budget.per < WholeFlights.Never / (2 * map.episodes)
       yield off.abs * factor
     sizes.sorted.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(2 * map.tolerance.value * factor)

@@ -33,13 +33,9 @@ final case class ScenarioQuestion(
     */
   def subject(plantIsTold: Boolean)(using Scenarios): Either[String, BudgetSubject] =
     WholeFlights.plane(scenario, conditions.durationS) match
-      case Left(reason) if plantIsTold =>
-        Left(
-          "--plant: expected none, since this scenario flies in virtual " +
-            s"time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
-        )
-      case Left(reason) => conditions.checked.map(FlownSubject.virtual(this, _, reason))
-      case Right(plane) =>
+      case Left(reason) if plantIsTold => Left(WholeFlights.noPlant(reason))
+      case Left(reason)                => conditions.checked.map(FlownSubject.virtual(this, _, reason))
+      case Right(plane)                =>
         for flown <- conditions.copy(altitudeM = -plane.agents.head.altitudeDownM).resolved
         yield
           if terms.forall(_._2.reduced.nonEmpty) then TeamSubject(this, plane, flown)
@@ -113,14 +109,10 @@ final class FlownSubject private (
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = each
 
-  def truth: Either[String, Double] = value(None, 0)
+  def truth: Either[String, Double] = value(None, 0).map(_.getOrElse(Double.NaN))
 
-  /** Infinite where a flight never came to it: further off than anything. */
-  private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Double] =
-    fly(link, episode).map: tracks =>
-      question.terms.map((weight, measure) =>
-        measure.of(tracks).fold(Double.PositiveInfinity)(weight * _)
-      ).sum
+  private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
+    fly(link, episode).map(WholeFlights.sum(question.terms, _))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()
@@ -128,7 +120,7 @@ final class FlownSubject private (
     val came = InParallel.map(all, question.threads): (link, episode) =>
       if cells.isCancelled() then Left(BudgetSubject.Stopped)
       else
-        val came = value(Some(link), episode)
+        val came = value(Some(link), episode).map(_.getOrElse(WholeFlights.Never))
         cells.onProgress(done.incrementAndGet())
         came
     val (missing, flown) = came.partitionMap(identity)

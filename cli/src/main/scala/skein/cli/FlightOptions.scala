@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueF
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
-import skein.loop.{Fallback, LoopKind, OpponentModel}
+import skein.loop.{AnyLoop, Fallback, LoopKind, OpponentModel}
 import skein.planning.Planner
 import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings, Wire}
@@ -12,7 +12,9 @@ import skein.units.Expect
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
-    @arg(doc = "paused, sequential, futures, stream, predictive or plan; can be repeated")
+    @arg(doc =
+      "paused, sequential, futures, stream, predictive, plan, or a loop of the program's own; can be repeated"
+    )
     loop: Seq[String],
     @arg(doc =
       "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; can be repeated"
@@ -183,6 +185,9 @@ object FlightOptions:
           case several: java.util.List[?] => several.asScala.mkString(", ")
           case one                        => one.toString.replace(" ", ""))
       .toMap
+
+  /** By flags' names: all values of those that have no others. */
+  def known(using Scenarios): Map[String, Seq[String]] = Map("loop" -> AnyLoop.names)
 
   private val paperLoops =
     Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream).map(_.label)

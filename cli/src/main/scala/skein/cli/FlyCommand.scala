@@ -5,7 +5,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.TcpTransport
-import skein.loop.{LoopKind, FlightOutcome}
+import skein.loop.{AnyLoop, FlightOutcome}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
@@ -49,7 +49,8 @@ final class FlyCommand(using Scenarios)
       ParserForClass[FlyOptions]
     ):
 
-  override protected def defaults: Map[String, String] = FlightOptions.defaults
+  override protected def defaults: Map[String, String]   = FlightOptions.defaults
+  override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
@@ -191,7 +192,7 @@ private[cli] object FlyCommand:
   private val Tcp = "tcp://"
 
   /** Loops that this process has compiled: its next command need not. */
-  @volatile private var warm = Set.empty[LoopKind]
+  @volatile private var warm = Set.empty[AnyLoop]
 
   /** A flight in which no vehicle was ever read for a decision is none, unless somebody ended it.
     *

@@ -134,7 +134,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         forward.seed.getOrElse(1),
         options.fresh.getOrElse(Effort.TeamsFresh)
       )
-      ready <- question.read
+      ready <- question.read(forward.plant.isDefined)
       asked = if ready.isVirtual then inFlights(question, options) else question
       _ <- asked.setup
     yield asked

@@ -5,6 +5,7 @@ import java.nio.file.InvalidPathException
 import java.util.Locale
 import org.slf4j.LoggerFactory
 import skein.forecast.Structure
+import skein.loop.OwnLoop
 import skein.policy.PolicyFamily
 import skein.scenario.{ScenarioKind, Scenarios}
 
@@ -32,8 +33,13 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     */
   def structures: Seq[Structure] = Nil
 
+  /** Loops of your own: `fly` and `spread` fly them by `--loop`, and `report` and `replay` know them. It is
+    * asked for as [[policyFamilies]] is.
+    */
+  def loops: Seq[OwnLoop] = Nil
+
   final given scenarios: Scenarios =
-    Scenarios(kinds.toVector, policyFamilies.toVector, structures.toVector)
+    Scenarios(kinds.toVector, policyFamilies.toVector, structures.toVector, loops.toVector)
 
   private def program = getClass.getName.stripSuffix("$")
 

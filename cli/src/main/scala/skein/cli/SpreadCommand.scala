@@ -34,7 +34,8 @@ final class SpreadCommand(program: String)(using Scenarios)
       ParserForClass[SpreadOptions]
     ):
 
-  override protected def defaults: Map[String, String] = FlightOptions.defaults
+  override protected def defaults: Map[String, String]   = FlightOptions.defaults
+  override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
   protected def execute(options: SpreadOptions): Either[String, Unit] =
     for

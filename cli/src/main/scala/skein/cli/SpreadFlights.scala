@@ -1,6 +1,5 @@
 package skein.cli
 
-import java.util.concurrent.atomic.AtomicInteger
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.loop.FlightOutcome
 import skein.measure.FlightSummary
@@ -35,10 +34,12 @@ private[cli] object SpreadFlights:
 
   /** How many have landed, told now and then. */
   final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):
-    private val landed     = AtomicInteger()
-    private def progress() = s"${landed.get} of $of flights have landed"
+    @volatile private var landed = 0
+    private def progress()       = s"$landed of $of flights have landed"
 
-    def one: Unit =
-      if landed.incrementAndGet() % (of / 20).max(1) == 0 then tell(progress())
+    /** Told in order, though flights land on several threads. */
+    def one: Unit = synchronized:
+      landed += 1
+      if landed % (of / 20).max(1) == 0 then tell(progress())
 
     def tellingIfCut[A](body: => A): A = Edge.tellingIfCut(progress())(body)

@@ -104,7 +104,8 @@ object Figure:
         "What decisions were made on",
         "Means over all decisions. Ages count from a reading's arrival, as " +
           "published, and so hide the network; the dashed outlines are the true " +
-          "ages, from when physics was sampled. Diamonds are the paper's means.",
+          "ages, from when physics was sampled." +
+          (if set.flights.exists(_.published.nonEmpty) then " Diamonds are the paper's means." else ""),
         drawing
       ),
     LatencyFigure(set).map: drawing =>

@@ -5,7 +5,7 @@ import skein.plot.*
 
 /** The paper's bar charts: means of the four observations, grouped by link and loop, a full bar for the
   * evader's decisions and a pale one for the pursuer's, or by a team's roles. Black diamonds are the paper's
-  * means; in the charts of ages, outlines are the true ages.
+  * means, where there are any; in the charts of ages, outlines are the true ages.
   */
 object ObservationFigure:
   private val barWidth  = 20.0
@@ -112,8 +112,9 @@ object ObservationFigure:
     val full             = Legend.box(s"deciding for the ${role(0)}", grey)
     val pale             =
       Option.when(role(1).nonEmpty)(Legend.box(s"for the ${role(1)}", grey.tinted(palePart)))
-    val items = Seq(full) ++ pale ++ Seq(
-      Legend.Item("paper", 8, at => Vector(FlightTheme.diamond(at.moved(4, 0)))),
+    val paper = Option.when(flights.exists(_.published.nonEmpty)):
+      Legend.Item("paper", 8, at => Vector(FlightTheme.diamond(at.moved(4, 0))))
+    val items = Seq(full) ++ pale ++ paper ++ Seq(
       Legend.Item(
         "true age, by the simulator's clock",
         12,

@@ -20,13 +20,14 @@ object TwinFigure:
     Option.when(lines.nonEmpty)(Drawing.stacked((lines :+ legend(set))*))
 
   private def line(twin: Twin): Drawing =
-    val flight   = twin.live.flight
-    val distance = twin.converged.zip(twin.difference).map: (converged, difference) =>
-      s": last 10 s ${converged._1.fixed(2)} m live, ${converged._2.fixed(2)} m virtual " +
-        s"(${(100 * difference).signed(1)} %)"
+    val flight = twin.live.flight
+    val came   = twin.live.headlineOf.zip(twin.converged).zip(twin.difference).map:
+      case ((measure, (live, virtual)), difference) =>
+        def told(value: Double) = s"${value.fixed(2)} ${measure.unit}".trim
+        s": ${measure.name} ${told(live)} live, ${told(virtual)} virtual (${(100 * difference).signed(1)} %)"
     val title = Mark.Text(
       Point(46, 16),
-      s"${twin.live.name}, ${FlightTheme.link(flight.link)}${distance.getOrElse("")}",
+      s"${twin.live.name}, ${FlightTheme.link(flight.link)}${came.getOrElse("")}",
       Theme.titleSize,
       Theme.titleColour,
       bold = true

@@ -4,24 +4,25 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
 import skein.figures.{Figure, GraphFigure}
-import skein.loop.{LoopGraph, LoopInstance, LoopKind, OwnLoop}
+import skein.loop.{AnyLoop, LoopGraph, LoopInstance}
 import skein.measure.FlightSet
 import skein.policy.Fleet
+import skein.scenario.Scenarios
 
 /** The graphs of the loops that flew, each as it runs for the vehicles of its flight. */
 object LoopPictures:
 
-  type Loop = (kind: LoopKind | OwnLoop, fleet: Fleet)
+  type Loop = (kind: AnyLoop, fleet: Fleet)
 
   /** Beyond it nobody could read the picture. */
   private val MostVehicles = 8
 
   /** Blocks: it starts each loop for a moment. */
-  def of(set: FlightSet): Vector[Figure] =
+  def of(set: FlightSet)(using Scenarios): Vector[Figure] =
     val flown =
       for
         summary <- set.all
-        kind    <- summary.flight.loopKind
+        kind    <- AnyLoop.parse(summary.flight.loop).toOption
         known   <- summary.scenario
       yield (kind = kind, fleet = known.fleet)
     drawn(flown.filter(_.fleet.agents.size <= MostVehicles).distinctBy(loop =>

@@ -43,12 +43,13 @@ object SummaryTables:
     )
 
   /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true
-    * ages; by the role that was decided for.
+    * ages; by the role that was decided for. Without a flight of the paper's there is nothing beside them.
     */
   def observations(set: FlightSet): TextTable =
+    val paper = Option.when(set.flights.exists(_.published.nonEmpty))("paper").toVector
     TextTable(
       Vector("<loop", "<link", "<for") ++
-        Vector("own age", "paper", "opp.'s age", "paper", "own move", "paper", "opp.'s move", "paper") ++
+        Vector("own age", "opp.'s age", "own move", "opp.'s move").flatMap(_ +: paper) ++
         Vector("true own", "opp.'s"),
       for
         summary <- set.flights
@@ -56,9 +57,9 @@ object SummaryTables:
       yield
         val published = summary.published.map(_.observedMs)
         val observed  = TimingObservation.values.toVector.flatMap: observation =>
-          Vector(
-            role.observedMs.get(observation).fold(""): ms =>
-              s"${ms.mean.brief}/${ms.median.brief}/${ms.p99.brief}",
+          role.observedMs.get(observation).fold("")(ms =>
+            s"${ms.mean.brief}/${ms.median.brief}/${ms.p99.brief}"
+          ) +: paper.map(_ =>
             published.fold("")(means => Published.ofRole(means(observation), role.role).brief)
           )
         Vector(summary.name, summary.flight.link, role.role) ++ observed ++
@@ -112,9 +113,12 @@ object SummaryTables:
     */
   def twins(set: FlightSet): TextTable =
     val columns = Twin.columns(set.twins)
+    val unit    = set.twins.flatMap(_.live.headlineOf).map(_.unit).distinct match
+      case Vector(one) => one
+      case _           => ""
     TextTable(
       Vector("<loop", "<link", "seed", "<virtual") ++ columns.map(_._3) ++
-        Vector("live m", "virtual m", "difference", "<flown otherwise"),
+        Vector(s"live $unit".trim, s"virtual $unit".trim, "difference", "<flown otherwise"),
       set.twins.map: twin =>
         val flight = twin.live.flight
         Vector(twin.live.name, flight.link, flight.seed.toString, twin.seeds) ++
@@ -148,7 +152,7 @@ object SummaryTables:
   /** How to read [[twins]]. */
   val twinsNote: String =
     "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data " +
-      "and of the time since the own last move; mean distance of the last 10 s, or a team's first measure"
+      "and of the time since the own last move; the scenario's first measure"
 
   /** `TimedOut` as `timed out`. */
   def label(kind: EventKind): String =

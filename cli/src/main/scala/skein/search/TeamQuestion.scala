@@ -66,14 +66,17 @@ final case class TeamQuestion(
   /** @return or what was expected, what came, and in which option */
   def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
-      ready <- read
+      ready <- read(plantIsTold = conditions.plant != Plant)
       _     <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
         s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} " +
           s"flights in virtual time, came some ${ready.search.expected}"
     yield ready
 
-  /** The same, however many flights it asks for. */
-  def read(using scenarios: Scenarios): Either[String, TeamSetup] =
+  /** The same, however many flights it asks for.
+    *
+    * @param plantIsTold whether a user chose it
+    */
+  def read(plantIsTold: Boolean)(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
       kind  <- scenarios.kind(scenario).left.map("--scenario: " + _)
       _     <- Expect.that(vary.nonEmpty)("--vary: expected a setting to search, for example ring-m=4..12")
@@ -91,7 +94,7 @@ final case class TeamQuestion(
       by <- TeamObjective.ofAll(objective, plain).left.map("--objective: " + _)
       // A measure's name may have a setting in it.
       _      <- Expect.each(corners)(TeamObjective.ofAll(objective, _)).left.map("--objective, --vary: " + _)
-      engine <- engine(by, plain +: corners)
+      engine <- engine(by, plain +: corners, plantIsTold)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield TeamSetup(this, kind, space, by, engine, method)
 
@@ -100,20 +103,16 @@ final case class TeamQuestion(
     *
     * @param all the scenario as it is, first, and with the bounds of what is searched
     */
-  private def engine(by: TeamObjective, all: Vector[Scenario])(using
+  private def engine(by: TeamObjective, all: Vector[Scenario], plantIsTold: Boolean)(using
       Scenarios
   ): Either[String, TeamEngine] =
     val refused = all.map(WholeFlights.plane(_, conditions.durationS)).collectFirst { case Left(why) => why }
     val moved   = Option.when(all.exists(altitudesM(_) != altitudesM(all.head))):
       "what is searched changes how high they fly, and a model of a vehicle holds at its altitude"
     refused.orElse(moved) match
-      case Some(reason) if conditions.plant != Plant =>
-        Left(
-          "--plant: expected none, since this scenario flies in virtual " +
-            s"time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
-        )
       case Some(reason) =>
         for
+          _       <- Expect.that(!plantIsTold)(WholeFlights.noPlant(reason))
           loop    <- conditions.checked
           profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
         yield TeamEngine.Whole(

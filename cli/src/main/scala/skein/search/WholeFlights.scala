@@ -4,7 +4,7 @@ import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
 import skein.loop.LoopKind
 import skein.optimise.{TeamObjective, ValueEvaluator}
-import skein.scenario.{Scenario, Track, Tracks}
+import skein.scenario.{Measure, Scenario, Track, Tracks}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
 import skein.units.*
@@ -33,10 +33,10 @@ final class WholeFlights private (
     */
   def value(scenario: Scenario, objective: TeamObjective, episode: Int): Either[String, Double] =
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
-    fly(scenario, episode).map: tracks =>
-      objective.terms.map((weight, measure) =>
-        measures(measure.name).of(tracks).fold(objective.direction.sign * WholeFlights.Never)(weight * _)
-      ).sum
+    val terms    = objective.terms.map((weight, measure) => (weight, measures(measure.name)))
+    fly(scenario, episode).map(
+      WholeFlights.sum(terms, _).getOrElse(objective.direction.sign * WholeFlights.Never)
+    )
 
   /** A line that says what flies, and why nothing faster does. */
   def engine: String = s"$by: $why"
@@ -54,9 +54,16 @@ final class WholeFlights private (
     )
 
 object WholeFlights:
-  /** What an episode counts for that never comes to a measure, in the measure's unit: worse than all that do.
+  /** What an episode counts for that never comes to one of its measures, in the objective's unit: worse, and
+    * further off the truth, than all that do.
     */
   val Never = 1e6
+
+  /** @return what a flight comes to, by weights and measures; none where it never comes to one of them
+    */
+  def sum(terms: Vector[(Double, Measure)], flown: Tracks): Option[Double] =
+    val values = terms.flatMap((weight, measure) => measure.of(flown).map(weight * _))
+    Option.when(values.size == terms.size)(values.sum)
 
   /** Flights in virtual time that a search may take: a day of them, at one a second. */
   val MostVirtual = 100_000
@@ -153,6 +160,13 @@ object WholeFlights:
         )
         .map(_.tracks)
   )
+
+  /** Why no plant is to be told where flights are virtual.
+    *
+    * @param reason why nothing else flies them
+    */
+  def noPlant(reason: String): String =
+    s"--plant: expected none, since this scenario flies in virtual time by $SimulatorsQuadrotor: $reason"
 
   /** What flies in virtual time, for people. */
   val SimulatorsQuadrotor = "the simulator's quadrotor"

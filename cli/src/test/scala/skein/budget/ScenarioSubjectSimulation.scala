@@ -1,7 +1,7 @@
 package skein.budget
 
 import skein.scenario.*
-import skein.search.Conditions
+import skein.search.{Conditions, WholeFlights}
 import skein.signal.LatencyDistribution
 import skein.testing.Optimised
 import skein.units.*
@@ -60,11 +60,12 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
 
   test("a measure that a flight never comes to is further off than anything"):
     val never = subject(Drift(toM = 1000), Some("arrives"), Conditions("stream", "drag", 100, 10))
-    assertEquals(at(never, 0), Double.PositiveInfinity)
-    assert(BudgetSweep(never, BudgetAxes(Vector(0), Vector(0)), Tolerance.Within(1), Some(1)).map(
+    assertEquals(at(never, 0), WholeFlights.Never)
+    val swept = BudgetSweep(never, BudgetAxes(Vector(0), Vector(0)), Tolerance.Within(1), Some(1))
+    assert(clue(swept.map(
       _ => (),
       () => false
-    ).isLeft)
+    )).left.exists(_.contains("comes to no number where the world")))
 
   test("a truth of 0 has no shares, but distances"):
     assert(Tolerance.Share(0.05).per(0).left.exists(_.contains("--within")))

@@ -204,6 +204,15 @@ class TablesSuite extends munit.FunSuite:
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
     assertEquals(TimingObservation.values.size, paper.size)
 
+  test("without a flight of the paper's nothing stands beside what was observed"):
+    val slope = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
+    val other = slope.copy(heading =
+      slope.heading.copy(flight = slope.heading.flight.copy(scenario = "chase"))
+    )
+    val table = SummaryTables.observations(Report.of(Seq(other)))
+    assert(!table.header.contains("paper"), table.header)
+    assert(table.rows.nonEmpty && table.rows.forall(_.size == table.header.size))
+
   test("the page tells what was flown: parameters in their units, and when it began"):
     val page =
       HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)

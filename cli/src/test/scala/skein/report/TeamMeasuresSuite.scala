@@ -1,6 +1,8 @@
 package skein.report
 
+import skein.figures.TwinFigure
 import skein.measure.FlightSummary
+import skein.plot.Mark
 import skein.scenario.*
 import skein.record.*
 import skein.signal.{Kinematics, Stamped}
@@ -64,6 +66,18 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "off ring m"), math.sqrt(6.0 / 4), 1e-9)
     assertEqualsDouble(value(result, "gap °"), 90, 1e-9)
     assertEqualsDouble(value(result, "surrounded after s"), 3.95, 0.06)
+
+  test("a live flight and its twin are told apart by the scenario's first measure, in its unit"):
+    val scenario = Surround(vehicles = 5)
+    val virtual  = flown(scenario, 20)((vehicle, _) => (vehicle * 6.0, 0))
+      .copy(decisions = SyntheticFlight("stream", "none", seed = 1, seconds = 20).decisions)
+    val live = virtual.copy(heading =
+      virtual.heading.copy(flight = virtual.heading.flight.copy(clock = "real"))
+    )
+    val measure = scenario.measures.head
+    val titles  = TwinFigure(Report.of(Seq(live, virtual))).get.shapes.collect:
+      case text: Mark.Text if text.bold => text.content
+    assert(clue(titles).exists(_.contains(s": ${measure.name} ")))
 
   test("an evader outside its ring is never surrounded"):
     val result = resultOf(flown(Surround(vehicles = 4), 12)((vehicle, _) =>

@@ -3,17 +3,23 @@ package skein.scenario
 import skein.forecast.Structure
 import skein.policy.PolicyFamily
 
-/** The kinds of scenarios, the families of policies, and the structures of plants, that a program knows by
-  * name; needed wherever settings or recordings are read.
+/** A control loop of a program's own, by its name in settings and recordings. */
+trait NamedLoop:
+  def name: String
+
+/** The kinds of scenarios, the families of policies, the structures of plants, and the loops, that a program
+  * knows by name; needed wherever settings or recordings are read.
   *
   * @param kinds the first is flown where none is named
   * @param families of policies, besides Skein's
   * @param ownStructures of plants, besides Skein's
+  * @param loops besides Skein's
   */
 final case class Scenarios(
     kinds: Vector[ScenarioKind[?]],
     families: Vector[PolicyFamily] = Vector.empty,
-    ownStructures: Vector[Structure] = Vector.empty
+    ownStructures: Vector[Structure] = Vector.empty,
+    loops: Vector[NamedLoop] = Vector.empty
 ):
   require(kinds.nonEmpty, "at least one kind of scenario is needed")
   require(names.distinct.size == names.size, s"every kind needs a name of its own: ${names.mkString(", ")}")
@@ -26,6 +32,11 @@ final case class Scenarios(
   require(
     labels.distinct.size == labels.size,
     s"every structure needs a label of its own: ${labels.mkString(", ")}"
+  )
+
+  require(
+    loops.map(_.name).distinct.size == loops.size,
+    s"every loop needs a name of its own: ${loops.map(_.name).mkString(", ")}"
   )
 
   def names: Vector[String] = kinds.map(_.name)

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.*
 import skein.link.*
-import skein.loop.LoopKind
+import skein.loop.{AnyLoop, LoopKind}
 import skein.record.*
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
 import skein.settings.{FlightPlan, FlySettings}
@@ -155,7 +155,7 @@ object AirSimFleet:
   val askTimeout: Span = Span.ofMillis(500)
 
   /** Of the client that flies a loop. */
-  def rpcSettings(loop: LoopKind): RpcSettings = loop match
+  def rpcSettings(loop: AnyLoop): RpcSettings = loop match
     // Each command must reach the simulator before the step that follows it: one ordered connection.
     case LoopKind.Paused => RpcSettings(controlConnections = 1)
     case _               => RpcSettings()

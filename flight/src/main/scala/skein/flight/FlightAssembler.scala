@@ -149,7 +149,7 @@ final class FlightAssembler(
         Right(FlightAssembly(
           plan,
           flight,
-          RunningGraph(team.meters),
+          RunningGraph(team.meters, flight.streams),
           team.hold,
           monitor,
           watchdog,

@@ -10,12 +10,14 @@ final class FlightMonitor(recorder: Recorder) extends Recorder:
   @volatile private var newest: Option[DecisionRow] = None
   private val heard                                 = AtomicLong(Long.MinValue)
   @volatile private var lastBroken                  = Option.empty[Event]
+  @volatile private var isOfTeams                   = false
 
   def offer(record: Record): Unit =
     record match
       case decision: DecisionRow => newest = Some(decision)
       case reading: ReadingRow   => val _ = heard.accumulateAndGet(reading.state.receivedAt.toNanos, math.max)
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
+      case _: Sighting                                          => isOfTeams = true
       case _                                                    => ()
     recorder.offer(record)
 
@@ -28,8 +30,8 @@ final class FlightMonitor(recorder: Recorder) extends Recorder:
   /** When and why a connection was lost last, or could not be opened. */
   def broken: Option[Event] = lastBroken
 
-  /** Distance between a vehicle and its opponent at the newest decision, and how old the newest reading is
-    * now.
+  /** Distance between a vehicle and its opponent at the newest decision, unless that regards others, too; and
+    * how old the newest reading is now.
     */
   def lastSeen(now: Instant): Option[LastSeen] =
     for
@@ -38,12 +40,9 @@ final class FlightMonitor(recorder: Recorder) extends Recorder:
     yield
       // From when physics was sampled until the reading came.
       val underWay = decision.trueAge.fold(Span.Zero)(_.own - decision.observations.ownAge)
-      LastSeen(
-        Metres(
-          decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)
-        ),
-        now.since(heard) + underWay
-      )
+      val apart    =
+        decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)
+      LastSeen(Option.unless(isOfTeams)(Metres(apart)), now.since(heard) + underWay)
 
 /** What is known of a flight, in two numbers. */
-final case class LastSeen(distance: Metres, age: Span)
+final case class LastSeen(distance: Option[Metres], age: Span)

@@ -21,7 +21,7 @@ import skein.units.*
   */
 final case class PortFlight(
     id: String,
-    loop: LoopKind | OwnLoop,
+    loop: AnyLoop,
     scenario: Scenario,
     duration: Span,
     clockKind: ClockKind,

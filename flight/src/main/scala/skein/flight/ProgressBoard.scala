@@ -17,9 +17,9 @@ final case class FlightProgress(
 ):
   def text: String =
     val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
-    val shown   = seen.map(seen =>
-      s"${seen.distance.value.fixed(1, width = 5)} m apart, ${seen.age.toMillis.fixed(0, width = 3)} ms old"
-    )
+    val shown   = seen.map: seen =>
+      seen.distance.fold("")(apart => s"${apart.value.fixed(1, width = 5)} m apart, ") +
+        s"${seen.age.toMillis.fixed(0, width = 3)} ms old"
     silence.orElse(shown).getOrElse("")
 
 /** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */

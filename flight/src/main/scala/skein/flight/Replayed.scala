@@ -1,7 +1,7 @@
 package skein.flight
 
 import java.nio.file.Path
-import skein.loop.Replay
+import skein.loop.{AnyLoop, Replay}
 import skein.measure.RecordedScenario
 import skein.record.*
 import skein.scenario.Scenarios
@@ -12,8 +12,8 @@ import skein.units.Expect
   *
   * @param decisions that the recording holds
   * @param decidedAgain the first difference when the recorded readings and moves are decided upon again
-  * @param flownAgain for a flight in virtual time, of a loop of ours and with the built-in simulator: what
-  *   came of flying it again, physics, network and all
+  * @param flownAgain for a flight in virtual time, of a loop that the program knows and with the built-in
+  *   simulator: what came of flying it again, physics, network and all
   */
 final case class Replayed(
     id: String,
@@ -35,10 +35,11 @@ object Replayed:
     for
       recording <- RecordingReader.read(file).left.map(_.message)
       _ <- Expect.that(recording.heading.vehicles.nonEmpty)("it has no vehicles, so nothing was decided")
-      replayed <- if recording.flight.loopKind.isDefined then ofOurs(file, recording) else ofOwn(recording)
+      replayed <- if AnyLoop.parse(recording.flight.loop).isRight then ofKnown(file, recording)
+      else ofUnknown(recording)
     yield replayed
 
-  private def ofOurs(file: Path, recording: Recording)(using Scenarios): Either[String, Replayed] =
+  private def ofKnown(file: Path, recording: Recording)(using Scenarios): Either[String, Replayed] =
     for
       flown <- RecordedPlan.of(recording)
       decided = Replay(flown.fleet, recording, flown.settings.planningByModel).firstDifference
@@ -48,8 +49,8 @@ object Replayed:
         case Some(result) => result.map(Some(_))
     yield Replayed(flight.id, recording.decisions.size, decided, again)
 
-  /** Its graph is not on record, so it is decided again and not flown again. */
-  private def ofOwn(recording: Recording)(using Scenarios): Either[String, Replayed] =
+  /** Its loop's graph is not on record, so it is decided again and not flown again. */
+  private def ofUnknown(recording: Recording)(using Scenarios): Either[String, Replayed] =
     for scenario <- RecordedScenario.of(recording)
     yield
       val decided = Replay(scenario.fleet, recording).firstDifference

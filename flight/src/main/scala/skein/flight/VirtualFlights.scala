@@ -5,7 +5,7 @@ import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
-import skein.loop.{LoopKind, FlightOutcome, PlanSettings}
+import skein.loop.{AnyLoop, FlightOutcome, PlanSettings}
 import skein.measure.RecordedTracks
 import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
 import skein.record.{Digest, MemoryRecorder}
@@ -101,7 +101,7 @@ object VirtualFlights:
     */
   def result(
       scenario: Scenario,
-      loop: LoopKind,
+      loop: AnyLoop,
       link: LatencyProfile,
       seed: Long,
       period: Span = Span.ofMillis(100),

@@ -2,7 +2,7 @@ package skein.loop
 
 import org.apache.pekko.Done
 import org.apache.pekko.actor.{Actor, ActorSystem, Props}
-import org.apache.pekko.stream.{KillSwitches, Materializer, SharedKillSwitch}
+import org.apache.pekko.stream.{KillSwitches, Materializer, SharedKillSwitch, SystemMaterializer}
 import org.apache.pekko.stream.scaladsl.RunnableGraph
 import scala.concurrent.{Future, Promise}
 import skein.port.SteppedTime
@@ -25,8 +25,14 @@ enum FlightOutcome:
 
 /** A flight under way. Whatever ends it, the vehicles are told to hover and every call has ended when
   * `outcome` completes.
+  *
+  * @param streams what its graph runs on, as soon as it does
   */
-final class Flight private (stopping: Promise[FlightOutcome], val outcome: Future[FlightOutcome]):
+final class Flight private (
+    stopping: Promise[FlightOutcome],
+    val outcome: Future[FlightOutcome],
+    private[skein] val streams: Future[Materializer]
+):
 
   /** How it ends, as soon as that is decided: before the vehicles hover. */
   def ending: Future[FlightOutcome] = stopping.future
@@ -53,7 +59,7 @@ object Flight:
     * @param onTime how it has ended when its time is over
     */
   def start(
-      loop: LoopKind | OwnLoop,
+      loop: AnyLoop,
       team: Team,
       time: Option[SteppedTime],
       duration: Span,
@@ -66,12 +72,15 @@ object Flight:
     import system.dispatcher
     val isPaused = loop == LoopKind.Paused
     require(!isPaused || time.isDefined, "paused needs a simulator whose time passes in steps")
-    val switch   = KillSwitches.shared("flight")
-    val stopping = Promise[FlightOutcome]()
-    val running  = loop match
+    val switch             = KillSwitches.shared("flight")
+    val stopping           = Promise[FlightOutcome]()
+    val (running, streams) = loop match
       case own: OwnLoop   => runOwn(own, team, switch, stopping.future)
       case kind: LoopKind =>
-        graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()
+        val here = SystemMaterializer(system).materializer
+        val run  =
+          graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()(using here)
+        (run, Future.successful(here))
 
     recorder.failure.foreach(error => stopping.trySuccess(FlightOutcome.Failed(error.message)))
     val timer = Option.when(!isPaused):
@@ -89,7 +98,7 @@ object Flight:
         case _: LoopKind if failure.isEmpty => Future.unit
         case _                              => team.hoverAll()
       hovering.transformWith(_ => stopping.future)
-    Flight(stopping, landed.map(recorded(recorder, _)))
+    Flight(stopping, landed.map(recorded(recorder, _)), streams)
 
   /** The last answers come after the flight's time is over; where they could not be kept, it has failed all
     * the same.
@@ -107,7 +116,7 @@ object Flight:
       stopping: Future[FlightOutcome]
   )(using
       system: ActorSystem
-  ): Future[Done] =
+  ): (running: Future[Done], streams: Future[Materializer]) =
     import system.dispatcher
     val started   = Promise[Materializer]()
     val brokenOff = Promise[Done]()
@@ -121,7 +130,7 @@ object Flight:
         system.stop(streams)
         brokenOff.tryFailure(OwnLoop.BrokenOff(own.name)): Unit
       ended.onComplete(_ => breakingOff.cancel())
-    ended.andThen(_ => system.stop(streams))
+    (ended.andThen(_ => system.stop(streams)), started.future)
 
   /** Its streams end with it. */
   private final class Streams(started: Promise[Materializer]) extends Actor:

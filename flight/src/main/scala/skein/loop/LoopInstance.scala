@@ -14,7 +14,7 @@ import skein.units.*
 object LoopInstance:
 
   /** Absent for `paused`, which is no graph but a sequence of steps. */
-  def graph(loop: LoopKind | OwnLoop, fleet: Fleet, settings: LoopSettings = LoopSettings())(using
+  def graph(loop: AnyLoop, fleet: Fleet, settings: LoopSettings = LoopSettings())(using
       system: ActorSystem
   ): Future[Option[LoopGraph]] =
     import system.dispatcher
@@ -23,7 +23,7 @@ object LoopInstance:
       val ports   = fleet.agents.map(agent => Silent(agent.policy.sensors))
       val team    = Team(fleet, ports, Clock.system, Forgetting, settings)
       val flight  = Flight.start(loop, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
-      val running = RunningGraph(team.meters)
+      val running = RunningGraph(team.meters, flight.streams)
       // A graph that has just been started tells nothing yet.
       UntilCertain(running.shape(), MostAsked, AskEvery)(_.isDefined).andThen(_ => flight.stop())
 

@@ -6,7 +6,26 @@ import org.apache.pekko.stream.SharedKillSwitch
 import org.apache.pekko.stream.scaladsl.RunnableGraph
 import scala.concurrent.Future
 import skein.record.LoopKind
+import skein.scenario.{NamedLoop, Scenarios}
 import skein.units.Span
+
+/** A loop that flies: one of ours, or a user's own. */
+type AnyLoop = LoopKind | OwnLoop
+
+object AnyLoop:
+  /** Of ours, and of the program's own. */
+  def names(using scenarios: Scenarios): Vector[String] =
+    LoopKind.values.toVector.map(_.label) ++ scenarios.loops.map(_.name)
+
+  /** @return the loop of this name, or what was expected and came
+    */
+  def parse(name: String)(using scenarios: Scenarios): Either[String, AnyLoop] =
+    scenarios.loops
+      .collectFirst { case own: OwnLoop if own.name == name => own }
+      .toRight(())
+      .orElse(LoopKind.parse(name))
+      .left
+      .map(_ => s"no loop '$name': expected one of ${names.mkString(", ")}")
 
 /** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, flown in
   * virtual time and replayed as ours are; [[StreamLoop]] is written with the same operators and shows how.
@@ -19,7 +38,7 @@ import skein.units.Span
 final class OwnLoop(
     val name: String,
     val graph: ActorSystem ?=> (Team, SharedKillSwitch) => RunnableGraph[Future[Done]]
-):
+) extends NamedLoop:
   require(
     name.matches("[a-z][a-z0-9-]{0,39}"),
     s"a loop's name: expected up to 40 small letters, digits and dashes, came '$name'"
@@ -36,7 +55,7 @@ object OwnLoop:
   final class BrokenOff(name: String)
       extends RuntimeException(s"the loop $name had not ended ${Grace.toSeconds.round} s after its flight")
 
-  extension (loop: LoopKind | OwnLoop)
+  extension (loop: AnyLoop)
     /** What recordings call it. */
     def label: String = loop match
       case kind: LoopKind => kind.label

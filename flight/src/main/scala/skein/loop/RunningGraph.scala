@@ -1,8 +1,8 @@
 package skein.loop
 
-import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.Materializer
 import org.apache.pekko.stream.snapshot.{MaterializerState, RunningInterpreter}
-import scala.concurrent.Future
+import scala.concurrent.{ExecutionContext, Future}
 
 /** The parts of a graph and what leads from one to another, both by names.
   *
@@ -34,14 +34,16 @@ object LoopGraph:
     // The interpreter has no order of its own.
     LoopGraph(names.flatten.distinct.sorted, edges.distinct.sortBy(edge => (edge.from, edge.to)))
 
-/** The graph of a loop under way, as its interpreter runs it: the parts that bear one of these meters. */
-final class RunningGraph(val meters: StageMeters)(using system: ActorSystem):
-  import system.dispatcher
+/** The graph of a loop under way, as its interpreter runs it: the parts that bear one of these meters.
+  *
+  * @param streams what it runs on, as soon as it does
+  */
+final class RunningGraph(val meters: StageMeters, streams: Future[Materializer])(using ExecutionContext):
 
   /** Asks the interpreter. Absent while the graph does not run. */
   def shape(): Future[Option[LoopGraph]] =
-    MaterializerState
-      .streamSnapshots(system)
+    streams
+      .flatMap(MaterializerState.streamSnapshots)
       .map(_.iterator.flatMap(_.activeInterpreters).map(shapeOf).find(_.stages.nonEmpty))
 
   private def shapeOf(running: RunningInterpreter): LoopGraph =

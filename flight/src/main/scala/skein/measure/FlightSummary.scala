@@ -2,7 +2,7 @@ package skein.measure
 
 import skein.policy.Role
 import skein.record.*
-import skein.scenario.{Result, Scenario, Scenarios, Track, Tracks}
+import skein.scenario.{Measure, Result, Scenario, Scenarios, Track, Tracks}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -76,9 +76,10 @@ final case class FlightSummary(
   def flownS: Double =
     distance.map(_.points.last._1).orElse(result.map(_.tracks.lastS)).getOrElse(0.0)
 
-  /** What stands for the flight when it is compared with others: its scenario's first measure. Nothing, where
-    * it was cut short or paused.
-    */
+  /** The measure that stands for the flight when it is compared with others: its scenario's first. */
+  def headlineOf: Option[Measure] = scenario.flatMap(_.measures.headOption)
+
+  /** What it comes to. Nothing, where the flight was cut short or paused. */
   def headline: Option[Double] =
     result.filter(_ => cutShort.isEmpty && paused.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
 

@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
-import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
+import skein.loop.{AnyLoop, Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
@@ -30,7 +30,7 @@ import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
   * @param plant what the built-in simulator's multirotors are
   */
 final case class FlySettings(
-    loops: List[LoopKind],
+    loops: List[AnyLoop],
     links: List[LatencyProfile],
     duration: Span,
     period: Span,
@@ -178,7 +178,7 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
   */
 final case class FlightPlan(
     id: String,
-    loop: LoopKind,
+    loop: AnyLoop,
     link: LatencyProfile,
     seed: Long,
     policy: Option[ChosenPolicy] = None,
@@ -279,7 +279,7 @@ object FlySettings:
     Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
 
   /** `paused` waits with its simulator stopped. */
-  def decidedElsewhere(loop: LoopKind): Boolean = loop != LoopKind.Paused
+  def decidedElsewhere(loop: AnyLoop): Boolean = loop != LoopKind.Paused
 
   /** An answer has to come behind the search for it. */
   private def lateMistake(settings: FlySettings): Option[String] =
@@ -343,7 +343,7 @@ object FlySettings:
   private def unread[A](value: A): ConfigReader[A] = new ConfigReader[A] with ReadsMissingKeys:
     def from(cursor: ConfigCursor): ConfigReader.Result[A] = Right(value)
 
-  private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
+  private given (using Scenarios): ConfigReader[AnyLoop] = parsed("loop", AnyLoop.parse)
 
   private given ConfigReader[LatencyProfile] =
     parsed("latency profile", text => LatencyProfile.parse(text, TextFile.read).left.map(_.message))

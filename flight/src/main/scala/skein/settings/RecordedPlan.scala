@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
+import skein.loop.{AnyLoop, Fallback, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
@@ -97,7 +97,7 @@ object RecordedPlan:
       if parameters.contains(name) then parameter(name, expected)(parse).map(Some(_)) else Right(None)
 
     for
-      loop     <- LoopKind.parse(flight.loop)
+      loop     <- AnyLoop.parse(flight.loop)
       link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
       now      <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
       older    <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)

@@ -2,14 +2,15 @@ package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
-import org.apache.pekko.stream.{Attributes, KillSwitches}
-import scala.concurrent.Await
+import org.apache.pekko.stream.{Attributes, KillSwitches, SystemMaterializer}
+import scala.concurrent.{Await, Future}
 import scala.concurrent.duration.*
 
 class RunningGraphLiveSuite extends munit.FunSuite:
 
   test("the named parts of a graph that runs, and what leads where, are told by its interpreter"):
     given system: ActorSystem = ActorSystem("graph")
+    import system.dispatcher
     try
       val (mine, others)           = (StageMeters(), StageMeters())
       def run(meters: StageMeters) =
@@ -19,7 +20,7 @@ class RunningGraphLiveSuite extends munit.FunSuite:
         )).to(Sink.ignore).run()
       val switches = Vector(others, mine).map(run)
       // A stream that has just been started tells nothing yet.
-      val graph = RunningGraph(mine)
+      val graph = RunningGraph(mine, Future.successful(SystemMaterializer(system).materializer))
       val found = Iterator.continually(Await.result(graph.shape(), 10.seconds)).flatten.next()
       assertEquals((found.stages.toSet, found.edges), (Set("one", "two"), Vector((from = "one", to = "two"))))
       switches.foreach(_.shutdown())

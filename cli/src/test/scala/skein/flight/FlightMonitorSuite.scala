@@ -1,0 +1,18 @@
+package skein.flight
+
+import skein.record.{MemoryRecorder, Sighting}
+import skein.report.SyntheticFlight
+import skein.units.*
+
+class FlightMonitorSuite extends munit.FunSuite:
+
+  test("progress tells how far apart two are, and of a team the age alone"):
+    val flown   = SyntheticFlight("stream", "none", seed = 1, seconds = 12)
+    val monitor = FlightMonitor(MemoryRecorder(flown.heading))
+    val last    = flown.decisions.last
+    def text    = FlightProgress("one", Span.ofSeconds(12), monitor.lastSeen(last.decidedAt)).text
+    assertEquals(text, "")
+    (flown.readings ++ flown.decisions).foreach(monitor.offer)
+    assert(clue(text).matches(" *[0-9.]+ m apart, +[0-9]+ ms old"))
+    monitor.offer(Sighting(last.vehicle, last.sequence, "Third", 1, None))
+    assert(clue(text).matches(" *[0-9]+ ms old"))
