@@ -10,15 +10,8 @@ import skein.units.*
   */
 trait AttitudeMoves:
 
-  /** Four numbers and how long. */
-  protected def attitude(
-      method: String,
-      first: Double,
-      second: Double,
-      third: Double,
-      fourth: Double,
-      duration: Span
-  ): Future[Either[RpcError, Boolean]]
+  /** Four numbers, for how long. */
+  protected def attitude(method: String, duration: Span, numbers: Double*): Future[Either[RpcError, Boolean]]
 
   /** An altitude goal, world NED, in the vehicle's own frame. */
   protected def ownDown(down: Metres): Double
@@ -31,7 +24,7 @@ trait AttitudeMoves:
       down: Metres,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude("moveByRollPitchYawZ", roll.value, pitch.value, yaw.value, ownDown(down), duration)
+    attitude("moveByRollPitchYawZ", duration, roll.value, pitch.value, yaw.value, ownDown(down))
 
   /** Holds an attitude at a throttle from 0 to 1. */
   def moveByRollPitchYawThrottle(
@@ -41,7 +34,7 @@ trait AttitudeMoves:
       throttle: Double,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude("moveByRollPitchYawThrottle", roll.value, pitch.value, yaw.value, throttle, duration)
+    attitude("moveByRollPitchYawThrottle", duration, roll.value, pitch.value, yaw.value, throttle)
 
   /** Holds roll, pitch and altitude, and turns. `down` is NED, in the world's frame, m. */
   def moveByRollPitchYawRateZ(
@@ -51,7 +44,7 @@ trait AttitudeMoves:
       down: Metres,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude("moveByRollPitchYawrateZ", roll.value, pitch.value, yawRateRadPerS, ownDown(down), duration)
+    attitude("moveByRollPitchYawrateZ", duration, roll.value, pitch.value, yawRateRadPerS, ownDown(down))
 
   /** Holds roll and pitch at a throttle from 0 to 1, and turns. */
   def moveByRollPitchYawRateThrottle(
@@ -61,7 +54,7 @@ trait AttitudeMoves:
       throttle: Double,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude("moveByRollPitchYawrateThrottle", roll.value, pitch.value, yawRateRadPerS, throttle, duration)
+    attitude("moveByRollPitchYawrateThrottle", duration, roll.value, pitch.value, yawRateRadPerS, throttle)
 
   /** Turns about the body's axes and holds an altitude. `down` is NED, in the world's frame, m. */
   def moveByAngleRatesZ(
@@ -71,7 +64,7 @@ trait AttitudeMoves:
       down: Metres,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude("moveByAngleRatesZ", rollRateRadPerS, pitchRateRadPerS, yawRateRadPerS, ownDown(down), duration)
+    attitude("moveByAngleRatesZ", duration, rollRateRadPerS, pitchRateRadPerS, yawRateRadPerS, ownDown(down))
 
   /** Turns about the body's axes at a throttle from 0 to 1. */
   def moveByAngleRatesThrottle(
@@ -81,14 +74,8 @@ trait AttitudeMoves:
       throttle: Double,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude(
-      "moveByAngleRatesThrottle",
-      rollRateRadPerS,
-      pitchRateRadPerS,
-      yawRateRadPerS,
-      throttle,
-      duration
-    )
+    val rates = Seq(rollRateRadPerS, pitchRateRadPerS, yawRateRadPerS)
+    attitude("moveByAngleRatesThrottle", duration, rates :+ throttle*)
 
   /** Controls of the rotors themselves; no controller keeps the vehicle upright. */
   def moveByMotorPwms(
@@ -98,4 +85,4 @@ trait AttitudeMoves:
       rearRight: Double,
       duration: Span
   ): Future[Either[RpcError, Boolean]] =
-    attitude("moveByMotorPWMs", frontRight, rearLeft, frontLeft, rearRight, duration)
+    attitude("moveByMotorPWMs", duration, frontRight, rearLeft, frontLeft, rearRight)

@@ -196,13 +196,9 @@ final class Multirotor(
 
   protected def attitude(
       method: String,
-      first: Double,
-      second: Double,
-      third: Double,
-      fourth: Double,
-      duration: Span
-  ): Future[Either[RpcError, Boolean]] =
-    move(method, duration, real(first), real(second), real(third), real(fourth), seconds(duration))
+      duration: Span,
+      numbers: Double*
+  ): Future[Either[RpcError, Boolean]] = move(method, duration, numbers.map(real) :+ seconds(duration)*)
 
   private def along(speed: MetresPerSecond, timeout: Span, yaw: Yaw, lookahead: Lookahead): Seq[Msg] =
     Seq(real(speed.value), seconds(timeout), Int32(yaw.drivetrain), writeMsg(yaw.mode)) ++ lookahead.params
