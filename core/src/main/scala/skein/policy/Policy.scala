@@ -31,6 +31,11 @@ trait Policy extends PlanarPolicy:
       elapsedS: Double
   ): Double
 
+  /** The same from an observation. */
+  final def headingFor(seen: PlanarObservation): Double =
+    import seen.*
+    heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
+
   /** This policy as somebody may take it to be who knows it roughly, such as a planner against it: its
     * numbers off by what is drawn. Known exactly unless a policy says otherwise.
     *
@@ -49,16 +54,4 @@ trait Policy extends PlanarPolicy:
   def start: Any = ()
 
   def planar(seen: Observation, memory: Any): (Planar, Any) =
-    val (here, there) = (seen.own.kinematics, seen.vehicles(seen.opponent).kinematics)
-    val toOpponent    = there.positionNed - here.positionNed
-    val closing       = there.velocityNed - here.velocityNed
-    val chosenRad     = heading(
-      toOpponent.x,
-      toOpponent.y,
-      closing.x,
-      closing.y,
-      seen.headings(seen.self).value,
-      seen.headings(seen.opponent).value,
-      seen.elapsed.toSeconds
-    )
-    (Planar(Radians(chosenRad), None), memory)
+    (Planar(Radians(headingFor(PlanarObservation.of(seen))), None), memory)

@@ -1,0 +1,55 @@
+package skein.policy
+
+/** What an [[ObservingPolicy]] sees of its opponent. North and east, m and m/s; the first seven are the
+  * arguments of [[Policy.heading]].
+  *
+  * @param ownAgeS how old the reading of the own vehicle is, s
+  * @param opponentAgeS the same of the opponent's
+  */
+final case class PlanarObservation(
+    dxM: Double,
+    dyM: Double,
+    dvxMps: Double,
+    dvyMps: Double,
+    ownHeadingRad: Double,
+    opponentHeadingRad: Double,
+    elapsedS: Double,
+    ownAgeS: Double,
+    opponentAgeS: Double
+):
+  /** What learners see, in the frame whose x-axis is the own heading commanded last: the opponent's place
+    * ahead and to the right, m; its velocity minus the own one, m/s; cosine and sine of its heading from the
+    * own one; the time since the own last decision, the age of the own reading and of the opponent's, s.
+    */
+  def fromOwnHeading: Array[Double] =
+    val cos     = StrictMath.cos(ownHeadingRad)
+    val sin     = StrictMath.sin(ownHeadingRad)
+    val bearing = opponentHeadingRad - ownHeadingRad
+    val into    = Array.ofDim[Double](9)
+    into(0) = dxM * cos + dyM * sin
+    into(1) = dyM * cos - dxM * sin
+    into(2) = dvxMps * cos + dvyMps * sin
+    into(3) = dvyMps * cos - dvxMps * sin
+    into(4) = StrictMath.cos(bearing)
+    into(5) = StrictMath.sin(bearing)
+    into(6) = elapsedS
+    into(7) = ownAgeS
+    into(8) = opponentAgeS
+    into
+
+object PlanarObservation:
+  def of(seen: Observation): PlanarObservation =
+    val (own, opponent) = (seen.own, seen.vehicles(seen.opponent))
+    val toOpponent      = opponent.kinematics.positionNed - own.kinematics.positionNed
+    val closing         = opponent.kinematics.velocityNed - own.kinematics.velocityNed
+    PlanarObservation(
+      toOpponent.x,
+      toOpponent.y,
+      closing.x,
+      closing.y,
+      seen.headings(seen.self).value,
+      seen.headings(seen.opponent).value,
+      seen.elapsed.toSeconds,
+      own.age.toSeconds,
+      opponent.age.toSeconds
+    )
