@@ -1,7 +1,8 @@
 package skein.simulator
 
 import skein.airsim.wire.*
-import upack.Binary
+import skein.rpc.Encoded
+import upack.{Binary, Msg}
 import upickle.default.writeMsg
 
 /** Functions of cameras, and of images. */
@@ -84,26 +85,21 @@ private[simulator] object CameraMethods:
         simulated(simulation, name): (index, _) =>
           if external then CallOutcome.Threw("No external cameras exist")
           else
-            Shots.of(simulation, index, requests) match
-              case Left(refusal) => CallOutcome.Threw(refusal)
-              case Right(shots)  => CallOutcome.Draws(() => ImageResponse.encode(shots.take()))
+            drawn(Shots.of(simulation, index, requests))(shots => ImageResponse.encode(shots.take()))
     ,
     many[(String, Int, String, Boolean)]("simGetImage"):
       case (simulation, (camera, kind, name, external)) =>
         of(simulation, camera, name, external): (index, camera) =>
           val request = ImageRequest(camera, kind, pixels_as_float = false, compress = true)
-          Shots.of(simulation, index, Seq(request)) match
-            case Left(refusal) => CallOutcome.Threw(refusal)
-            case Right(shots)  => CallOutcome.Draws(() => Binary(shots.take().head.image_data_uint8))
+          drawn(Shots.of(simulation, index, Seq(request)))(shots =>
+            Binary(shots.take().head.image_data_uint8)
+          )
     ,
     many[(String, Int, String, Boolean)]("simGetDetections"):
       case (simulation, (camera, kind, name, external)) =>
         of(simulation, camera, name, external): (index, camera) =>
-          Shots.kindOf(kind) match
-            case Left(refusal) => CallOutcome.Threw(refusal)
-            case Right(_)      =>
-              val found = Detections.of(simulation, index, camera, kind)
-              CallOutcome.Draws(() => writeMsg(found()))
+          drawn(Shots.kindOf(kind).map(_ => Detections.of(simulation, index, camera, kind))): found =>
+            writeMsg(found())
     ,
     many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
       case (simulation, (camera, kind, mesh, name, external)) =>
@@ -155,6 +151,10 @@ private[simulator] object CameraMethods:
     many[(Boolean, String, String, Boolean)](method):
       case (simulation, (_, camera, name, external)) => of(simulation, camera, name, external)((_, _) => Nil)
 
+  /** What is ready to be drawn, beside the simulation. */
+  private def drawn[A](ready: Either[String, A])(take: A => Msg | Encoded): CallOutcome =
+    ready.fold(CallOutcome.Threw(_), one => CallOutcome.Draws(() => take(one)))
+
   private def positive(what: String, value: Float, largest: Float)(run: => CallOutcome): CallOutcome =
     if value > 0 && value <= largest then run
     else CallOutcome.Threw(s"$what is above 0 and at most $largest, not $value")
@@ -172,10 +172,10 @@ private[simulator] object CameraMethods:
       if kind < 0 || kind >= ImageTypes then
         CallOutcome.Threw(s"an image type is 0 to ${ImageTypes - 1}, not $kind")
       else
-        change(simulation.cameras.detection(index, camera, kind)) match
-          case Left(refusal) => CallOutcome.Threw(refusal)
-          case Right(filter) =>
-            done(simulation.cameras.setDetection(index, camera, kind, filter))
+        change(simulation.cameras.detection(index, camera, kind)).fold(
+          CallOutcome.Threw(_),
+          filter => done(simulation.cameras.setDetection(index, camera, kind, filter))
+        )
 
   /** The vehicle's index and the camera's own name. AirSim ends itself on a camera that is not there. */
   private def of(simulation: Simulated, camera: String, name: String, external: Boolean)(

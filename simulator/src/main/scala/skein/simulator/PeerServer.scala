@@ -51,16 +51,22 @@ private[simulator] object PeerPorts:
       case AutopilotKind.Betaflight =>
         PeerPorts(datagrams = ports.map(_.copy(tells = Some(settings.stateTo), isOneWay = true)))
 
+/** Somebody who speaks to vehicles.
+  *
+  * @param systems the vehicles, from 1; none is all
+  * @param isDatagrams whether by datagrams, and not by a stream
+  * @param out what goes to it
+  */
+private[simulator] final case class JoinedPeer(
+    channel: Long,
+    systems: Vector[Int],
+    isDatagrams: Boolean,
+    out: BoundedSourceQueue[ByteString]
+)
+
 /** What is done with what peers send. Each call may come from any thread. */
 private[simulator] trait Peers:
-  /** @param isDatagrams whether it speaks by datagrams, and not by a stream
-    */
-  def joined(
-      channel: Long,
-      systems: Vector[Int],
-      isDatagrams: Boolean,
-      out: BoundedSourceQueue[ByteString]
-  ): Unit
+  def joined(peer: JoinedPeer): Unit
 
   /** Completes `done` when it has been dealt with. */
   def heard(channel: Long, bytes: Array[Byte], done: Promise[Done]): Unit
@@ -116,7 +122,7 @@ private[simulator] object PeerServer:
       if counts.map((count, most) => count.incrementAndGet() <= most).forall(identity) then
         val (queue, out) = Source.queue[ByteString](Waiting).preMaterialize()
         val channel      = numbers.getAndIncrement()
-        peers.joined(channel, port.systems, isDatagrams, queue)
+        peers.joined(JoinedPeer(channel, port.systems, isDatagrams, queue))
         out
           .via(switch.flow)
           .via(flow)

@@ -114,12 +114,7 @@ object SimulatorServer:
       system.log.error(failure, "the simulator has failed; it closes its port")
       server.close()
     val peers = new Peers:
-      def joined(
-          channel: Long,
-          systems: Vector[Int],
-          isDatagrams: Boolean,
-          out: BoundedSourceQueue[ByteString]
-      ): Unit = simulator ! Message.Joined(channel, systems, isDatagrams, out)
+      def joined(peer: JoinedPeer): Unit = simulator ! Message.Joined(peer)
       def heard(channel: Long, bytes: Array[Byte], done: Promise[Done]): Unit =
         simulator ! Message.Heard(channel, bytes, done)
       def left(channel: Long): Unit = simulator ! Message.Left(channel)
@@ -144,12 +139,7 @@ object SimulatorServer:
     case Stop
 
     /** Peers of MAVLink, or autopilots. */
-    case Joined(
-        channel: Long,
-        systems: Vector[Int],
-        isDatagrams: Boolean,
-        out: BoundedSourceQueue[ByteString]
-    )
+    case Joined(peer: JoinedPeer)
     case Heard(channel: Long, bytes: Array[Byte], done: Promise[Done])
     case Left(channel: Long)
 
@@ -223,11 +213,11 @@ object SimulatorServer:
             simulation.advance(clock.now())
             answer.success(truth): Unit
             goOn()
-        case Message.Stop                                       => Behaviors.stopped
-        case Message.Joined(channel, systems, isDatagrams, out) =>
-          outs.update(channel, out)
+        case Message.Stop         => Behaviors.stopped
+        case Message.Joined(peer) =>
+          outs.update(peer.channel, peer.out)
           orEnd:
-            protocol.foreach(_.join(channel, systems, isDatagrams))
+            protocol.foreach(_.join(peer.channel, peer.systems, peer.isDatagrams))
             goOn()
         case Message.Heard(channel, bytes, done) =>
           orEnd:
