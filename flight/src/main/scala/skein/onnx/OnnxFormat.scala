@@ -12,18 +12,17 @@ object OnnxFormat:
   private val IrVersion = 8L
   private val Opset     = 13L
 
-  /** @param beside what stands in another file, by its name, from a byte on, so many
-    * @return or why it is no model
-    */
-  def read(
-      bytes: Array[Byte],
-      beside: (String, Long, Long) => Either[String, Array[Byte]]
-  ): Either[String, OnnxGraph] =
+  /** What stands in another file, by its name, from a byte on, so many. */
+  type Beside = (String, Long, Long) => Either[String, Array[Byte]]
+
+  /** @return or why it is no model */
+  def read(bytes: Array[Byte], beside: Beside): Either[String, OnnxGraph] =
     try
+      val parts    = Parts(beside)
       val graphs   = mutable.Buffer.empty[OnnxGraph]
       val metadata = mutable.Map.empty[String, String]
       each(bytes):
-        case (7, in)  => graphs += graph(in.readByteArray(), beside)
+        case (7, in)  => graphs += parts.graph(in.readByteArray())
         case (14, in) => metadata += entry(in.readByteArray())
       graphs.lastOption.map(_.copy(metadata = metadata.toMap)).toRight("it has no graph")
     catch
@@ -40,56 +39,6 @@ object OnnxFormat:
       field.applyOrElse((WireFormat.getTagFieldNumber(tag), in), _ => in.skipField(tag): Unit)
       tag = in.readTag()
 
-  private def graph(
-      bytes: Array[Byte],
-      beside: (String, Long, Long) => Either[String, Array[Byte]]
-  ): OnnxGraph =
-    val nodes           = Vector.newBuilder[Node]
-    val constants       = mutable.Map.empty[String, Tensor]
-    val inputs, outputs = Vector.newBuilder[Port]
-    each(bytes):
-      case (1, in)  => nodes += node(in.readByteArray(), beside)
-      case (5, in)  => constants += tensor(in.readByteArray(), beside)
-      case (11, in) => inputs += port(in.readByteArray())
-      case (12, in) => outputs += port(in.readByteArray())
-    // Before IR version 4 constants were inputs, too.
-    OnnxGraph(
-      nodes.result(),
-      constants.toMap,
-      inputs.result().filterNot(port => constants.contains(port.name)),
-      outputs.result()
-    )
-
-  private def node(bytes: Array[Byte], beside: (String, Long, Long) => Either[String, Array[Byte]]): Node =
-    var operator, domain = ""
-    val inputs, outputs  = Vector.newBuilder[String]
-    val attributes       = mutable.Map.empty[String, Attribute]
-    each(bytes):
-      case (1, in) => inputs += in.readStringRequireUtf8()
-      case (2, in) => outputs += in.readStringRequireUtf8()
-      case (4, in) => operator = in.readStringRequireUtf8()
-      case (5, in) => attributes += attribute(in.readByteArray(), beside)
-      case (7, in) => domain = in.readStringRequireUtf8()
-    val name = if domain.isEmpty || domain == "ai.onnx" then operator else s"$domain.$operator"
-    Node(name, inputs.result(), outputs.result(), attributes.toMap)
-
-  private def attribute(
-      bytes: Array[Byte],
-      beside: (String, Long, Long) => Either[String, Array[Byte]]
-  ): (String, Attribute) =
-    var name             = ""
-    var value: Attribute = Attribute.Other
-    val many             = Vector.newBuilder[Double]
-    each(bytes):
-      case (1, in) => name = in.readStringRequireUtf8()
-      case (2, in) => value = Attribute.Number(in.readFloat())
-      case (3, in) => value = Attribute.Whole(in.readInt64())
-      case (5, in) => value = Attribute.Constant(tensor(in.readByteArray(), beside)._2)
-      case (7, in) => many ++= several(in, 4)(_.readFloat().toDouble)
-      case (8, in) => many ++= several(in, 0)(_.readInt64().toDouble)
-    val numbers = many.result()
-    (name, if numbers.isEmpty then value else Attribute.Numbers(numbers))
-
   /** One number, or many packed: writers do either.
     *
     * @param size in bytes of a number alone; 0 where it varies
@@ -105,43 +54,80 @@ object OnnxFormat:
       while !packed.isAtEnd do values += one(packed)
       values.result()
 
-  private def tensor(
-      bytes: Array[Byte],
-      beside: (String, Long, Long) => Either[String, Array[Byte]]
-  ): (String, Tensor) =
-    val shape   = Vector.newBuilder[Int]
-    val numbers = Vector.newBuilder[Double]
-    val other   = mutable.Map.empty[String, String]
-    var name    = ""
-    var element = 0
-    var raw     = Option.empty[Array[Byte]]
-    each(bytes):
-      case (1, in)  => shape ++= several(in, 0)(_.readInt64().toDouble).map(_.toInt)
-      case (2, in)  => element = in.readInt32()
-      case (4, in)  => numbers ++= several(in, 4)(_.readFloat().toDouble)
-      case (5, in)  => numbers ++= several(in, 0)(_.readInt32().toDouble)
-      case (7, in)  => numbers ++= several(in, 0)(_.readInt64().toDouble)
-      case (8, in)  => name = in.readStringRequireUtf8()
-      case (9, in)  => raw = Some(in.readByteArray())
-      case (10, in) => numbers ++= several(in, 8)(_.readDouble())
-      case (13, in) => other += entry(in.readByteArray())
-    val dimensions = shape.result()
-    val count      = dimensions.foldLeft(1L)((count, length) => Math.multiplyExact(count, length.toLong))
-    for file <- other.get("location") do
-      def number(key: String, otherwise: Long) = other.get(key).flatMap(_.toLongOption).getOrElse(otherwise)
-      raw = Some(
-        beside(
-          file,
-          number("offset", 0),
-          number("length", -1)
-        ).fold(reason => throw Mistake(reason), identity)
+  private final class Parts(beside: Beside):
+    def graph(bytes: Array[Byte]): OnnxGraph =
+      val nodes           = Vector.newBuilder[Node]
+      val constants       = mutable.Map.empty[String, Tensor]
+      val inputs, outputs = Vector.newBuilder[Port]
+      each(bytes):
+        case (1, in)  => nodes += node(in.readByteArray())
+        case (5, in)  => constants += tensor(in.readByteArray())
+        case (11, in) => inputs += port(in.readByteArray())
+        case (12, in) => outputs += port(in.readByteArray())
+      // Before IR version 4 constants were inputs, too.
+      OnnxGraph(
+        nodes.result(),
+        constants.toMap,
+        inputs.result().filterNot(port => constants.contains(port.name)),
+        outputs.result()
       )
-    val values = raw.fold(numbers.result())(unpacked(element, _))
-    if values.size != count then
-      throw Mistake(
-        s"tensor '$name': expected ${dimensions.mkString(" × ")} numbers, came ${values.size}"
-      )
-    (name, Tensor(dimensions, values))
+
+    private def node(bytes: Array[Byte]): Node =
+      var operator, domain = ""
+      val inputs, outputs  = Vector.newBuilder[String]
+      val attributes       = mutable.Map.empty[String, Attribute]
+      each(bytes):
+        case (1, in) => inputs += in.readStringRequireUtf8()
+        case (2, in) => outputs += in.readStringRequireUtf8()
+        case (4, in) => operator = in.readStringRequireUtf8()
+        case (5, in) => attributes += attribute(in.readByteArray())
+        case (7, in) => domain = in.readStringRequireUtf8()
+      val name = if domain.isEmpty || domain == "ai.onnx" then operator else s"$domain.$operator"
+      Node(name, inputs.result(), outputs.result(), attributes.toMap)
+
+    private def attribute(bytes: Array[Byte]): (String, Attribute) =
+      var name             = ""
+      var value: Attribute = Attribute.Other
+      val many             = Vector.newBuilder[Double]
+      each(bytes):
+        case (1, in) => name = in.readStringRequireUtf8()
+        case (2, in) => value = Attribute.Number(in.readFloat())
+        case (3, in) => value = Attribute.Whole(in.readInt64())
+        case (5, in) => value = Attribute.Constant(tensor(in.readByteArray())._2)
+        case (7, in) => many ++= several(in, 4)(_.readFloat().toDouble)
+        case (8, in) => many ++= several(in, 0)(_.readInt64().toDouble)
+      val numbers = many.result()
+      (name, if numbers.isEmpty then value else Attribute.Numbers(numbers))
+
+    private def tensor(bytes: Array[Byte]): (String, Tensor) =
+      val shape   = Vector.newBuilder[Int]
+      val numbers = Vector.newBuilder[Double]
+      val other   = mutable.Map.empty[String, String]
+      var name    = ""
+      var element = 0
+      var raw     = Option.empty[Array[Byte]]
+      each(bytes):
+        case (1, in)  => shape ++= several(in, 0)(_.readInt64().toDouble).map(_.toInt)
+        case (2, in)  => element = in.readInt32()
+        case (4, in)  => numbers ++= several(in, 4)(_.readFloat().toDouble)
+        case (5, in)  => numbers ++= several(in, 0)(_.readInt32().toDouble)
+        case (7, in)  => numbers ++= several(in, 0)(_.readInt64().toDouble)
+        case (8, in)  => name = in.readStringRequireUtf8()
+        case (9, in)  => raw = Some(in.readByteArray())
+        case (10, in) => numbers ++= several(in, 8)(_.readDouble())
+        case (13, in) => other += entry(in.readByteArray())
+      val dimensions = shape.result()
+      val count      = dimensions.foldLeft(1L)((count, length) => Math.multiplyExact(count, length.toLong))
+      for file <- other.get("location") do
+        def number(key: String, otherwise: Long) = other.get(key).flatMap(_.toLongOption).getOrElse(otherwise)
+        val read                                 = beside(file, number("offset", 0), number("length", -1))
+        raw = Some(read.fold(reason => throw Mistake(reason), identity))
+      val values = raw.fold(numbers.result())(unpacked(element, _))
+      if values.size != count then
+        throw Mistake(
+          s"tensor '$name': expected ${dimensions.mkString(" × ")} numbers, came ${values.size}"
+        )
+      (name, Tensor(dimensions, values))
 
   /** Other types than these have no numbers for a network's weights. */
   private def unpacked(element: Int, raw: Array[Byte]): Vector[Double] =

@@ -1,6 +1,6 @@
 package skein.settings
 
-import com.typesafe.config.{Config, ConfigException}
+import com.typesafe.config.Config
 import skein.forward.Reduced
 import skein.forecast.Structure
 import skein.identify.*
@@ -29,6 +29,8 @@ final case class ModelFile(
   def reduced: Option[Reduced] = models.get(Structure.Lag).map(lag => Reduced(lag(0), lag(1), lag(2)))
 
 object ModelFile:
+  import FittedFile.{line, list, number}
+
   /** Within a metre, a lag of AirSim's changes by 0.1 s. */
   private val SameAltitudeM = 1.0
 
@@ -57,14 +59,11 @@ object ModelFile:
   def render(use: Structure, fits: Vector[Fit], from: Provenance): String =
     val sections = fits.map: fit =>
       val found      = fit.identification
-      val parameters = found.parameters.map: parameter =>
-        val bound = if parameter.atBound then "  # at its bound: not identified" else ""
-        s"    ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, " +
-          s"most = ${number(parameter.most)} }$bound"
-      val errors = Vector(
+      val parameters = found.parameters.map("    " + line(_, "at its bound: not identified"))
+      val errors     = Vector(
         "against-quadrotor" -> fit.againstQuadrotor,
         "against-readings"  -> fit.againstReadings
-      ).collect { case (against, errors) if errors.nonEmpty => list(against, errors) }
+      ).collect { case (against, errors) if errors.nonEmpty => table(against, errors) }
       s"""  ${found.structure.label} {
          |${parameters.mkString("\n")}
          |    predictions = ${found.predictions}
@@ -85,18 +84,14 @@ object ModelFile:
        |${from.altitudeM.fold("  # The flights had several altitudes.")(metres =>
         s"  altitude-m = ${number(metres)}"
       )}
-       |  recordings = [
-       |${from.recordings.map("    " + quoted(_)).mkString("\n")}
-       |  ]
-       |  vehicles = [
-       |${from.vehicles.map("    " + quoted(_)).mkString("\n")}
-       |  ]
+       |${list("recordings", from.recordings)}
+       |${list("vehicles", from.vehicles)}
        |
        |${sections.mkString("\n\n")}
        |}
        |""".stripMargin
 
-  private def list(name: String, errors: Vector[HorizonError]): String =
+  private def table(name: String, errors: Vector[HorizonError]): String =
     val lines = errors.map: error =>
       s"      { horizon = ${number(error.horizonS)} s, " +
         s"position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, " +
@@ -113,10 +108,8 @@ object ModelFile:
   private[skein] def parse(text: String, path: String)(using
       scenarios: Scenarios
   ): Either[String, ModelFile] =
-    try
+    FittedFile.parse(text, path, "skein.model", "model file"): section =>
       for
-        file <- HoconFile.parse(text, path)
-        section = file.resolve().getConfig("skein.model")
         use <- scenarios.structure(section.getString("use")).left.map(wrong => s"$path: use: $wrong")
         models = scenarios.structures.filter(found => section.hasPath(found.label)).map: structure =>
           structure -> values(section.getConfig(structure.label), structure)
@@ -129,18 +122,12 @@ object ModelFile:
           section.hasPath("altitude-m") && Structure.ours.contains(use)
         )(section.getDouble("altitude-m"))
       )
-    catch
-      case wrong: ConfigException          => Left(s"$path is no model file: ${wrong.getMessage}")
-      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
 
   private def values(section: Config, structure: Structure): Vector[Double] =
     structure.names.map: name =>
       val value = section.getDouble(s"$name.value")
       require(value.isFinite, s"$name: expected a finite number, came $value")
       value
-
-  private def number(value: Double): String =
-    BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
 
   private def quoted(text: String): String = com.typesafe.config.ConfigUtil.quoteString(text)
 

@@ -53,31 +53,25 @@ object RecordedPlan:
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
-    ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++ Seq(
-      ParameterRow(Planning, settings.planning.text),
-      ParameterRow(Predictor, PredictionModel.text(settings.predictor)),
-      ParameterRow(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ Option.when(!settings.plant.isAirSim)(ParameterRow(
-      Plant,
-      settings.plant.text
-    )) ++ Option.when(settings.wire != Wire.AirSim)(ParameterRow(
-      Spoken,
-      settings.wire.label
-    )) ++ plan.solver.toSeq.map(choice => ParameterRow(SolverSummary.Parameter, choice.text)) ++
-      Option.when(settings.images.nonEmpty)(
-        ParameterRow(Images, settings.images.map(_.text).mkString(" "))
-      ) ++
-      settings.deadlineOf(plan).toSeq.flatMap(deadline =>
-        Seq(
-          ParameterRow(DeadlineNs, deadline.toNanos.toString),
-          ParameterRow(Replay.Fallback, settings.fallback.label)
-        )
-      ) ++
-      plan.policy.toSeq.flatMap: chosen =>
-        Seq(
-          ParameterRow(PolicyName, chosen.name),
-          ParameterRow(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
-        ) ++ chosen.learning.map(learning => ParameterRow(Explore, learning.explore.toString))
+    val deadline = settings.deadlineOf(plan)
+    val told     = Seq[(String, Option[Any])](
+      Planning                -> Some(settings.planning.text),
+      Predictor               -> Some(PredictionModel.text(settings.predictor)),
+      MovesInFlight           -> Some(settings.movesInFlight),
+      Plant                   -> Option.when(!settings.plant.isAirSim)(settings.plant.text),
+      Spoken                  -> Option.when(settings.wire != Wire.AirSim)(settings.wire.label),
+      SolverSummary.Parameter -> plan.solver.map(_.text),
+      Images          -> Option.when(settings.images.nonEmpty)(settings.images.map(_.text).mkString(" ")),
+      DeadlineNs      -> deadline.map(_.toNanos),
+      Replay.Fallback -> deadline.map(_ => settings.fallback.label)
+    ) ++ plan.policy.toSeq.flatMap: chosen =>
+      Seq(
+        PolicyName                                          -> Some(chosen.name),
+        s"$PolicyName.${PolicyFile.name(chosen.file.role)}" -> Some(chosen.file.text),
+        Explore                                             -> chosen.learning.map(_.explore)
+      )
+    ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++
+      told.collect { case (name, Some(value)) => ParameterRow(name, value.toString) }
 
   /** Reads it back.
     *

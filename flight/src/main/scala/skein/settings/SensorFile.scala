@@ -1,6 +1,5 @@
 package skein.settings
 
-import com.typesafe.config.ConfigException
 import scala.jdk.CollectionConverters.*
 import skein.fusion.SensorModel
 import skein.identify.SensorFit
@@ -8,6 +7,7 @@ import skein.signal.LatencyDistribution
 
 /** A fitted [[SensorModel]] as a HOCON file: `skein.sensor`, with where it is from. */
 object SensorFile:
+  import FittedFile.{line, list, number}
 
   /** The text of a file.
     *
@@ -15,10 +15,7 @@ object SensorFile:
     */
   def render(fit: SensorFit, recordings: Vector[String]): String =
     import fit.model
-    val fitted = fit.fitted.map: parameter =>
-      val bound = if parameter.atBound then "  # at its bound" else ""
-      s"  ${parameter.name} { value = ${number(parameter.value)}, least = " +
-        s"${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
+    val fitted = fit.fitted.map("  " + line(_, "at its bound"))
     s"""# What a pursuer that sees by a camera alone knows of its evader, fitted by `skein identify`.
        |# least and most: 95 % intervals, as if detections were independent.
        |skein.sensor {
@@ -32,9 +29,7 @@ object SensorFile:
        |  takes-ms = [${quantiles(model.takes).map(number).mkString(", ")}]
        |  images = ${fit.images}
        |  detections = ${fit.detections}
-       |  recordings = [
-       |${recordings.map("    " + com.typesafe.config.ConfigUtil.quoteString(_)).mkString("\n")}
-       |  ]
+       |${list("recordings", recordings)}
        |}
        |""".stripMargin
 
@@ -45,32 +40,21 @@ object SensorFile:
   def read(path: String): Either[String, SensorModel] = TextFile.read(path).flatMap(parse(_, path))
 
   private[skein] def parse(text: String, path: String): Either[String, SensorModel] =
-    try
-      for file <- HoconFile.parse(text, path)
-      yield
-        val section              = file.resolve().getConfig("skein.sensor")
-        def fitted(name: String) = section.getDouble(s"$name.value")
-        SensorModel(
-          section.getDouble("every-s"),
-          StrictMath.toRadians(section.getDouble("fov-deg")),
-          section.getDouble("farthest-m"),
-          fitted("detection"),
-          StrictMath.toRadians(fitted("bearing-sd-deg")),
-          fitted("range-bias"),
-          fitted("range-sd"),
-          LatencyDistribution.ofSamples(
-            section.getDoubleList("takes-ms").asScala.map(_.doubleValue).toVector
-          ),
-          section.getInt("workers"),
-          section.getDouble("deadline-s")
-        )
-    catch
-      case wrong: ConfigException          => Left(s"$path is no sensor's file: ${wrong.getMessage}")
-      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
+    FittedFile.parse(text, path, "skein.sensor", "sensor's file"): section =>
+      def fitted(name: String) = section.getDouble(s"$name.value")
+      Right(SensorModel(
+        section.getDouble("every-s"),
+        StrictMath.toRadians(section.getDouble("fov-deg")),
+        section.getDouble("farthest-m"),
+        fitted("detection"),
+        StrictMath.toRadians(fitted("bearing-sd-deg")),
+        fitted("range-bias"),
+        fitted("range-sd"),
+        LatencyDistribution.ofSamples(section.getDoubleList("takes-ms").asScala.map(_.doubleValue).toVector),
+        section.getInt("workers"),
+        section.getDouble("deadline-s")
+      ))
 
   private def quantiles(takes: LatencyDistribution): Vector[Double] = takes match
     case LatencyDistribution.Quantiles(_, ms) => ms
     case other                                => Vector(0.0, 1.0).map(other.quantile(_).toMillis)
-
-  private def number(value: Double): String =
-    BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString

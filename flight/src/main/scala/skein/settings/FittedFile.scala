@@ -1,0 +1,34 @@
+package skein.settings
+
+import com.typesafe.config.{Config, ConfigException, ConfigUtil}
+import skein.identify.Fitted
+
+/** What files of fitted numbers share. */
+private object FittedFile:
+
+  /** A parameter with its interval; a remark says where it is not identified. */
+  def line(parameter: Fitted, atBound: String): String =
+    import parameter.{least, most, name, value}
+    val remark = if parameter.atBound then s"  # $atBound" else ""
+    s"$name { value = ${number(value)}, least = ${number(least)}, most = ${number(most)} }$remark"
+
+  /** Texts, a line each. */
+  def list(name: String, texts: Vector[String]): String =
+    texts.map(text => s"    ${ConfigUtil.quoteString(text)}").mkString(s"  $name = [\n", "\n", "\n  ]")
+
+  /** Six significant digits. */
+  def number(value: Double): String =
+    BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
+
+  /** Reads a file's section.
+    *
+    * @param what the file is to be, in words
+    * @return or what is wrong
+    */
+  def parse[A](text: String, path: String, section: String, what: String)(
+      read: Config => Either[String, A]
+  ): Either[String, A] =
+    try HoconFile.parse(text, path).flatMap(file => read(file.resolve().getConfig(section)))
+    catch
+      case wrong: ConfigException          => Left(s"$path is no $what: ${wrong.getMessage}")
+      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
