@@ -170,27 +170,28 @@ public final class Redirect {
     return new UUID(version4, variant2);
   }
 
-  public static void sleep(long millis) throws InterruptedException {
+  private static void refuse(String wait) {
     var environment = ENVIRONMENT.get();
-    if (environment != null) throw environment.blocked("Thread.sleep(" + millis + " ms)");
+    if (environment != null) throw environment.blocked(wait);
+  }
+
+  public static void sleep(long millis) throws InterruptedException {
+    refuse("Thread.sleep(" + millis + " ms)");
     Thread.sleep(millis);
   }
 
   public static void sleep(Duration duration) throws InterruptedException {
-    var environment = ENVIRONMENT.get();
-    if (environment != null) throw environment.blocked("Thread.sleep(" + duration + ")");
+    refuse("Thread.sleep(" + duration + ")");
     Thread.sleep(duration);
   }
 
   public static void sleep(long millis, int nanos) throws InterruptedException {
-    var environment = ENVIRONMENT.get();
-    if (environment != null) throw environment.blocked("Thread.sleep(" + millis + " ms, " + nanos + " ns)");
+    refuse("Thread.sleep(" + millis + " ms, " + nanos + " ns)");
     Thread.sleep(millis, nanos);
   }
 
   public static void sleep(TimeUnit unit, long timeout) throws InterruptedException {
-    var environment = ENVIRONMENT.get();
-    if (environment != null) throw environment.blocked("TimeUnit." + unit + ".sleep(" + timeout + ")");
+    refuse("TimeUnit." + unit + ".sleep(" + timeout + ")");
     unit.sleep(timeout);
   }
 
