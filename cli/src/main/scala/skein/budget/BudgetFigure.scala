@@ -29,7 +29,7 @@ object BudgetFigure:
       62,
       Vector(
         Mark.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
-        Mark.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize, Theme.labelColour)
+        Mark.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize)
       ) ++
         Legend(
           62,
@@ -69,7 +69,7 @@ object BudgetFigure:
         val at = panel.at(x, y)
         Vector(
           Mark.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
-          Mark.Text(at.moved(8, 4), link.name, Theme.labelSize, mark, bold = true)
+          Mark.Text(at.moved(8, 4), link.name, colour = mark, bold = true)
         )
     Drawing(
       panel.right + 110,

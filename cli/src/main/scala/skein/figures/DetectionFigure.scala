@@ -34,14 +34,9 @@ object DetectionFigure:
     yield
       val number = scenario.agents.indexWhere(_.name == seen.eye.target)
       val height = shownPx * camera.height / camera.width
-      val title  = Mark.Text(
-        at = Point(0, 16),
-        s"${flight.name}, ${FlightTheme.link(flight.flight.link)}",
-        12,
-        Theme.labelColour,
-        bold = true
-      )
-      val cells = seen.decisive.map: (name, detection) =>
+      val name   = s"${flight.name}, ${FlightTheme.link(flight.flight.link)}"
+      val title  = Mark.Text(Point(0, 16), name, Theme.titleSize, bold = true)
+      val cells  = seen.decisive.map: (name, detection) =>
         val thing = SceneObject(
           seen.eye.target,
           MultirotorBody.parts(Quadrotor.AirSim.airframe, number, scene.scene.vehicleTagM),
@@ -79,7 +74,7 @@ object DetectionFigure:
               Stroke(red, 1.6)
             )
           ) ++ told(name, detection).zipWithIndex.map((line, index) =>
-            Mark.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
+            Mark.Text(Point(0, height + 14 + 13 * index), line, Theme.tickSize)
           )
         )
       Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))

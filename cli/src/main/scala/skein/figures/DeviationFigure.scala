@@ -38,18 +38,8 @@ object DeviationFigure:
     val names = links.zipWithIndex.map: (link, index) =>
       val members = placed.zipWithIndex.collect { case ((_, `index`), place) => place }
       val middle  = panel.left + (members.sum.toDouble / members.size + 0.5) * slot + (index + 0.5) * gap
-      Mark.Text(
-        Point(middle, panel.bottom + 38),
-        FlightTheme.link(link),
-        Theme.labelSize,
-        Theme.labelColour,
-        Anchor.Middle
-      )
-    val truth = Mark.line(
-      Point(panel.left, panel.atY(0)),
-      Point(panel.right, panel.atY(0)),
-      Stroke(FlightTheme.of("paused"), 1.2)
-    )
+      Mark.Text(Point(middle, panel.bottom + 38), FlightTheme.link(link), anchor = Anchor.Middle)
+    val truth = panel.level(0, Stroke(FlightTheme.of("paused"), 1.2))
     Drawing(
       width + 70,
       height + 66,
@@ -61,28 +51,14 @@ object DeviationFigure:
     val share                                         = deviation.share
     def line(from: Double, to: Double, width: Double) =
       Mark.line(Point(x, panel.atY(100 * from)), Point(x, panel.atY(100 * to)), Stroke(colour, width))
-    val centre = Point(x, panel.atY(100 * share.mean))
-    val ring   = Option.when(deviation.clock != ClockKind.Virtual.label)(Mark.Disc(
-      centre,
-      6.5,
-      Some(Stroke(colour, 1.2))
-    ))
+    val percent = s"${(100 * share.mean).signed(1)} %"
+    val centre  = Point(x, panel.atY(100 * share.mean))
+    val isLive  = deviation.clock != ClockKind.Virtual.label
+    val ring    = Option.when(isLive)(Mark.Disc(centre, 6.5, Some(Stroke(colour, 1.2))))
     Vector(
       line(share.least, share.most, 1),
       line(share.mean - share.sd, share.mean + share.sd, 3.2),
       Mark.Disc(centre, 4, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour)),
-      Mark.Text(
-        Point(x, panel.bottom + 13),
-        deviation.name,
-        Theme.tickSize - 1,
-        Theme.labelColour,
-        Anchor.Middle
-      ),
-      Mark.Text(
-        Point(x, panel.bottom + 24),
-        s"${(100 * share.mean).signed(1)} %",
-        Theme.tickSize - 1,
-        Theme.tickColour,
-        Anchor.Middle
-      )
+      Mark.Text(Point(x, panel.bottom + 13), deviation.name, Theme.smallSize, anchor = Anchor.Middle),
+      Mark.Text(Point(x, panel.bottom + 24), percent, Theme.smallSize, Theme.tickColour, Anchor.Middle)
     ) ++ ring

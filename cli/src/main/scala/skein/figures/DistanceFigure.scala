@@ -40,19 +40,11 @@ object DistanceFigure:
     val stripsWidth = curves.size.max(5) * slotWidth
     val strips      = curves.zipWithIndex.flatMap:
       case ((summary, curve), index) =>
-        curve.lastTenSeconds.toVector.flatMap(strip(
-          panel,
-          stripsLeft + (index + 0.5) * slotWidth,
-          summary,
-          _
-        ))
-    val heading = Mark.Text(
-      Point(stripsLeft, panel.top - 10),
-      "last 10 s: ours ●, paper ◆",
-      Theme.tickSize,
-      Theme.labelColour
-    )
-    val title = panel.title(FlightTheme.link(link))
+        val x = stripsLeft + (index + 0.5) * slotWidth
+        curve.lastTenSeconds.toVector.flatMap(strip(panel, x, summary, _))
+    val above   = Point(stripsLeft, panel.top - 10)
+    val heading = Mark.Text(above, "last 10 s: ours ●, paper ◆", Theme.tickSize)
+    val title   = panel.title(FlightTheme.link(link))
     Drawing(
       stripsLeft + stripsWidth + 50,
       plotHeight + 84,
@@ -78,6 +70,4 @@ object DistanceFigure:
     ours ++ paper
 
   private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Mark] =
-    val names  = flights.distinctBy(_.name)
-    val legend = Legend(0, names.map(one => Legend.line(one.name, FlightTheme.of(one, 2.2)))*)
-    legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
+    Legend.above(panel, FlightTheme.names(flights)*)

@@ -2,7 +2,7 @@ package skein.figures
 
 import skein.loop.LoopKind
 import skein.measure.FlightSummary
-import skein.plot.{Colour, Point, Mark, Stroke}
+import skein.plot.{Colour, Legend, Point, Mark, Stroke}
 
 /** One colour per loop in every picture: Okabe and Ito's palette, told apart by colour-blind readers too. */
 object FlightTheme:
@@ -26,6 +26,10 @@ object FlightTheme:
   def of(flight: FlightSummary, width: Double = 1.4): Stroke =
     val solid = line(of(flight.flight.loop), width)
     if flight.policy.isEmpty then solid else solid.copy(dash = Vector(6, 3))
+
+  /** Of flights' curves, each name once. */
+  def names(flights: Vector[FlightSummary]): Vector[Legend.Item] =
+    flights.distinctBy(_.name).map(flight => Legend.line(flight.name, of(flight, 2.2)))
 
   def line(colour: Colour, width: Double = 1.4): Stroke = Stroke(colour, width)
 

@@ -67,7 +67,7 @@ object LatencyFigure:
       s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
     val titles = Vector(
       panel.title(FlightTheme.link(link)).moved(0, -14),
-      Mark.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize, Theme.labelColour)
+      Mark.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize)
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
 
@@ -86,13 +86,7 @@ object LatencyFigure:
       val x = panel.atX(profile.quantile(p).toMillis)
       Vector(
         Mark.line(Point(x, panel.bottom), Point(x, panel.top + 13), quantileLine),
-        Mark.Text(
-          Point(x, panel.top + 9),
-          s"${(p * 100).round} %",
-          Theme.tickSize - 1,
-          Theme.labelColour,
-          Anchor.Middle
-        )
+        Mark.Text(Point(x, panel.top + 9), s"${(p * 100).round} %", Theme.smallSize, anchor = Anchor.Middle)
       )
 
   /** Per cent per bin along the round trip, as a step line. */

@@ -39,25 +39,15 @@ object ObservationFigure:
       val drawn = summary.roles.zipWithIndex.flatMap: (role, index) =>
         draw(panel, bar(observation, summary, role), panel.left + left + index * barWidth, pale = index > 0)
       val middle = panel.left + left + widthOf(summary) / 2
-      drawn :+ Mark.Text(
-        Point(middle, panel.bottom + 13),
-        summary.flight.loop,
-        Theme.tickSize - 1,
-        Theme.labelColour,
-        Anchor.Middle
-      )
+      val at     = Point(middle, panel.bottom + 13)
+      drawn :+ Mark.Text(at, summary.flight.loop, Theme.smallSize, anchor = Anchor.Middle)
     val links = flights.zip(lefts).groupBy(_._1.flight.link).toVector.flatMap: (link, members) =>
       val from = panel.left + members.map(_._2).min
       val to   = panel.left + members.map((summary, left) => left + widthOf(summary)).max
+      val at   = Point((from + to) / 2, panel.bottom + 30)
       Vector(
         Mark.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Theme.axisLine),
-        Mark.Text(
-          Point((from + to) / 2, panel.bottom + 30),
-          FlightTheme.link(link),
-          Theme.tickSize,
-          Theme.labelColour,
-          Anchor.Middle
-        )
+        Mark.Text(at, FlightTheme.link(link), Theme.tickSize, anchor = Anchor.Middle)
       )
     val title = panel.title(observation.title.capitalize)
     val rules = panel.rules(panel.left, panel.right)

@@ -19,13 +19,11 @@ object ScenarioFigure:
     val norths = tracks.flatMap(_.northM.flatten)
     val easts  = tracks.flatMap(_.eastM.flatten)
     val span   = (norths.max - norths.min).max(easts.max - easts.min).max(1) * 1.06
-    def axis(label: String, values: Vector[Double]) =
-      val middle = (values.min + values.max) / 2
-      PlotAxis.exactly(label, middle - span / 2, middle + span / 2)
+    val east   = PlotAxis.centred("east y, m", easts, span)
+    val north  = PlotAxis.centred("north x, m", norths, span)
     val panels = flown.flights.map: flight =>
-      val panel = Panel(axis("east y, m", easts), axis("north x, m", norths), 52, 34, side, side)
-      val title =
-        panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
+      val panel = Panel(east, north, 52, 34, side, side)
+      val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(
         side + 72,
         side + 82,
@@ -116,21 +114,13 @@ object ScenarioFigure:
     val lines = flights.map(flight =>
       panel.curve(drawn(flight)._2.points.dropWhile(_._2 > panel.y.to), FlightTheme.of(flight.summary))
     )
-    val held = bound.map: bound =>
-      Mark.line(
-        Point(panel.left, panel.atY(bound.value)),
-        Point(panel.right, panel.atY(bound.value)),
-        boundLine
-      )
-    val items = flights.map(_.summary).distinctBy(_.name).map(summary =>
-      Legend.line(summary.name, FlightTheme.of(summary, 2.2))
-    ) ++ bound.map(bound => Legend.line(bound.name, boundLine))
-    val legend = Legend(0, items*)
+    val held  = bound.map(bound => panel.level(bound.value, boundLine))
+    val items =
+      FlightTheme.names(flights.map(_.summary)) ++ bound.map(bound => Legend.line(bound.name, boundLine))
     Drawing(
       plotWidth + 76,
       plotHeight + 84,
-      (panel.title(FlightTheme.link(link)) +: panel.axes) ++ held ++ lines ++
-        legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
+      (panel.title(FlightTheme.link(link)) +: panel.axes) ++ held ++ lines ++ Legend.above(panel, items*)
     )
 
   /** The highest of a curve, but where it begins far above all that follows: then some more than what

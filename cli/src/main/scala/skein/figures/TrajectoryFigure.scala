@@ -24,11 +24,10 @@ object TrajectoryFigure:
     val xs        = positions.map(_.x)
     val ys        = positions.map(_.y)
     // Equal scales: both axes span the larger of the two extents, each around its own middle.
-    val span                                        = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
-    def axis(label: String, values: Vector[Double]) =
-      val middle = (values.min + values.max) / 2
-      PlotAxis.exactly(label, middle - span / 2, middle + span / 2)
-    val panel = Panel(axis("east y, m", ys), axis("north x, m", xs), 52, 34, side, side)
+    val span  = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
+    val east  = PlotAxis.centred("east y, m", ys, span)
+    val north = PlotAxis.centred("north x, m", xs, span)
+    val panel = Panel(east, north, 52, 34, side, side)
     val title = panel.title(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
     Drawing(
       side + 72,
@@ -54,11 +53,8 @@ object TrajectoryFigure:
         loops.size * 9,
         at =>
           loops.indices.toVector.map(index =>
-            Mark.line(
-              at.moved(index * 9, 0),
-              at.moved(index * 9 + 8, 0),
-              thick(FlightTheme.of(loops(index)))
-            )
+            val colour = FlightTheme.of(loops(index))
+            Mark.line(at.moved(index * 9, 0), at.moved(index * 9 + 8, 0), thick(colour))
           )
       ),
       Legend.line("evader", thick(FlightTheme.evader)),

@@ -25,13 +25,8 @@ object TwinFigure:
       case ((measure, (live, virtual)), difference) =>
         def told(value: Double) = s"${value.fixed(2)} ${measure.unit}".trim
         s": ${measure.name} ${told(live)} live, ${told(virtual)} virtual (${(100 * difference).signed(1)} %)"
-    val title = Mark.Text(
-      Point(46, 16),
-      s"${twin.live.name}, ${FlightTheme.link(flight.link)}${came.getOrElse("")}",
-      Theme.titleSize,
-      Theme.titleColour,
-      bold = true
-    )
+    val name   = s"${twin.live.name}, ${FlightTheme.link(flight.link)}${came.getOrElse("")}"
+    val title  = Mark.Text(Point(46, 16), name, Theme.titleSize, Theme.titleColour, bold = true)
     val panels = Drawing.grid(twin.compared.map(panel(flight.loop, _)), columns = twin.compared.size)
     Drawing.stacked(Drawing(panels.width, 22, Vector(title)), panels)
 
@@ -45,12 +40,8 @@ object TwinFigure:
       panelWidth,
       panelHeight
     )
-    val title = Mark.Text(
-      Point(panel.left, panel.top - 6),
-      s"${compared.role}: KS ${compared.distance.fixed(2)}",
-      Theme.labelSize,
-      Theme.labelColour
-    )
+    val name  = s"${compared.role}: KS ${compared.distance.fixed(2)}"
+    val title = Mark.Text(Point(panel.left, panel.top - 6), name)
     Drawing(
       panelWidth + 62,
       panelHeight + 62,

@@ -24,13 +24,9 @@ final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
       )
     val axis  = PlotAxis.exactly(label, from, if to > from then to else from + 1)
     val ticks = axis.ticks.map: tick =>
-      Mark.Text(
-        Point(left + width + 5, bottom - height * axis.share(tick) + 3.5),
-        axis.text(tick),
-        Theme.tickSize,
-        Theme.tickColour
-      )
-    boxes ++ ticks :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize, Theme.labelColour)
+      val at = Point(left + width + 5, bottom - height * axis.share(tick) + 3.5)
+      Mark.Text(at, axis.text(tick), Theme.tickSize, Theme.tickColour)
+    boxes ++ ticks :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize)
 
 object ColourScale:
   /** Matplotlib's viridis by nine of its colours: even in lightness, also for colour-blind readers. */

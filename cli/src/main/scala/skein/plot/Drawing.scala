@@ -53,6 +53,19 @@ final case class Colour(rgb: Int, opacity: Double = 1):
   */
 final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty)
 
+/** The looks that all pictures share. */
+object Theme:
+  val smallSize = 9.0
+  val tickSize  = 10.0
+  val labelSize = 11.0
+  val titleSize = 12.0
+
+  val titleColour: Colour = Colour(0x1a1a1a)
+  val labelColour: Colour = Colour(0x333333)
+  val tickColour: Colour  = Colour(0x555555)
+  val gridLine: Stroke    = Stroke(Colour(0xe9e9e9), 0.8)
+  val axisLine: Stroke    = Stroke(Colour(0x888888), 0.9)
+
 /** Which part of a text stands at its point. */
 enum Anchor:
   case Start, Middle, End
@@ -77,8 +90,8 @@ enum Mark:
   case Text(
       at: Point,
       content: String,
-      size: Double,
-      colour: Colour,
+      size: Double = Theme.labelSize,
+      colour: Colour = Theme.labelColour,
       anchor: Anchor = Anchor.Start,
       bold: Boolean = false,
       upwards: Boolean = false

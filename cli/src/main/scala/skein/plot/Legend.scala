@@ -24,5 +24,10 @@ object Legend:
       items.scanLeft(left)((start, item) => start + item.width + 6 + item.label.length * letterWidth + gap)
     val shapes = items.zip(starts).flatMap: (item, start) =>
       item.mark(Point(start, middle)) :+
-        Mark.Text(Point(start + item.width + 6, middle + 4), item.label, Theme.labelSize, Theme.labelColour)
+        Mark.Text(Point(start + item.width + 6, middle + 4), item.label)
     Drawing(starts.last - gap / 2, height, shapes.toVector)
+
+  /** The same above a panel, up to its right edge. */
+  def above(panel: Panel, items: Item*): Vector[Mark] =
+    val legend = Legend(0, items*)
+    legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))

@@ -19,14 +19,16 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       else kept :+ point
     Mark.Path(kept, Some(stroke))
 
+  /** A line from the left edge to the right one. */
+  def level(value: Double, stroke: Stroke): Mark =
+    Mark.line(Point(left, atY(value)), Point(right, atY(value)), stroke)
+
   /** Grid lines, and lines, numbers and names of both axes; to be painted below the values. */
   def axes: Vector[Mark] = grid ++ xAxis ++ yAxis
 
   private def grid: Vector[Mark] =
-    x.ticks.map(tick => Mark.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++ rules(
-      left,
-      right
-    )
+    x.ticks.map(tick => Mark.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++
+      rules(left, right)
 
   /** Horizontal lines at the ticks of the axis at the left. */
   def rules(from: Double, to: Double): Vector[Mark] =
@@ -37,7 +39,7 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       Mark.Text(Point(atX(tick), bottom + 14), x.text(tick), tickSize, tickColour, Anchor.Middle)
     ++ Vector(
       Mark.line(Point(left, bottom), Point(right, bottom), axisLine),
-      Mark.Text(Point(left + width / 2, bottom + 30), x.label, labelSize, labelColour, Anchor.Middle)
+      Mark.Text(Point(left + width / 2, bottom + 30), x.label, anchor = Anchor.Middle)
     )
 
   def yAxis: Vector[Mark] =
@@ -45,27 +47,8 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       Mark.Text(Point(left - 6, atY(tick) + 3.5), y.text(tick), tickSize, tickColour, Anchor.End)
     ++ Vector(
       Mark.line(Point(left, top), Point(left, bottom), axisLine),
-      Mark.Text(
-        Point(left - 36, top + height / 2),
-        y.label,
-        labelSize,
-        labelColour,
-        Anchor.Middle,
-        upwards = true
-      )
+      Mark.Text(Point(left - 36, top + height / 2), y.label, anchor = Anchor.Middle, upwards = true)
     )
 
   def title(text: String): Mark =
     Mark.Text(Point(left, top - 10), text, titleSize, titleColour, bold = true)
-
-/** The looks that all pictures share. */
-object Theme:
-  val tickSize  = 10.0
-  val labelSize = 11.0
-  val titleSize = 12.0
-
-  val titleColour: Colour = Colour(0x1a1a1a)
-  val labelColour: Colour = Colour(0x333333)
-  val tickColour: Colour  = Colour(0x555555)
-  val gridLine: Stroke    = Stroke(Colour(0xe9e9e9), 0.8)
-  val axisLine: Stroke    = Stroke(Colour(0x888888), 0.9)

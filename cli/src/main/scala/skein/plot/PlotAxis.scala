@@ -30,6 +30,11 @@ object PlotAxis:
   def exactly(label: String, from: Double, to: Double, ticks: Int = 5): PlotAxis =
     PlotAxis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
 
+  /** As long as told, around the middle of values. */
+  def centred(label: String, values: Vector[Double], length: Double): PlotAxis =
+    val middle = (values.min + values.max) / 2
+    exactly(label, middle - length / 2, middle + length / 2)
+
   /** The smallest of 1, 2, 5 × 10^n^ that is not below `atLeast`. */
   private def niceStep(atLeast: Double): Double =
     val power = math.pow(10, math.floor(math.log10(atLeast)))
