@@ -1,6 +1,7 @@
 package skein.mcap
 
 import scala.collection.mutable
+import scala.reflect.ClassTag
 
 /** Reads messages by time and topic, attachments and metadata by their index, from a source that can be read
   * anywhere. It opens the chunks that may hold what is asked for and no others. Where a file says too little
@@ -27,29 +28,24 @@ final class IndexedReader private (source: ByteSource, limits: McapLimits, val s
     })
 
   def attachment(index: Record.AttachmentIndex): Either[McapError, Record.Attachment] =
-    Refused.either:
-      one(index.offset, index.length) match
-        case found: Record.Attachment => found
-        case other                    =>
-          Refused.malformed(Place(index.offset), "an attachment", s"a ${Opcode.name(other.opcode)} record")
+    Refused.either(one[Record.Attachment](index.offset, index.length, "an attachment"))
 
   def metadata(index: Record.MetadataIndex): Either[McapError, Record.Metadata] =
-    Refused.either:
-      one(index.offset, index.length) match
-        case found: Record.Metadata => found
-        case other                  =>
-          Refused.malformed(Place(index.offset), "metadata", s"a ${Opcode.name(other.opcode)} record")
+    Refused.either(one[Record.Metadata](index.offset, index.length, "metadata"))
 
   private def part(offset: Long, length: Long): Bytes =
     limits.hold(length, limits.recordBytes, "a record", Place(offset))
     source.read(offset, length.toInt)
 
   /** The record of which an index says where it is and how long. */
-  private def one(offset: Long, length: Long): Record =
+  private def one[A <: Record: ClassTag](offset: Long, length: Long, what: String): A =
+    val at   = Place(offset)
     val walk = RecordWalk(part(offset, length), offset, inChunk = false)
     if !walk.step() || walk.length != length then
-      Refused.malformed(Place(offset), s"a record of $length bytes", s"one of ${walk.length}")
-    walk.record
+      Refused.malformed(at, s"a record of $length bytes", s"one of ${walk.length}")
+    walk.record match
+      case found: A => found
+      case other    => Refused.malformed(at, what, s"a ${Opcode.name(other.opcode)} record")
 
   /** The records of a stretch, message by message. */
   private def open(stretch: Stretch): RecordWalk =
@@ -62,10 +58,8 @@ final class IndexedReader private (source: ByteSource, limits: McapLimits, val s
           inChunk = false
         )
       case Stretch.Kind.Chunk =>
-        one(stretch.offset, stretch.length) match
-          case chunk: Record.Chunk =>
-            RecordWalk(Compression.decompress(chunk, limits, at), stretch.offset, inChunk = true)
-          case other => Refused.malformed(at, "a chunk", s"a ${Opcode.name(other.opcode)} record")
+        val chunk = one[Record.Chunk](stretch.offset, stretch.length, "a chunk")
+        RecordWalk(Compression.decompress(chunk, limits, at), stretch.offset, inChunk = true)
       case Stretch.Kind.CutChunk =>
         val content = part(stretch.offset + 9, stretch.length - 9).toArray
         val chunk   = RecordCodec.beginningOfChunk(content, content.length, at)

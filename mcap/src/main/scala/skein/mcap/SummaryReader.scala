@@ -1,5 +1,6 @@
 package skein.mcap
 
+import scala.annotation.tailrec
 import scala.collection.mutable
 
 /** Finds out what a file holds: from its summary, or by reading it through. */
@@ -31,20 +32,10 @@ private[mcap] object SummaryReader:
     val begins = source.read(0, source.size.min(Magic.bytes.size).toInt)
     if begins.size == 0 || begins != Magic.bytes.slice(0, begins.size) then
       throw Refused(McapError.NotMcap(begins))
-    val parser = StreamParser(limits)
-    var at     = 0L
-    var header = Option.empty[Record.Header]
-    while header.isEmpty do
-      parser.next() match
-        case Parsed.Found(found: Record.Header, _, _) => header = Some(found)
-        case Parsed.NeedsBytes if at == source.size   => parser.end()
-        case Parsed.NeedsBytes                        =>
-          val piece = source.read(at, (source.size - at).min(4096).toInt)
-          parser.offer(piece.array, piece.from, piece.from + piece.size)
-          at += piece.size
-        case Parsed.Failed(error) => throw Refused(error)
-        case other                => throw AssertionError(other)
-    header.get
+    FromBeginning(source, limits, 4096).next() match
+      case Parsed.Found(found: Record.Header, _, _) => found
+      case Parsed.Failed(error)                     => throw Refused(error)
+      case other                                    => throw AssertionError(other)
 
   private def fromSection(
       header: Record.Header,
@@ -131,6 +122,24 @@ private[mcap] object SummaryReader:
         summary.attachments.size == counts.attachmentCount &&
         summary.metadata.size == counts.metadataCount)
 
+/** A source's records, from its first byte on.
+  *
+  * @param piece bytes that are read at a time
+  */
+private final class FromBeginning(source: ByteSource, limits: McapLimits, piece: Int):
+  private val parser = StreamParser(limits)
+  private var at     = 0L
+
+  @tailrec def next(): Parsed = parser.next() match
+    case Parsed.NeedsBytes =>
+      if at == source.size then parser.end()
+      else
+        val read = source.read(at, (source.size - at).min(piece).toInt)
+        parser.offer(read.array, read.from, read.from + read.size)
+        at += read.size
+      next()
+    case other => other
+
 /** Reads a file through for what its summary would say. */
 private object SummaryScan:
   private val Piece = 1 << 20
@@ -139,23 +148,16 @@ private object SummaryScan:
   private val LooseBytes = 1 << 20
 
   def read(source: ByteSource, limits: McapLimits): Summary =
-    val parser = StreamParser(limits)
-    val scan   = Scan()
-    var at     = 0L
-    var end    = Option.empty[Parsed]
-    while end.isEmpty do
-      parser.next() match
-        case found: Parsed.Found                    => scan.take(found)
-        case Parsed.NeedsBytes if at == source.size => parser.end()
-        case Parsed.NeedsBytes                      =>
-          val piece = source.read(at, (source.size - at).min(Piece).toInt)
-          parser.offer(piece.array, piece.from, piece.from + piece.size)
-          at += piece.size
-        case other => end = Some(other)
-    end.get match
+    val records                   = FromBeginning(source, limits, Piece)
+    val scan                      = Scan()
+    @tailrec def whole(): Summary = records.next() match
+      case found: Parsed.Found =>
+        scan.take(found)
+        whole()
       case Parsed.Failed(cut: McapError.CutOff) => scan.result(Some(cut), source.size)
       case Parsed.Failed(error)                 => throw Refused(error)
       case _                                    => scan.result(None, source.size)
+    whole()
 
   private final class Scan:
     private var header       = Option.empty[Record.Header]
