@@ -146,9 +146,9 @@ private[record] final class FoxgloveViews(
       "world_ned",
       "scene",
       cubes = parts.collect:
-        case (SceneObject.Part(Shape.Box(half), _, rgb), place)    => block(place, half * 2, rgb)
+        case (SceneObject.Part(Shape.Box(half), _, rgb), place)    => block(place, half * 2, painted(rgb))
         case (SceneObject.Part(Shape.Tag(_, side), _, rgb), place) =>
-          block(place, Vector3(TagM, side * 5 / 4, side * 5 / 4), rgb)
+          block(place, Vector3(TagM, side * 5 / 4, side * 5 / 4), painted(rgb))
       ,
       cylinders = parts.collect:
         case (SceneObject.Part(Shape.Pole(radius, half), _, rgb), place) =>
@@ -161,10 +161,10 @@ private[record] final class FoxgloveViews(
           )
     )
 
-  private def block(place: Placement, size: Vector3, rgb: Int) = Json.obj(
+  private def block(place: Placement, size: Vector3, colour: String) = Json.obj(
     "pose"  -> placed(place.position, place.orientation),
     "size"  -> xyz(size),
-    "color" -> painted(rgb)
+    "color" -> colour
   )
 
   /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it
@@ -184,18 +184,9 @@ private[record] final class FoxgloveViews(
     * newest prediction was off.
     */
   private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) =
-    val there = Json.obj(
-      "pose"  -> placed(to, Quaternion(1, 0, 0, 0)),
-      "size"  -> xyz(Vector3(0.5, 0.5, 0.5)),
-      "color" -> colours(name)
-    )
-    val way  = line(name, Vector(from, to), thickness = 4)
-    val wide = off.map: error =>
-      Json.obj(
-        "pose"  -> placed(to, Quaternion(1, 0, 0, 0)),
-        "size"  -> xyz(Vector3(2, 2, 2) * error.value),
-        "color" -> Doubt
-      )
+    val there = block(Placement(to), Vector3(0.5, 0.5, 0.5), colours(name))
+    val way   = line(name, Vector(from, to), thickness = 4)
+    val wide  = off.map(error => block(Placement(to), Vector3(2, 2, 2) * error.value, Doubt))
     entity(
       at,
       "world_ned",
@@ -224,11 +215,7 @@ private[record] final class FoxgloveViews(
   private def body(name: String) =
     val (size, middle) =
       if cars(name) then (CarM, Vector3(0, 0, -CarM.z / 2)) else (MultirotorM, Vector3.Zero)
-    Json.obj(
-      "pose"  -> placed(middle, Quaternion(1, 0, 0, 0)),
-      "size"  -> xyz(size),
-      "color" -> colours(name)
-    )
+    block(Placement(middle), size, colours(name))
 
   private def label(name: String) = Json.obj(
     "pose"            -> placed(Vector3(0, 0, if cars(name) then -2.2 else -1), Quaternion(1, 0, 0, 0)),

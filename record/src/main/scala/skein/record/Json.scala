@@ -45,7 +45,7 @@ private[record] final class JsonRow(columns: Vector[Column]) extends RowWriter:
 private[record] object JsonRow:
   /** A table as a schema: what a row of it looks like. One type a field: viewers refuse a list of types. */
   def schema(table: Table[?]): String =
-    val fields = numbered(table).filterNot(_.isBlob).map: column =>
+    val fields = table.numbered.filterNot(_.isBlob).map: column =>
       val one = column.sqlType.stripSuffix("[]") match
         case "BIGINT" => "integer"
         case "DOUBLE" => "number"
@@ -61,11 +61,8 @@ private[record] object JsonRow:
       "properties" -> Json.obj(fields*)
     )
 
-  /** Its columns, after the number of the row. */
-  def numbered(table: Table[?]): Vector[Column] = Column("row", "BIGINT") +: table.columns.definitions
-
   def of(row: Long, record: Record): String =
-    val json = JsonRow(numbered(Table.of(record)))
+    val json = JsonRow(Table.of(record).numbered)
     json.long(row)
     Table.columnsOf(record).append(record, json)
     json.json

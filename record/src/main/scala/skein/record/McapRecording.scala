@@ -244,7 +244,7 @@ object McapRecording:
 
   private def insert(rows: Gathered, connection: DuckDBConnection): Unit =
     val table   = rows.table
-    val columns = JsonRow.numbered(table)
+    val columns = table.numbered
     val types   =
       columns.map(column => s"${column.name}: '${if column.isBlob then "VARCHAR" else column.sqlType}'")
         .mkString("{", ", ", "}")

@@ -118,8 +118,7 @@ object PostgresRowSink:
       statement.execute(s"""CREATE TABLE "$schema".format (version INTEGER NOT NULL)""")
       statement.execute(s"""INSERT INTO "$schema".format VALUES (${RecordingFormat.version})""")
       for table <- Table.all do
-        val columns = Column("row", "BIGINT") +: table.columns.definitions
-        val defined = columns.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
+        val defined = table.numbered.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
         statement.execute(s"""CREATE TABLE "$schema".${table.name} (${defined.mkString(", ")})"""): Unit
     connection.commit()
     PostgresRowSink(connection, schema, target)

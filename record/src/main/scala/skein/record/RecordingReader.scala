@@ -16,21 +16,8 @@ object RecordingReader:
         .attempt(RecordError.NotARecording(file, _)):
           for flight <- Table.flight.read(connection).headOption
           yield Recording(
-            RecordingHeader(flight, Table.vehicle.read(connection), Table.parameter.read(connection)),
-            Table.reading.read(connection),
-            Table.decision.read(connection),
-            Table.sighting.read(connection),
-            Table.measurement.read(connection),
-            Table.sensing.read(connection),
-            Table.planned.read(connection),
-            Table.solved.read(connection),
-            Table.prediction.read(connection),
-            Table.command.read(connection),
-            Table.acknowledgement.read(connection),
-            Table.latency.read(connection),
-            Table.event.read(connection),
-            Table.truth.read(connection),
-            Table.ending.read(connection).headOption
+            RecordingHeader(flight, Table.vehicle.read(connection)),
+            Table.ofRecording.flatMap(_.read(connection))
           )
         .flatMap(_.toRight(RecordError.NotARecording(file, "its table 'flight' is empty")))
 

@@ -6,7 +6,7 @@ object RecordingSchema:
   /** Every table with its columns, types, and whether they may be absent. */
   def markdown: String =
     val tables = Table.all.map: table =>
-      val columns = (Column("row", "BIGINT") +: table.columns.definitions).map: column =>
+      val columns = table.numbered.map: column =>
         s"| `${column.name}` | ${column.sqlType} | ${if column.nullable then "may be absent" else ""} |"
       s"## ${table.name}\n\n${meaning(table.name)}\n\n| column | " +
         s"type | |\n|---|---|---|\n${columns.mkString("\n")}\n"

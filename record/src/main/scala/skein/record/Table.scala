@@ -20,8 +20,10 @@ private[record] final case class Table[A <: Record](
     since: Int = RecordingFormat.oldest
 ):
 
-  def create: String =
-    (Column("row", "BIGINT") +: columns.definitions).map(_.sql).mkString(s"CREATE TABLE $name (", ", ", ")")
+  /** Its columns, after the number of the row. */
+  def numbered: Vector[Column] = Column("row", "BIGINT") +: columns.definitions
+
+  def create: String = numbered.map(_.sql).mkString(s"CREATE TABLE $name (", ", ", ")")
 
   /** Appends rows, each with its number, without committing. */
   def append(rows: Iterable[(Long, A)], connection: DuckDBConnection): Unit =
@@ -140,6 +142,9 @@ private[record] object Table:
       truth,
       ending
     )
+
+  /** Those of which [[Recording]]s are made: images and clouds are read where they are wanted. */
+  val ofRecording: Vector[Table[? <: Record]] = all.filterNot(table => table == image || table == cloud)
 
   private val byRows: Map[Class[?], Table[? <: Record]] = all.map(table => table.rows -> table).toMap
 
