@@ -59,14 +59,7 @@ final class Ddpg(
     critics.follow()
 
   private def choose(by: Network, seen: Array[Float], from: Int, until: Int): Unit =
-    System.arraycopy(
-      seen,
-      from * observations,
-      pass.input,
-      from * observations,
-      (until - from) * observations
-    )
-    pass.forward(by, from, until)
+    pass.forward(by, seen, from, until)
     var at = from * actions
     while at < until * actions do
       chosen(at) = StrictMath.tanh(pass.output(at)).toFloat

@@ -109,6 +109,11 @@ final class Pass(widths: Vector[Int], val rows: Int):
   /** The same by the inputs, after [[backwardToInput]]. */
   def inputError: Array[Float] = errors(0)
 
+  /** Of rows of what is seen. */
+  def forward(network: Network, seen: Array[Float], from: Int, until: Int): Unit =
+    System.arraycopy(seen, from * widths(0), input, from * widths(0), (until - from) * widths(0))
+    forward(network, from, until)
+
   /** @param until rows; not included
     */
   def forward(network: Network, from: Int, until: Int): Unit =

@@ -45,8 +45,7 @@ final class Ppo(
     rollout.clear()
 
   def explore(seen: Array[Float], into: Array[Float]): Unit =
-    System.arraycopy(seen, 0, actorPass.input, 0, seen.length)
-    actorPass.forward(actor, 0, environments)
+    actorPass.forward(actor, seen, 0, environments)
     for row <- 0 until environments do
       var log = 0.0
       for action <- 0 until actions do
@@ -58,8 +57,7 @@ final class Ppo(
     value(seen, values)
 
   private def value(seen: Array[Float], into: Array[Float]): Unit =
-    System.arraycopy(seen, 0, criticPass.input, 0, seen.length)
-    criticPass.forward(critic, 0, environments)
+    criticPass.forward(critic, seen, 0, environments)
     System.arraycopy(criticPass.output, 0, into, 0, environments)
 
   def learn(seen: Array[Float], chosen: Array[Float], task: Task): Unit =

@@ -49,14 +49,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
 
   /** Draws actions where rows of what is seen lead, and how likely each was. */
   private def draw(seen: Array[Float], from: Int, until: Int): Unit =
-    System.arraycopy(
-      seen,
-      from * observations,
-      pass.input,
-      from * observations,
-      (until - from) * observations
-    )
-    pass.forward(actor, from, until)
+    pass.forward(actor, seen, from, until)
     var row = from
     while row < until do
       var log    = 0.0
