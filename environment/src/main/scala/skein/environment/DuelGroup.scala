@@ -174,14 +174,7 @@ private final class DuelGroup(
     duels.restart(world, 0, start.evaderNorthM, start.evaderEastM, start.evaderHeadingRad)
     duels.restart(world, 1, start.pursuerNorthM, start.pursuerEastM, start.pursuerHeadingRad)
 
-  /** What an environment shows beside its first observation. */
-  private def clear(world: Int): Unit =
-    val number = first + world
-    into.distance(number, startM(world))
-    into.time(number, 0)
-    for agent <- vehicles.indices do into.reward(agent, number, 0)
-    into.terminated(number, false)
-    into.truncated(number, false)
+  private def clear(world: Int): Unit = into.begun(first + world, startM(world))
 
   /** What the learners that are due see; the others' observations stay as they are. */
   private def show(to: FloatBuffer): Unit =

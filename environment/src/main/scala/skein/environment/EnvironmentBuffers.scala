@@ -55,6 +55,14 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
       agent += 1
     -1
 
+  /** What an environment shows beside its first observation. */
+  def begun(number: Int, distanceM: Float): Unit =
+    distance(number, distanceM)
+    time(number, 0)
+    for agent <- 0 until agents do reward(agent, number, 0)
+    terminated(number, false)
+    truncated(number, false)
+
   def distance(number: Int, metres: Float): Unit         = distances.put(number, metres): Unit
   def time(number: Int, seconds: Float): Unit            = times.put(number, seconds): Unit
   def terminated(number: Int, value: Boolean): Unit      = terminations.put(number, byte(value)): Unit

@@ -85,13 +85,7 @@ private final class ScenarioGroup(
       flights(number).await()
       show(number, into.observations)
 
-  /** What an environment shows beside its first observation. */
-  private def clear(number: Int): Unit =
-    into.reward(0, number, 0)
-    into.distance(number, flights(number).distanceM.toFloat)
-    into.time(number, 0)
-    into.terminated(number, false)
-    into.truncated(number, false)
+  private def clear(number: Int): Unit = into.begun(number, flights(number).distanceM.toFloat)
 
   private def show(number: Int, to: FloatBuffer): Unit =
     into.due(0, number, true)
