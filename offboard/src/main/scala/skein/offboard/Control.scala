@@ -358,19 +358,9 @@ object Control:
       refusal: Option[(Int, Instant)],
       mode: Option[Long]
   ):
-    private[offboard] def message(system: Int): Message = CommandLong(
-      system,
-      1,
-      command,
-      tries,
-      numbers(0),
-      numbers(1),
-      numbers(2),
-      numbers(3),
-      numbers(4),
-      numbers(5),
-      numbers(6)
-    )
+    private[offboard] def message(system: Int): Message =
+      val Vector(p1, p2, p3, p4, p5, p6, p7) = numbers: @unchecked
+      CommandLong(system, 1, command, tries, p1, p2, p3, p4, p5, p6, p7)
 
   /** How often time is told to have passed. */
   val Tick: Span = Span.ofMillis(10)
