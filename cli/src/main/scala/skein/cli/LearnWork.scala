@@ -7,7 +7,6 @@ import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios
 import skein.search.*
-import skein.search.BlockBytes.given
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.training.{LearnQuestion, LearnSetup}
 import skein.units.{Expect, Span}

@@ -8,7 +8,6 @@ import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
-import skein.search.BlockBytes.given
 import skein.search.{BlockBytes, BlockExecutor, JsonText}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.{Expect, Span}

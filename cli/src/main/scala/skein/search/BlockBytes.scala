@@ -8,11 +8,6 @@ import skein.optimise.RunningStats
 private[skein] object BlockBytes:
   given Codec[RunningStats] = Codec.derived
 
-  given Codec[ArraySeq[Byte]] = Codec.of[ArraySeq[Byte]]((bytes, out) =>
-    out.writeInt(bytes.length)
-    out.write(bytes.toArray)
-  )(in => ArraySeq.unsafeWrapArray(in.readNBytes(Codec.length(in))))
-
   def of[A: Codec](value: A): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(Codec.bytes(value))
 
   /** @param what the bytes should be, in words

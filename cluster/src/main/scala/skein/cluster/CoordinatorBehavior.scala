@@ -64,15 +64,15 @@ private[cluster] final class CoordinatorBehavior private (
       case heard: ToCoordinator => traffic = traffic.hearing(heard)
       case _                    => ()
     command match
-      case ask: ToCoordinator.Ask                                    => asked(ask)
-      case ToCoordinator.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
-      case ToCoordinator.Failed(job.run, worker, number, reason)     =>
+      case ask: Message.Ask                                    => asked(ask)
+      case Message.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
+      case Message.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
-      case ToCoordinator.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
-      case fetch: ToCoordinator.Fetch                    => fetched(fetch)
-      case _: ToCoordinator                              => () // Of an earlier run.
-      case asked: Compute                                => compute(asked)
-      case Cancel                                        =>
+      case Message.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
+      case fetch: Message.Fetch                    => fetched(fetch)
+      case _: ToCoordinator                        => () // Of an earlier run.
+      case asked: Compute                          => compute(asked)
+      case Cancel                                  =>
         state = state.cancelled
         ended(Right(None))
       case Unreachable(address) =>
@@ -89,24 +89,24 @@ private[cluster] final class CoordinatorBehavior private (
       case Farewell =>
         // Stays until the node ends: there are some who ask only now.
         isDone = true
-        addresses.values.foreach(say(_, ToWorker.Goodbye))
+        addresses.values.foreach(say(_, Message.Goodbye))
         save()
         ended(Right(None))
     publish()
     this
 
-  private def asked(ask: ToCoordinator.Ask): Unit =
+  private def asked(ask: Message.Ask): Unit =
     if ask.build != job.build then
       val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
       job.shipment match
-        case Some(shipment) => say(ask.replyTo, ToWorker.Offered(job.run, reason, shipment.program.digest))
+        case Some(shipment) => say(ask.replyTo, Message.Offered(job.run, reason, shipment.program.digest))
         case None           =>
-          say(ask.replyTo, ToWorker.Refused(reason))
+          say(ask.replyTo, Message.Refused(reason))
           once(WorkerEvent.Refused(ask.worker, reason))
-    else if isDone then say(ask.replyTo, ToWorker.Goodbye)
+    else if isDone then say(ask.replyTo, Message.Goodbye)
     else
       addresses += ask.worker -> ask.replyTo
-      if ask.run != job.run then say(ask.replyTo, ToWorker.Welcome(job.run, job.question))
+      if ask.run != job.run then say(ask.replyTo, Message.Welcome(job.run, job.question))
       else
         if !state.workers.get(ask.worker).exists(_.isHere) then
           tell(WorkerEvent.Joined(ask.worker, ask.cores))
@@ -117,7 +117,7 @@ private[cluster] final class CoordinatorBehavior private (
     traffic = traffic.saying(message)
     to ! message
 
-  private def fetched(fetch: ToCoordinator.Fetch): Unit = for shipment <- job.shipment do
+  private def fetched(fetch: Message.Fetch): Unit = for shipment <- job.shipment do
     import fetch.*
     once(WorkerEvent.Fetching(worker))
     val bytes = shipment.piece(content, offset) match
@@ -125,7 +125,7 @@ private[cluster] final class CoordinatorBehavior private (
       case Left(reason) =>
         once(WorkerEvent.Unread(worker, reason))
         ArraySeq.empty[Byte]
-    say(replyTo, ToWorker.Piece(content, offset, bytes))
+    say(replyTo, Message.Piece(content, offset, bytes))
 
   private def once(news: WorkerEvent): Unit =
     if !told(news) && told.size < MostTold then
@@ -137,7 +137,7 @@ private[cluster] final class CoordinatorBehavior private (
     state = after
     block match
       case Some(one) =>
-        say(addresses(worker), ToWorker.Give(job.run, one.number, one.work))
+        say(addresses(worker), Message.Give(job.run, one.number, one.work))
         serve(worker, holding + one.number)
       case None =>
         val record = state.workers(worker)

@@ -17,7 +17,7 @@ final class MessageSerializer(system: ExtendedActorSystem) extends SerializerWit
   def manifest(message: AnyRef): String = "1"
 
   def toBinary(message: AnyRef): Array[Byte] = message match
-    case ours: (ToCoordinator | ToWorker) => codec.bytes(ours)
+    case ours: Message => codec.bytes(ours)
     case other => throw NotSerializableException(s"expected a message of the cluster, came ${other.getClass}")
 
   def fromBinary(bytes: Array[Byte], manifest: String): AnyRef =

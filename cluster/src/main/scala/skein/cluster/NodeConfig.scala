@@ -45,8 +45,7 @@ private[cluster] object NodeConfig:
         allow-java-serialization = off
         serializers.skein = "skein.cluster.MessageSerializer"
         serialization-bindings {
-          "skein.cluster.ToCoordinator" = skein
-          "skein.cluster.ToWorker" = skein
+          "skein.cluster.Message" = skein
         }
       }
       remote {

@@ -1,6 +1,5 @@
 package skein.cluster
 
-import java.util.Locale
 import java.util.concurrent.{ArrayBlockingQueue, ExecutorService}
 import org.apache.pekko.actor.typed.scaladsl.{AbstractBehavior, ActorContext, Behaviors, TimerScheduler}
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
@@ -8,6 +7,7 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
 import skein.cluster.jars.{Acceptance, Sha256}
+import skein.units.Decimals.fixed
 
 /** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the
   * question before it is a member, and for blocks once it is: whoever is no member would not be missed.
@@ -45,7 +45,7 @@ private[cluster] final class WorkerBehavior private (
       member = true
       askIfReady()
       this
-    case ToWorker.Welcome(welcome, question) =>
+    case Message.Welcome(welcome, question) =>
       if welcome != run then
         run = welcome
         solvers = None
@@ -60,9 +60,9 @@ private[cluster] final class WorkerBehavior private (
           askIfReady()
           this
         case Left(reason) =>
-          coordinator ! ToCoordinator.Unable(run, self.name, reason)
+          coordinator ! Message.Unable(run, self.name, reason)
           end(End.Refused(s"cannot answer the coordinator's question: $reason"))
-    case ToWorker.Give(of, number, work) if of == run && !held(number) && held.size < MessageCodec.MostHeld =>
+    case Message.Give(of, number, work) if of == run && !held(number) && held.size < MessageCodec.MostHeld =>
       solvers.foreach: ready =>
         if begun == 0 then tell(s"computes its first block, ${self.age}")
         begun += 1
@@ -75,38 +75,33 @@ private[cluster] final class WorkerBehavior private (
         case Right(bytes) =>
           blocks += 1
           busy += nanos
-          coordinator ! ToCoordinator.Done(run, self.name, number, nanos, bytes)
-        case Left(reason) => coordinator ! ToCoordinator.Failed(run, self.name, number, reason)
+          coordinator ! Message.Done(run, self.name, number, nanos, bytes)
+        case Left(reason) => coordinator ! Message.Failed(run, self.name, number, reason)
       ask()
       this
-    case ToWorker.Refused(reason)              => end(End.Refused(reason))
-    case ToWorker.Offered(of, reason, program) =>
+    case Message.Refused(reason)              => end(End.Refused(reason))
+    case Message.Offered(of, reason, program) =>
       self.programs.of(program) match
         case Right(accepted) => end(End.Offered(of, accepted))
         case Left(why)       =>
-          coordinator ! ToCoordinator.Unable(of, self.name, s"$reason; $why")
+          coordinator ! Message.Unable(of, self.name, s"$reason; $why")
           end(End.Refused(s"$reason; $why"))
-    case ToWorker.Goodbye => end(End.Finished)
-    case Unreachable      => end(End.Lost)
-    case _                => this // Of an earlier run, or a block that it has.
+    case Message.Goodbye => end(End.Finished)
+    case Unreachable     => end(End.Lost)
+    case _               => this // Of an earlier run, or a block that it has.
 
   private def askIfReady(): Unit = if member && solvers.isDefined then ask()
 
   private def ask(): Unit =
-    coordinator ! ToCoordinator.Ask(self.name, self.cores, self.build, run, held, context.self)
+    coordinator ! Message.Ask(self.name, self.cores, self.build, run, held, context.self)
 
   private def end(how: End): Behavior[Command] =
     if blocks > 0 then tell(summary)
     onEnd(how)
     Behaviors.stopped
 
-  private def summary = String.format(
-    Locale.ROOT,
-    "%d %s computed in %.1f s of its cores",
-    blocks: java.lang.Long,
-    if blocks == 1 then "block" else "blocks",
-    busy * 1e-9: java.lang.Double
-  )
+  private def summary =
+    s"$blocks ${if blocks == 1 then "block" else "blocks"} computed in ${(busy * 1e-9).fixed(1)} s of its cores"
 
   private def inPool(body: => Command): Unit =
     val me = context.self
@@ -152,12 +147,7 @@ private[cluster] object WorkerBehavior:
       programs: Acceptance = Acceptance.none
   ):
     /** For a person; it started at `startedAt` by `System.nanoTime`. */
-    def age: String =
-      String.format(
-        Locale.ROOT,
-        "%.1f s after its start",
-        (System.nanoTime() - startedAt) * 1e-9: java.lang.Double
-      )
+    def age: String = s"${((System.nanoTime() - startedAt) * 1e-9).fixed(1)} s after its start"
 
   enum End:
     case Finished, Lost

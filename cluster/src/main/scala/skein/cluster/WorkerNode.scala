@@ -144,7 +144,7 @@ final class WorkerNode(
       case Right(program)                   => program
       case Left(NotFetched.CutOff)          => End.Lost
       case Left(NotFetched.Refused(reason)) =>
-        from ! ToCoordinator.Unable(run, name, reason)
+        from ! Message.Unable(run, name, reason)
         End.Refused(reason)
 
   private def piece(
@@ -155,14 +155,14 @@ final class WorkerNode(
   ): Option[ArraySeq[Byte]] =
     // It fails at once where this node ended meanwhile, since nobody let it join.
     Try(Await.result(
-      from.ask[ToWorker](ToCoordinator.Fetch(name, content, offset, _))(
+      from.ask[ToWorker](Message.Fetch(name, content, offset, _))(
         using
         Timeout(WorkerNode.AnswerWithin),
         system.toTyped.scheduler
       ),
       Duration.Inf
     )).toOption.collect:
-      case ToWorker.Piece(`content`, `offset`, bytes) => bytes
+      case Message.Piece(`content`, `offset`, bytes) => bytes
 
 object WorkerNode:
   /** Pieces of a program are asked for so often, each time for so long, until the coordinator counts as lost.

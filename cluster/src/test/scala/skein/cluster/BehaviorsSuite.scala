@@ -33,8 +33,8 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     def next(): A       = Option(queue.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was said"))
 
   private def run(asked: ToCoordinator) = asked match
-    case ask: ToCoordinator.Ask => ask.run
-    case other                  => fail(s"expected an Ask, came $other")
+    case ask: Message.Ask => ask.run
+    case other            => fail(s"expected an Ask, came $other")
 
   test("a worker gets its question ready before it is a member, and asks for blocks once it is"):
     val heard  = Heard[ToCoordinator]()
@@ -53,7 +53,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
       _ => ()
     ))
     assertEquals(run(heard.next()), 0L)
-    worker ! ToWorker.Welcome(7, question)
+    worker ! Message.Welcome(7, question)
     assert(ready.poll(30, TimeUnit.SECONDS) == 1, "was not made ready")
     assert(heard.said.forall(run(_) == 0), "asked for blocks")
     worker ! WorkerBehavior.Member
@@ -77,10 +77,10 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
       ))
     def worker(name: String, run: Long) =
       val heard = Heard[ToWorker]()
-      coordinator ! ToCoordinator.Ask(name, 1, "one", run, Set.empty, heard.actor)
+      coordinator ! Message.Ask(name, 1, "one", run, Set.empty, heard.actor)
       heard
     val preparing = worker("anna", 0)
-    assertEquals(preparing.next(), ToWorker.Welcome(7, question))
+    assertEquals(preparing.next(), Message.Welcome(7, question))
     val working = worker("ben", 7)
     // Also while it has not asked for a block.
     worker("dora", 0).next(): Unit
@@ -92,8 +92,8 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     // Who is out already is not taken out again: somebody else may be there by now.
     coordinator ! CoordinatorBehavior.Removed(elsewhere)
     coordinator ! CoordinatorBehavior.Farewell
-    assertEquals(preparing.next(), ToWorker.Goodbye)
-    assertEquals(working.next(), ToWorker.Goodbye)
-    assertEquals(worker("cleo", 0).next(), ToWorker.Goodbye)
+    assertEquals(preparing.next(), Message.Goodbye)
+    assertEquals(working.next(), Message.Goodbye)
+    assertEquals(worker("cleo", 0).next(), Message.Goodbye)
     assert(down.isEmpty, down.toString)
     ledger.close()

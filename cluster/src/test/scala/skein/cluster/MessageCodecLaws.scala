@@ -27,24 +27,24 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
 
   private val digest = blob.map(bytes => Sha256.of(bytes.toArray))
 
-  private val messages: Gen[ToCoordinator | ToWorker] = Gen.oneOf(
+  private val messages: Gen[Message] = Gen.oneOf(
     for
       worker  <- text; cores <- Gen.choose(1, MessageCodec.MostCores); build <- text; run <- number
       holding <- Gen.listOf(number)
-    yield ToCoordinator.Ask(worker, cores, build, run, holding.toSet, nobody),
+    yield Message.Ask(worker, cores, build, run, holding.toSet, nobody),
     for run <- number; worker <- text; block <- number; busy <- number; answer <- blob
-    yield ToCoordinator.Done(run, worker, block, busy, answer),
+    yield Message.Done(run, worker, block, busy, answer),
     for run <- number; worker <- text; block <- number; why <- text
-    yield ToCoordinator.Failed(run, worker, block, why),
-    for run <- number; worker <- text; why <- text yield ToCoordinator.Unable(run, worker, why),
-    for run <- number; question <- blob yield ToWorker.Welcome(run, question),
-    for run <- number; block <- number; work <- blob yield ToWorker.Give(run, block, work),
-    text.map(ToWorker.Refused(_)),
-    Gen.const(ToWorker.Goodbye),
-    for run <- number; reason <- text; program <- digest yield ToWorker.Offered(run, reason, program),
-    for content <- digest; offset <- number; bytes <- blob yield ToWorker.Piece(content, offset, bytes),
+    yield Message.Failed(run, worker, block, why),
+    for run <- number; worker <- text; why <- text yield Message.Unable(run, worker, why),
+    for run <- number; question <- blob yield Message.Welcome(run, question),
+    for run <- number; block <- number; work <- blob yield Message.Give(run, block, work),
+    text.map(Message.Refused(_)),
+    Gen.const(Message.Goodbye),
+    for run <- number; reason <- text; program <- digest yield Message.Offered(run, reason, program),
+    for content <- digest; offset <- number; bytes <- blob yield Message.Piece(content, offset, bytes),
     for worker <- text; content <- digest; offset <- number
-    yield ToCoordinator.Fetch(worker, content, offset, nobody)
+    yield Message.Fetch(worker, content, offset, nobody)
   )
 
   property("a message is read as it was written"):

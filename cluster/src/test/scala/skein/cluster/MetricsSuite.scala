@@ -17,7 +17,7 @@ class MetricsSuite extends munit.FunSuite:
       done = 1,
       of = 3,
       died = 1,
-      traffic = Traffic().hearing(ToCoordinator.Failed(1, "anna", 0, "")).saying(ToWorker.Goodbye),
+      traffic = Traffic().hearing(Message.Failed(1, "anna", 0, "")).saying(Message.Goodbye),
       ledgerBytes = 1L << 40
     )
   private val text  = Metrics.text(progress, members = 2)

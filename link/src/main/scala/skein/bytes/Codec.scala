@@ -9,6 +9,7 @@ import java.io.{
   IOException
 }
 import java.util.Locale
+import scala.collection.immutable.ArraySeq
 import scala.compiletime.{constValue, erasedValue, summonInline}
 import scala.deriving.Mirror
 import skein.units.*
@@ -55,16 +56,28 @@ object Codec:
       case wrong: IOException => Left(wrong.getMessage)
 
   /** How many come: no more than there are bytes left. */
-  def length(in: DataInputStream): Int =
+  def length(in: DataInputStream, atMost: Int = Int.MaxValue): Int =
     val came = in.readInt()
-    if came < 0 || came > in.available then
-      throw IOException(s"expected a length of 0 to ${in.available}, came $came")
+    val most = atMost.min(in.available)
+    if came < 0 || came > most then throw IOException(s"expected a length of 0 to $most, came $came")
     came
+
+  /** Bytes behind their length.
+    *
+    * @throws IllegalArgumentException where more are to be written
+    */
+  def blob(most: Int): Codec[Array[Byte]] = of[Array[Byte]]((value, out) =>
+    require(value.length <= most, s"a part of a message has ${value.length} bytes, at most $most go")
+    out.writeInt(value.length)
+    out.write(value)
+  )(in => in.readNBytes(length(in, most)))
 
   given Codec[Boolean]         = of[Boolean]((value, out) => out.writeBoolean(value))(_.readBoolean())
   given Codec[Int]             = of[Int]((value, out) => out.writeInt(value))(_.readInt())
   given Codec[Long]            = of[Long]((value, out) => out.writeLong(value))(_.readLong())
   given Codec[Double]          = of[Double]((value, out) => out.writeDouble(value))(_.readDouble())
+  given Codec[String]          = blob(Int.MaxValue).imap(String(_, "UTF-8"))(_.getBytes("UTF-8"))
+  given Codec[ArraySeq[Byte]]  = blob(Int.MaxValue).imap(ArraySeq.unsafeWrapArray)(_.toArray)
   given Codec[Instant]         = Codec[Long].imap[Instant](Instant.ofNanos(_))(_.toNanos)
   given Codec[Span]            = Codec[Long].imap[Span](Span.ofNanos(_))(_.toNanos)
   given Codec[Metres]          = Codec[Double].imap[Metres](Metres(_))(_.value)
@@ -72,13 +85,6 @@ object Codec:
   given Codec[Radians]         = Codec[Double].imap[Radians](Radians(_))(_.value)
   given Codec[Vector3]         = derived
   given Codec[Quaternion]      = derived
-
-  given Codec[String] = new Codec[String]:
-    def write(value: String, out: DataOutputStream): Unit =
-      val encoded = value.getBytes("UTF-8")
-      out.writeInt(encoded.length)
-      out.write(encoded)
-    def read(in: DataInputStream): String = String(in.readNBytes(length(in)), "UTF-8")
 
   given option[A](using codec: Codec[A]): Codec[Option[A]] = new Codec[Option[A]]:
     def write(value: Option[A], out: DataOutputStream): Unit =
