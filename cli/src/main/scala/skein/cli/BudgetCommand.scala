@@ -167,7 +167,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
         .flatMap: question =>
           val shown = Shown(options.json.value)
           OutFolder.alone(folder):
-            ClusterRun.using(asked, program, Questions.budget(question), folder, threads, shown): run =>
+            ClusterRun.using(asked, program, QuestionKind.Budget.of(question), folder, threads, shown): run =>
               fly(subjects.zipWithIndex.map((one, number) =>
                 ClusterSubject(one, number, run, () => run.share, asked.block)
               ))

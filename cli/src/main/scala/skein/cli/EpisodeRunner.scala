@@ -50,6 +50,6 @@ private[cli] object EpisodeRunner:
       try body(here(ready, threads))
       catch case failed: BlocksFailed => Left(failed.getMessage)
     case Some(asked) =>
-      val posed = Questions.search(VerifiedQuestion.bytes(question, ready))
+      val posed = QuestionKind.Search.of(VerifiedQuestion.bytes(question, ready))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
         body(elsewhere(run, asked.block.getOrElse(ready.blockEpisodes)))

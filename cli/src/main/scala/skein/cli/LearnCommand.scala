@@ -228,7 +228,7 @@ final class LearnCommand(program: String)(using Scenarios)
         isElsewhere = false
       ))
     case Some(asked) =>
-      val posed = Questions.learn(LearnWork.question(setup))
+      val posed = QuestionKind.Learn.of(LearnWork.question(setup))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
         val line               = ProgressLine(100, Console.err)
         def wait(): Unit       = line.show((100 * run.share).toLong, run.status)

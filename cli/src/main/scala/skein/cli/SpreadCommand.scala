@@ -85,7 +85,7 @@ final class SpreadCommand(program: String)(using Scenarios)
         ClusterRun.using(
           asked,
           program,
-          Questions.spread(question),
+          QuestionKind.Spread.of(question.bytes),
           folder,
           Runtime.getRuntime.availableProcessors,
           shown

@@ -77,7 +77,8 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
           for
             folder <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("torture")))
             _      <- OutFolder.alone(folder):
-              ClusterRun.using(asked, program, Questions.torture(question), folder, threads, shown):
+              val posed = QuestionKind.Torture.of(question.bytes)
+              ClusterRun.using(asked, program, posed, folder, threads, shown):
                 elsewhere(_, ready, options, asked, count)
           yield ()
       _      = count.end()

@@ -64,7 +64,7 @@ final class WorkerCommand(using Scenarios)
         listen,
         tls,
         threads,
-        Questions.solvers,
+        QuestionKind.solvers,
         patience.toNanos.nanos,
         programs = programs
       )(say)

@@ -30,7 +30,8 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
 
   /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
   private lazy val worker: BlockExecutor =
-    val solver = Questions.solvers.of(Questions.learn(LearnWork.question(setup))).fold(fail(_), identity)()
+    val solver =
+      QuestionKind.solvers.of(QuestionKind.Learn.of(LearnWork.question(setup))).fold(fail(_), identity)()
     new BlockExecutor:
       def cancel(): Unit                                                           = ()
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =

@@ -27,7 +27,8 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
 
   /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
   private def worker(words: String)(change: ArraySeq[Byte] => ArraySeq[Byte] = identity): BlockExecutor =
-    val solver = Questions.solvers.of(Questions.spread(question(words))).fold(fail(_), identity)()
+    val solver =
+      QuestionKind.solvers.of(QuestionKind.Spread.of(question(words).bytes)).fold(fail(_), identity)()
     new BlockExecutor:
       def cancel(): Unit                                                           = ()
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
