@@ -50,20 +50,22 @@ final case class BudgetMap(
       s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
 
   /** One row per cell. */
-  def csvRows: Vector[String] =
+  def csvRows: Vector[String] = cells.map: (cell, count) =>
+    Vector(periodMs, cell.meanMs, cell.jitterMs, cell.objective, cell.sd, count, cell.deviation).mkString(",")
+
+  /** Those that were flown, and how often. */
+  private def cells: Vector[(BudgetMap.Cell, Int)] =
     for
       (jitter, i) <- budget.jittersMs.zipWithIndex
       (mean, j)   <- budget.meansMs.zipWithIndex
       tally       <- budget.cells(i)(j).toVector
-    yield Vector(
-      periodMs,
+    yield BudgetMap.Cell(
       mean / legs.perRoundTrip,
       jitter / legs.perRoundTrip,
       tally.mean,
       tally.sd,
-      tally.count,
       budget.deviation(i, j).get
-    ).mkString(",")
+    ) -> tally.count
 
   private def ms(roundTripMs: Double): String =
     (roundTripMs / legs.perRoundTrip).fixed(0)
@@ -128,15 +130,5 @@ object BudgetMap:
       ,
       map.budget.truth,
       map.episodes,
-      for
-        (jitter, i) <- map.budget.jittersMs.zipWithIndex
-        (mean, j)   <- map.budget.meansMs.zipWithIndex
-        tally       <- map.budget.cells(i)(j).toVector
-      yield Cell(
-        mean / map.legs.perRoundTrip,
-        jitter / map.legs.perRoundTrip,
-        tally.mean,
-        tally.sd,
-        map.budget.deviation(i, j).get
-      )
+      map.cells.map(_._1)
     )

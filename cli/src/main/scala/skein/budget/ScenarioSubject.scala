@@ -5,8 +5,8 @@ import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
-import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective, WeightedSum}
-import skein.scenario.{Measure, Scenario, Scenarios, Tracks}
+import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective}
+import skein.scenario.{Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
@@ -15,16 +15,11 @@ import skein.units.*
 /** What is asked of a scenario: a sum of its measures, under a loop. */
 final case class ScenarioQuestion(
     scenario: Scenario,
-    terms: Vector[(Double, Measure)],
+    objective: TeamObjective,
     conditions: Conditions,
     seed: Long,
     threads: Int
 ):
-  /** As users write it. */
-  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamObjective.keyOf(measure))
-
-  /** Of the sum, where all terms agree. */
-  def unit: String = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
 
   /** How it is flown: forward by lanes or world by world where forward simulation knows its policies and
     * measures, else in flights in virtual time.
@@ -38,7 +33,7 @@ final case class ScenarioQuestion(
       case Right(plane)                =>
         for flown <- conditions.copy(altitudeM = -plane.agents.head.altitudeDownM).resolved
         yield
-          if terms.forall(_._2.reduced.nonEmpty) then TeamSubject(this, plane, flown)
+          if objective.measures.forall(_.reduced.nonEmpty) then TeamSubject(this, plane, flown)
           else FlownSubject.forward(this, plane, flown)
 
 object ScenarioQuestion:
@@ -52,28 +47,24 @@ object ScenarioQuestion:
       seed: Long,
       threads: Int
   ): Either[String, ScenarioQuestion] =
-    val measures = scenario.measures.map(measure => TeamObjective.keyOf(measure) -> measure)
-    val known    = measures.map(_._1).mkString(", ")
     for
-      first <-
-        measures.headOption.toRight(s"--scenario: expected one with measures; ${scenario.name} has none")
-      sum <- WeightedSum
-        .parse(objective.getOrElse(first._1), known, hyphened = true): (name, arguments) =>
-          measures
-            .collectFirst { case (`name`, measure) if arguments.isEmpty => measure }
-            .toRight(s"expected one of $known, came '$name${arguments.fold("")(a => s"($a)")}'")
+      first <- scenario.measures.headOption.toRight(
+        s"--scenario: expected one with measures; ${scenario.name} has none"
+      )
+      asked <- TeamObjective
+        .ofAll(objective.getOrElse(TeamObjective.keyOf(first)), scenario)
         .left
         .map("--objective: " + _)
-    yield ScenarioQuestion(scenario, sum.terms, conditions, seed, threads)
+    yield ScenarioQuestion(scenario, asked, conditions, seed, threads)
 
 /** In the plane, by measures that are of a quantity. */
 final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
     extends ScenarioSubject(question, flown.vehicle.description):
   private val candidate =
-    TeamCandidate(plane, TeamObjective.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
+    TeamCandidate(plane, TeamObjective.judged(question.objective.measures, durationS, periodMs * 1e-3))
 
   private def fly(timing: LoopTiming, link: DelayTable, episodes: Int, isCancelled: () => Boolean) =
-    TeamEvaluator(batch(timing), _ => candidate, link, question.terms.map(_._1), question.seed)
+    TeamEvaluator(batch(timing), _ => candidate, link, question.objective.terms.map(_._1), question.seed)
       .talliesUnless(isCancelled)(Vector(Vector.empty), 0 until episodes)
       .map(_.head)
       .toRight(BudgetSubject.Stopped)
@@ -112,7 +103,7 @@ final class FlownSubject private (
   def truth: Either[String, Double] = value(None, 0).map(_.getOrElse(Double.NaN))
 
   private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
-    fly(link, episode).map(WholeFlights.sum(question.terms, _))
+    fly(link, episode).map(WholeFlights.sum(question.objective.terms, _))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()
@@ -135,7 +126,7 @@ object FlownSubject:
     def tracks(timing: LoopTiming, link: Delays, episode: Int) =
       val key = WorldRandom.key(question.seed, 0, episode)
       WholeFlights.forward(question.scenario, plane, timing, link, flown.vehicle.response, key)
-    val plain = question.terms.map(_._2).filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
+    val plain = question.objective.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
     FlownSubject(
       question,
       flown.vehicle.description,
@@ -175,6 +166,6 @@ sealed abstract class ScenarioSubject(question: ScenarioQuestion, vehicles: Stri
       question.conditions.durationS,
       vehicles,
       question.scenario.title,
-      question.formula,
-      question.unit
+      question.objective.formula,
+      question.objective.unit
     )

@@ -1,7 +1,7 @@
 package skein.report
 
 import skein.measure.{DistanceCurve, Distribution, FlightSummary}
-import skein.units.Decimals.fixed
+import skein.units.Decimals.{fixed, signed}
 
 /** How much a loop's result varies from flight to flight. */
 object SpreadTable:
@@ -53,7 +53,7 @@ object SpreadTable:
           metres(closest, _.mean),
           closest.fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString),
           (mean zip truths.get(groups(group).head.policy)).fold("")((distance, truth) =>
-            String.format(java.util.Locale.ROOT, "%+.1f %%", 100 * (distance.mean / truth - 1))
+            s"${(100 * (distance.mean / truth - 1)).signed(1)} %"
           )
         )
     )

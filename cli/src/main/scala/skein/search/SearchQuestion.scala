@@ -134,13 +134,7 @@ final case class SearchSetup(
 
   private val paper = PolicyFile.paperOf(role)
 
-  val baseline: Baseline =
-    Baseline(
-      "paper",
-      paper.family.name,
-      paper.family.space.axes.map(_.name).zip(paper.parameters),
-      paper.label
-    )
+  val baseline: Baseline = Baseline.of(paper)
 
   private def policy(candidate: Vector[Double]) = PolicyFile(role, family, candidate)
 

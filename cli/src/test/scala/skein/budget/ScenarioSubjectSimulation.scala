@@ -74,7 +74,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
 
   test("what cannot be swept is told in a line"):
     assertEquals(
-      question(surround, Some("speed"), Conditions("stream", "drag", 100, 20), 1).map(_.formula),
+      question(surround, Some("speed"), Conditions("stream", "drag", 100, 20), 1).map(_.objective.formula),
       Left(
         "--objective: objective 'speed', at character 1: expected one of " +
           "off-ring, ring, nearest, gap, surrounded-after, came 'speed'"
