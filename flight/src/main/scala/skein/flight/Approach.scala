@@ -40,20 +40,15 @@ private[flight] final class Approach(
     look: start =>
       val way   = (goalNed - start.positionNed).norm
       val until = clock.now() + Span.ofSeconds(2 * way / Cruise.value) + Patience
-      steer(goalNed, limits, until, None)
+      steer(Goal(goalNed, limits, until), None)
 
-  private def steer(
-      goalNed: Vector3,
-      limits: Limits,
-      until: Instant,
-      before: Option[Move]
-  ): Future[Either[String, Kinematics]] =
+  private def steer(goal: Goal, before: Option[Move]): Future[Either[String, Kinematics]] =
     look: state =>
       val over = calledOff()
       if over.isDefined then park(before).map(_ => Left(over.get))
-      else if limits.hold(state, goalNed) then settle(goalNed, limits, until, before)
-      else if clock.now() > until then
-        val off = (state.positionNed - goalNed).norm
+      else if goal.isHeld(state) then settle(goal, before)
+      else if clock.now() > goal.until then
+        val off = (state.positionNed - goal.placeNed).norm
         park(before).map(_ =>
           Left(
             s"'$name' did not come to rest at its start: ${off.fixed(1)} m off, at " +
@@ -61,29 +56,23 @@ private[flight] final class Approach(
           )
         )
       else
-        val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goalNed, Cruise)
+        val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal.placeNed, Cruise)
         val move     = vehicle.act(Action.Velocity(velocity, Yaw.Towards(Radians(0))), Lasts)
         for
           ended <- replaced(before)
           next  <- ended match
             case Some(error) => Future.successful(Left(error.message))
-            case None        =>
-              after(Every.toDuration)(steer(goalNed, limits, until, Some(move)))
+            case None        => after(Every.toDuration)(steer(goal, Some(move)))
         yield next
 
   /** Lets it hover, and looks whether it stays. */
-  private def settle(
-      goalNed: Vector3,
-      limits: Limits,
-      until: Instant,
-      before: Option[Move]
-  ): Future[Either[String, Kinematics]] =
+  private def settle(goal: Goal, before: Option[Move]): Future[Either[String, Kinematics]] =
     def watch(looks: Int, good: Int): Future[Either[String, Kinematics]] = look: state =>
-      val stays = if limits.hold(state, goalNed) then good + 1 else 0
+      val stays = if goal.isHeld(state) then good + 1 else 0
       val over  = calledOff()
       if over.isDefined then Future.successful(Left(over.get))
       else if stays == GoodLooks then Future.successful(Right(state))
-      else if looks == 1 then steer(goalNed, limits, until, None)
+      else if looks == 1 then steer(goal, None)
       else after(Every.toDuration)(watch(looks - 1, stays))
     park(before).flatMap:
       case Some(error) => Future.successful(Left(error.message))
@@ -109,10 +98,13 @@ private[flight] object Approach:
   private type Move = Future[Either[VehicleError, Boolean]]
 
   /** How near to its goal a vehicle has to be, how slow, and how well it looks north. */
-  final case class Limits(off: Metres, speed: MetresPerSecond, yaw: Radians):
-    def hold(state: Kinematics, goalNed: Vector3): Boolean =
-      (state.positionNed - goalNed).norm <= off.value &&
-        state.velocityNed.norm <= speed.value && math.abs(state.orientation.yawRad) <= yaw.value
+  final case class Limits(off: Metres, speed: MetresPerSecond, yaw: Radians)
+
+  private final case class Goal(placeNed: Vector3, limits: Limits, until: Instant):
+    def isHeld(state: Kinematics): Boolean =
+      (state.positionNed - placeNed).norm <= limits.off.value &&
+        state.velocityNed.norm <= limits.speed.value &&
+        math.abs(state.orientation.yawRad) <= limits.yaw.value
 
   /** On the way. */
   val Passing: Limits = Limits(Metres(1), MetresPerSecond(0.5), Radians(math.toRadians(10)))
