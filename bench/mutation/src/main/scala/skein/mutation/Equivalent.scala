@@ -42,13 +42,6 @@ object Equivalent:
     Equivalent("UntilCertain.scala", "val Attempts", "20", "21", Choice),
     Equivalent("PlanSettings.scala", "step: Span", "100", "101", Choice),
     Equivalent("PlanSettings.scala", "stepsPerKnot", "3", "4", Choice),
-    Equivalent(
-      "TeamLog.scala",
-      "action.breaches.headOption",
-      "headOption",
-      "lastOption",
-      "one limit is named of those that a plan breaks"
-    ),
     Equivalent("TeamPlanning.scala", "if sinceDecisionS > 0 then", ">", ">=", "over 0 it is infinite, too"),
     Equivalent("FaultPlan.scala", "added.nextDouble() < 0.3", "<", "<=", Never),
     Equivalent("FaultPlan.scala", "added.nextDouble() < 0.1", "<", "<=", Never),
@@ -88,13 +81,6 @@ object Equivalent:
     Equivalent("FaultyTransport.scala", "private var most", "0", "1", "one is unanswered in every flight"),
     Equivalent("TortureFlight.scala", "var mostPending", "0L", "1L", "one is under way in every flight"),
     Equivalent("TortureFlight.scala", "41451", "41451", "41452", "any port"),
-    Equivalent(
-      "Torture.scala",
-      "underWay < threads",
-      "<",
-      "<=",
-      "it waits for one of the threads, of which there are no more"
-    ),
     Equivalent("FaultyTransport.scala", "Arr(Int32(1), Int32(2))", "1", "2", Stray),
     Equivalent(
       "Replay.scala",
@@ -132,21 +118,6 @@ object Equivalent:
       "all vehicles have the settings' dead time"
     ),
     Equivalent("GraphLayout.scala", "maxOption.getOrElse(0)", "0", "1", "of no parts none is drawn"),
-    Equivalent(
-      "Team.scala",
-      "planned.headOption",
-      "headOption",
-      "lastOption",
-      "all of them were decided upon one view"
-    ),
-    Equivalent("Team.scala", "((event.ordinal, -1), event)", "1", "2", "any place is no vehicle's below 0"),
-    Equivalent(
-      "Team.scala",
-      "takeRight(settings.movesInFlight.max(2))",
-      "2",
-      "3",
-      "one more, that has ended, may be kept"
-    ),
     Equivalent(
       "Team.scala",
       ").headOption",
@@ -193,7 +164,6 @@ object Equivalent:
       "how long a simulator that is away keeps a client waiting is a choice"
     ),
     Equivalent("RecordingFormat.scala", "val version", "5", "6", "counts how often tables have changed"),
-    Equivalent("FoxgloveViews.scala", "placed(Vector3(0, 0, -1)", "1", "2", Size),
     Equivalent("FoxgloveViews.scala", "Vector3(0.5, 0.5, 0.5)", "0.5", "(2 * 0.5 + 1)", Size),
     Equivalent("FoxgloveViews.scala", "Vector3(0.8, 0.8, 0.25)", "0.8", "(2 * 0.8 + 1)", Size),
     Equivalent("FoxgloveViews.scala", "Vector3(0.8, 0.8, 0.25)", "0.25", "(2 * 0.25 + 1)", Size),

@@ -1,6 +1,5 @@
 package skein.bench.jmh
 
-import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.bench.Works
 import skein.forward.{DelayTable, Duel, LoopTiming, Rollout}
@@ -10,13 +9,7 @@ import skein.simd.WorldRandom
 /** How many million agent-steps a second do the engines of forward simulation make, on one thread? `stream`
   * over `vpn`, 60 s, the reduced model; an agent-step is 0.1 s of one agent.
   */
-@State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.Throughput))
-@OutputTimeUnit(TimeUnit.MICROSECONDS)
-@Warmup(iterations = 3, time = 2)
-@Measurement(iterations = 5, time = 1)
-@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
-class KernelBenchmark:
+class KernelBenchmark extends Rate:
   private var batch: DuelBatch = null
   private var rollout: Rollout = null
   private var witness          = 0.0

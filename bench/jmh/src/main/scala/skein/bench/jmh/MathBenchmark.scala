@@ -1,6 +1,5 @@
 package skein.bench.jmh
 
-import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.bench.SinCos
 import skein.simd.LaneMath
@@ -8,13 +7,7 @@ import skein.simd.LaneMath
 /** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions
   * of numbers a second, on one thread.
   */
-@State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.Throughput))
-@OutputTimeUnit(TimeUnit.MICROSECONDS)
-@Warmup(iterations = 3, time = 2)
-@Measurement(iterations = 5, time = 1)
-@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
-class MathBenchmark:
+class MathBenchmark extends Rate:
   private val numbers = Array.tabulate(1024)(i => (i - 512) / 200f)
   private val others  = numbers.reverse
   private val into    = new Array[Float](1024)

@@ -1,6 +1,5 @@
 package skein.bench.jmh
 
-import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.bench.PlanBench
 import skein.planning.*
@@ -8,13 +7,7 @@ import skein.planning.*
 /** How many million manoeuvres does the planner draw, fly, price and search upon in a second, on one thread?
   * Each is 2 s of pursuer and evader in 20 steps.
   */
-@State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.Throughput))
-@OutputTimeUnit(TimeUnit.MICROSECONDS)
-@Warmup(iterations = 3, time = 2)
-@Measurement(iterations = 5, time = 1)
-@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
-class PlanBenchmark:
+class PlanBenchmark extends Rate:
   private val problem         = PlanBench.problem(behaviours = 1)
   private val planner         = JointPlanner()
   private var plan: JointPlan = null

@@ -1,6 +1,5 @@
 package skein.bench.jmh
 
-import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.bench.Works
 import skein.forward.{DelayTable, Delays, LoopTiming}
@@ -11,13 +10,7 @@ import skein.policy.{ChauffeurEvader, Policy, PolicyFamily}
   * the family, drawn from its space, fly one episode of 60 s of `stream` over `vpn` against the chauffeur's
   * evader.
   */
-@State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.Throughput))
-@OutputTimeUnit(TimeUnit.MICROSECONDS)
-@Warmup(iterations = 3, time = 2)
-@Measurement(iterations = 5, time = 1)
-@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
-class PolicyBenchmark:
+class PolicyBenchmark extends Rate:
   @Param(Array("paper-pursuer", "pure-pursuit", "proportional-navigation", "lead-pursuit", "neural:8x8"))
   var family: String = ""
 

@@ -1,6 +1,5 @@
 package skein.bench.jmh
 
-import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.lanes.QuadrotorKernel
 import skein.units.Vector3
@@ -9,13 +8,7 @@ import skein.vehicle.{Quadrotor, Setpoint}
 /** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? By
   * lanes, `QuadrotorKernel.VEHICLES` of them side by side, and one alone by the scalar reference.
   */
-@State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.Throughput))
-@OutputTimeUnit(TimeUnit.MICROSECONDS)
-@Warmup(iterations = 3, time = 2)
-@Measurement(iterations = 5, time = 1)
-@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
-class QuadrotorBenchmark:
+class QuadrotorBenchmark extends Rate:
   private var kernel: QuadrotorKernel = null
   private var witness                 = 0.0
 
