@@ -37,9 +37,6 @@ ThisBuild / run / javaOptions ++= Jvm.options
 Global / onChangedBuildSource   := ReloadOnSourceChanges
 Global / concurrentRestrictions := TestGroups.restrictions
 
-// Every part on this machine, without the archives: what a project of a user's own builds from, minutes sooner.
-addCommandAlias("installLocal", "publishLocal")
-
 val publishCheck = taskKey[Unit]("fails where a part lacks what a release needs")
 
 // No sockets, no wall clock, no whole flights: for while one works. `test` has all that is not lengthy.
@@ -53,7 +50,7 @@ lazy val root =
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, mujoco, docs)
-    .settings(publish / skip := true, publishCheck := Publishing.check.value)
+    .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
 
 /** What a part is published as: `skein-core` and so on. */
 def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)
