@@ -22,6 +22,8 @@ import skein.port.Moves;
  * after construction but where links need more room than any before; one instance per thread.
  */
 final class LoopDuelKernel extends DuelKernel {
+  private static final int WORLDS = LanePolicy.WORLDS;
+
   /** Times stay within what integers of grains can hold. */
   private static final double MOST_S = 3.5;
 
@@ -31,7 +33,6 @@ final class LoopDuelKernel extends DuelKernel {
   private final LaneAgents evader, pursuer;
   private final boolean withVelocity, withAges;
   private final int[][] readAt = new int[2][WORLDS];
-  private final LaneScores scores;
 
   /** In which somebody is offered something in a beat. */
   private final LaneVectors vectors = new LaneVectors();
@@ -105,6 +106,7 @@ final class LoopDuelKernel extends DuelKernel {
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy,
       boolean shortCut) {
+    super(duel.durationS(), timing.periodS());
     durationS = duel.durationS();
     periodS = timing.periodS();
     steps = (int) Math.round(durationS / periodS);
@@ -125,14 +127,19 @@ final class LoopDuelKernel extends DuelKernel {
     evader =
         new LaneAgents(
             0, duel.evader(), periodS, steering, intervalS, decidesFirst, offers.together, deadTimeS, evaders,
-            evaderPolicy, evaderEffortRad);
+            evaderPolicy, evaderEffortRad());
     pursuer =
         new LaneAgents(
             1, duel.pursuer(), periodS, steering, intervalS, decidesFirst, offers.together, deadTimeS, pursuers,
-            pursuerPolicy, pursuerEffortRad);
+            pursuerPolicy, pursuerEffortRad());
     withVelocity = evaderPolicy.needsVelocity() || pursuerPolicy.needsVelocity();
     withAges = evaderPolicy.needsAges() || pursuerPolicy.needsAges();
-    scores = new LaneScores(durationS, periodS, this);
+    place(0, evaders);
+    place(1, pursuers);
+  }
+
+  private void place(int vehicle, LaneVehicles vehicles) {
+    scores().place(vehicle, vehicles.state, LaneVehicles.X, vehicles.state, LaneVehicles.Y);
   }
 
   /** From a reading to its decision, and from the decision before that to when its command acts. */
@@ -153,8 +160,8 @@ final class LoopDuelKernel extends DuelKernel {
     offers.start(worldKeys, links);
     evader.start();
     pursuer.start();
-    scores.captureWithin(captureRadiusM);
-    scores.start();
+    captureWithin(captureRadiusM);
+    scores().start();
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
         evader.startRow(row);
@@ -181,7 +188,6 @@ final class LoopDuelKernel extends DuelKernel {
       if (!isScored) score(row);
     }
     score(steps);
-    scores.finish();
   }
 
   private void read(int row, int vehicle, LaneVehicles vehicles) {
@@ -204,8 +210,7 @@ final class LoopDuelKernel extends DuelKernel {
   private void score(int row) {
     evader.vehicles.flyToRow(row);
     pursuer.vehicles.flyToRow(row);
-    double timeS = row * periodS;
-    scores.add(evader.vehicles, pursuer.vehicles, (float) timeS, Rollout.isLast10s(timeS, durationS));
+    scores().score((float) (row * periodS));
   }
 
   /** From a row's begin to the end of the episode, as far as integers count. */

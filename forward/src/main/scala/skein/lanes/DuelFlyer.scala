@@ -86,13 +86,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       for lane <- filled until batch do put(lane, worlds, ofLane(filled - 1))
       fly(captureRadiusM)
       val flown = kernel
-      for lane <- 0 until filled do
-        val world = ofLane(lane)
-        into.minDistanceM(world) = flown.minDistance(lane)
-        into.meanDistanceM(world) = flown.meanDistance(lane)
-        into.meanLast10sM(world) = flown.meanLast10s(lane)
-        into.captureS(world) = flown.captureS(lane)
-        into.setEfforts(world, withEfforts, flown.pursuerEffortRad(lane), flown.evaderEffortRad(lane))
+      for lane <- 0 until filled do flown.tell(lane, into, ofLane(lane), withEfforts)
       filled = 0
 
   protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes

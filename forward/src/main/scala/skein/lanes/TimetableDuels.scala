@@ -17,8 +17,7 @@ private[lanes] final class TimetableDuels(
     evaderPolicy: LanePolicy,
     pursuerEye: CameraTrackerLanes = null,
     evaderEye: CameraTrackerLanes = null
-) extends DuelKernel:
-  private val scores = LaneScores(duel.durationS, timing.periodS, this)
+) extends DuelKernel(duel.durationS, timing.periodS):
   private val kernel = TimetableKernel(
     Array(
       DuelAgents(0, duel.evader, model, evaderPolicy, evaderEffortRad, LaneObservation(), false, evaderEye),
@@ -42,5 +41,5 @@ private[lanes] final class TimetableDuels(
     * @param captureRadiusM a distance of at most this is a capture
     */
   def fly(timetable: Timetable, worlds: Int, captureRadiusM: Float): Unit =
-    scores.captureWithin(captureRadiusM)
+    captureWithin(captureRadiusM)
     kernel.fly(timetable, worlds)

@@ -199,11 +199,9 @@ object TeamAgreementSimulation:
 
   object NoScores extends TimetableScores:
     def start(): Unit  = ()
-    def finish(): Unit = ()
     def score(
         agents: Array[TimetableAgents],
         views: Array[Int],
         view: Int,
-        isLast: Boolean,
         timeS: Float
     ): Unit = ()

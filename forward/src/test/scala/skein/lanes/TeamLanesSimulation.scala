@@ -50,12 +50,10 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private final class PlacesByWorld(count: Int) extends TimetableScores:
     val places: ArrayBuffer[Array[(Double, Double)]] = ArrayBuffer.empty
     def start(): Unit                                = places.clear()
-    def finish(): Unit                               = ()
     def score(
         all: Array[TimetableAgents],
         views: Array[Int],
         view: Int,
-        isLast: Boolean,
         timeS: Float
     ): Unit =
       for vehicle <- 0 until count do
