@@ -1,7 +1,7 @@
 package skein.budget
 
 import skein.forward.DelayTable
-import skein.lanes.DuelWorlds
+import skein.lanes.{DuelNumber, DuelWorlds}
 import skein.optimise.{Objective, RunningStats}
 import skein.policy.{Policy, Role}
 import skein.search.{Conditions, Effort}
@@ -112,7 +112,7 @@ final class DuelSubject(
     private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
 
     def size: Int                     = tables.length * each
-    override def withEfforts: Boolean = objective.hasEffort
+    override def asked: Set[DuelNumber] = objective.asked(policy.role)
     def key(world: Int): Int          = keys(world % each)
     def link(world: Int): DelayTable  = tables(world / each)
     def pursuer(world: Int): Policy   = DuelSubject.this.pursuer

@@ -6,6 +6,7 @@ import static skein.simd.LaneMath.LANES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
+import scala.collection.immutable.Set;
 import skein.forward.DelayTable;
 import skein.forward.Duel;
 import skein.forward.LoopTiming;
@@ -83,6 +84,7 @@ final class LoopDuelKernel extends DuelKernel {
    * @param model none that is {@link #refusal refused}
    * @param maxDelayS the longest one-way delay of any link flown over
    * @param pursuerPolicy takes the parameters of each world's pursuer before it flies
+   * @param asked what they are judged by
    */
   LoopDuelKernel(
       Duel duel,
@@ -90,8 +92,9 @@ final class LoopDuelKernel extends DuelKernel {
       LaneDynamics model,
       double maxDelayS,
       LanePolicy pursuerPolicy,
-      LanePolicy evaderPolicy) {
-    this(duel, timing, model, maxDelayS, pursuerPolicy, evaderPolicy, true);
+      LanePolicy evaderPolicy,
+      Set<DuelNumber> asked) {
+    this(duel, timing, model, maxDelayS, pursuerPolicy, evaderPolicy, asked, true);
   }
 
   /**
@@ -105,8 +108,9 @@ final class LoopDuelKernel extends DuelKernel {
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy,
+      Set<DuelNumber> asked,
       boolean shortCut) {
-    super(duel.durationS(), timing.periodS());
+    super(duel.durationS(), timing.periodS(), asked);
     durationS = duel.durationS();
     periodS = timing.periodS();
     steps = (int) Math.round(durationS / periodS);

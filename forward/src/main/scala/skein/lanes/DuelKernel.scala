@@ -3,47 +3,43 @@ package skein.lanes
 import skein.forward.Rollout
 import skein.scenario.Reduction
 
-/** What kernels that fly duels tell of the worlds flown last. Mutable. */
-private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double):
+/** What kernels that fly duels tell of the worlds flown last. Mutable.
+  *
+  * @param asked what they are judged by
+  */
+private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, asked: Set[DuelNumber]):
   import DuelKernel.*
 
-  protected val scores: Scoreboard = Scoreboard.ofDistance(
-    (Reduction.Least, 0),
-    (Reduction.Mean, 0),
-    (Reduction.Mean, Rollout.last10sFromS(durationS, periodS)),
-    (OfMoment.FirstWithin(0), 0)
-  )
+  private val judged = DuelNumber.values.toVector.filter(asked).flatMap: number =>
+    (number match
+      case DuelNumber.MinDistance  => Some(Reduction.Least -> 0.0)
+      case DuelNumber.MeanDistance => Some(Reduction.Mean -> 0.0)
+      case DuelNumber.MeanLast10s  => Some(Reduction.Mean -> Rollout.last10sFromS(durationS, periodS))
+      case DuelNumber.Capture      => Some(OfMoment.FirstWithin(0) -> 0.0)
+      case _                       => None
+    ).map(number -> _)
+
+  private val place = judged.map(_._1).zipWithIndex.toMap
+
+  protected val scores: Scoreboard = Scoreboard.ofDistance(judged.map(_._2)*)
 
   /** A distance of at most this is a capture, m. */
-  protected def captureWithin(radiusM: Float): Unit = scores.limit(Capture, radiusM)
-
-  /** Distances, m: the smallest, the mean, and the mean of the last 10 s. */
-  def minDistance: Array[Float]  = came(Min)
-  def meanDistance: Array[Float] = came(Mean)
-  def meanLast10s: Array[Float]  = came(Last10s)
-
-  /** When the distance first was within the capture radius, s; infinite where it never was. */
-  def captureS: Array[Float] = came(Capture)
-
-  /** Tells what the world of a lane came to. */
-  def tell(lane: Int, into: DuelOutcomes, world: Int, withEfforts: Boolean): Unit =
-    into.minDistanceM(world) = scores.value(Min, lane)
-    into.meanDistanceM(world) = scores.value(Mean, lane)
-    into.meanLast10sM(world) = scores.value(Last10s, lane)
-    into.captureS(world) = scores.value(Capture, lane)
-    into.setEfforts(world, withEfforts, pursuerEffortRad(lane), evaderEffortRad(lane))
-
-  private def came(number: Int) = Array.tabulate(WORLDS)(scores.value(number, _))
+  protected def captureWithin(radiusM: Float): Unit = place.get(DuelNumber.Capture).foreach(scores.limit(_, radiusM))
 
   /** The sums of all changes of the commanded headings, by the shorter way, rad. */
-  val pursuerEffortRad, evaderEffortRad: Array[Float] = Array.ofDim(WORLDS)
+  protected val pursuerEffortRad, evaderEffortRad: Array[Float] = Array.ofDim(WORLDS)
+
+  /** What each world came to. */
+  def apply(number: DuelNumber): Array[Float] = number match
+    case DuelNumber.PursuerEffort => pursuerEffortRad
+    case DuelNumber.EvaderEffort  => evaderEffortRad
+    case _                        => scores.values(place(number))
+
+  /** Tells what the first lanes' worlds came to. */
+  def tell(worlds: Array[Int], count: Int, into: DuelOutcomes): Unit = for number <- asked do
+    val (came, told) = (apply(number), into(number))
+    for lane <- 0 until count do told(worlds(lane)) = came(lane)
 
 private[lanes] object DuelKernel:
   /** Worlds flown together. */
   val WORLDS: Int = LanePolicy.WORLDS
-
-  // By what is judged.
-  private val Min     = 0
-  private val Mean    = 1
-  private val Last10s = 2
-  private val Capture = 3

@@ -102,7 +102,10 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
   /** What is kept last of a number in a world: of a mean the sum, for example. */
   def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
 
-  /** What it came to in a world; no number where nothing counted. */
+  /** What a number came to, by world. */
+  def values(number: Int): Array[Float] = Array.tabulate(worlds)(value(number, _))
+
+  /** The same of one world; no number where nothing counted. */
   def value(number: Int, world: Int): Float =
     val (last, count) = (soFar(number, world), counts(number))
     if isRoot(number) then math.sqrt(last / count).toFloat

@@ -12,7 +12,8 @@ class EffortSuite extends munit.FunSuite:
     val worlds = new DuelWorlds:
       def size: Int                       = 200
       override def shareEpisodes: Boolean = shared
-      override def withEfforts: Boolean   = efforts
+      override def asked: Set[DuelNumber] =
+        if efforts then super.asked else Set(DuelNumber.MeanDistance, DuelNumber.MinDistance)
       def key(world: Int): Int            = WorldRandom.key(1, 0, if shared then world % 2 else world)
       def link(world: Int): Delays        = DelayTable.vpn
       def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.002 * world)
