@@ -111,9 +111,9 @@ final class DuelSubject(
     private val tables = links.toArray
     private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
 
-    def size: Int                     = tables.length * each
+    def size: Int                       = tables.length * each
     override def asked: Set[DuelNumber] = objective.asked(policy.role)
-    def key(world: Int): Int          = keys(world % each)
-    def link(world: Int): DelayTable  = tables(world / each)
-    def pursuer(world: Int): Policy   = DuelSubject.this.pursuer
-    def evader(world: Int): Policy    = DuelSubject.this.evader
+    def key(world: Int): Int            = keys(world % each)
+    def link(world: Int): DelayTable    = tables(world / each)
+    def pursuer(world: Int): Policy     = DuelSubject.this.pursuer
+    def evader(world: Int): Policy      = DuelSubject.this.evader

@@ -145,7 +145,10 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
         Iterator.iterate(LoopFlyer.FastestS)(_ * 1.4).find(_ >= slowest).get
 
       protected def kernel: LoopDuelKernel =
-        kernels.getOrElseUpdate(slowestS, LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders, asked))
+        kernels.getOrElseUpdate(
+          slowestS,
+          LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders, asked)
+        )
 
       protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
         keys(lane) = worlds.key(world)

@@ -24,7 +24,8 @@ private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, ask
   protected val scores: Scoreboard = Scoreboard.ofDistance(judged.map(_._2)*)
 
   /** A distance of at most this is a capture, m. */
-  protected def captureWithin(radiusM: Float): Unit = place.get(DuelNumber.Capture).foreach(scores.limit(_, radiusM))
+  protected def captureWithin(radiusM: Float): Unit =
+    place.get(DuelNumber.Capture).foreach(scores.limit(_, radiusM))
 
   /** The sums of all changes of the commanded headings, by the shorter way, rad. */
   protected val pursuerEffortRad, evaderEffortRad: Array[Float] = Array.ofDim(WORLDS)

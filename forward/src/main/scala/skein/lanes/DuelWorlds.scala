@@ -28,8 +28,8 @@ trait DuelWorlds:
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 
-/** What duels may be judged by; see [[DuelOutcome]] for the meanings. An effort costs a twentieth of a flight:
-  * how far a direction is from the one before takes an arccosine.
+/** What duels may be judged by; see [[DuelOutcome]] for the meanings. An effort costs a twentieth of a
+  * flight: how far a direction is from the one before takes an arccosine.
   */
 enum DuelNumber(private[lanes] val of: DuelOutcome => Double):
   case MinDistance   extends DuelNumber(_.minDistanceM)

@@ -39,8 +39,9 @@ private[lanes] final class ScoreLanes private (
       kept => trace.input(FirstKept + places(number) + kept)
     )
 
-  /** @param value now
-    * @param kept a successor may stand where it stood: none is computed of another's, but before that is told
+  /** What is kept next. Each successor takes the place of what it is made of, which nothing else reads.
+    *
+    * @param value now
     */
   private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
     val own = trace.param(ownParameter(number))
@@ -125,7 +126,8 @@ private[lanes] object ScoreLanes:
     (judged, vehicles) =>
       Expect.each(judged)(each => formulaOf(each.quantity, vehicles)).map(ScoreLanes(_, judged, vehicles))
 
-  /** How flights of so many vehicles are judged by lanes, or why they are not. Compiled once for each form. */
+  /** How flights of so many vehicles are judged by lanes, or why they are not. Compiled once for each form.
+    */
   def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =

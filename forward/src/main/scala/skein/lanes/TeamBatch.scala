@@ -45,7 +45,7 @@ final class TeamBatch(
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
       _        <- Expect.that(policies.size == engagement.agents.size):
         "a policy plays against one opponent; the lanes fly such policies in duels alone"
-      team <- TeamLanes.of(policies).left.map(refused => s"a policy is no formula: ${refused.getMessage}")
+      team   <- TeamLanes.of(policies).left.map(refused => s"a policy is no formula: ${refused.getMessage}")
       scores <- ScoreLanes
         .of(candidate.judged, policies.size)
         .left

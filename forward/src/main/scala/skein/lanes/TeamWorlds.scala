@@ -36,9 +36,11 @@ final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fro
   /** What values come to that count, with their times; no number where nothing counted. */
   private[lanes] def of(values: IndexedSeq[(Double, Double)]): Double = reduction match
     case OfMoment.FirstWithin(limit) =>
-      values.collectFirst { case (timeS, value) if value <= limit => timeS }.getOrElse(Double.PositiveInfinity)
-    case _ if values.isEmpty   => Double.NaN
-    case OfMoment.Newest       => values.last._2
+      values.collectFirst { case (timeS, value) if value <= limit => timeS }.getOrElse(
+        Double.PositiveInfinity
+      )
+    case _ if values.isEmpty  => Double.NaN
+    case OfMoment.Newest      => values.last._2
     case reduction: Reduction => reduction.of(values.map(_._2))
 
 object Judged:

@@ -39,12 +39,12 @@ enum DuelMeasure:
     * @param role of the vehicle that is judged
     */
   def number(role: Role): DuelNumber = this match
-    case Last10s                         => DuelNumber.MeanLast10s
-    case Mean                            => DuelNumber.MeanDistance
-    case Min                             => DuelNumber.MinDistance
-    case Capture(_, _) | CaptureTime(_)  => DuelNumber.Capture
+    case Last10s                        => DuelNumber.MeanLast10s
+    case Mean                           => DuelNumber.MeanDistance
+    case Min                            => DuelNumber.MinDistance
+    case Capture(_, _) | CaptureTime(_) => DuelNumber.Capture
     case Effort if role == Role.Pursuer => DuelNumber.PursuerEffort
-    case Effort                          => DuelNumber.EvaderEffort
+    case Effort                         => DuelNumber.EvaderEffort
 
   def unit: String = this match
     case Last10s | Mean | Min => "m"

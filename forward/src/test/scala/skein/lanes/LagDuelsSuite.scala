@@ -85,8 +85,16 @@ class LagDuelsSuite extends munit.FunSuite:
       val scalars = ArrayBuffer.empty[DuelOutcome]
       for world <- 0 until worlds do
         scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
-      assertEqualsDouble(kernel(DuelNumber.MeanLast10s).sum / worlds, scalars.map(_.meanLast10sM).sum / worlds, 0.01)
-      assertEqualsDouble(kernel(DuelNumber.MinDistance).sum / worlds, scalars.map(_.minDistanceM).sum / worlds, 0.01)
+      assertEqualsDouble(
+        kernel(DuelNumber.MeanLast10s).sum / worlds,
+        scalars.map(_.meanLast10sM).sum / worlds,
+        0.01
+      )
+      assertEqualsDouble(
+        kernel(DuelNumber.MinDistance).sum / worlds,
+        scalars.map(_.minDistanceM).sum / worlds,
+        0.01
+      )
       assertEqualsDouble(
         kernel(DuelNumber.PursuerEffort).sum / worlds,
         scalars.map(_.pursuerEffortRad).sum / worlds,
@@ -136,4 +144,8 @@ class LagDuelsSuite extends munit.FunSuite:
       kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), captureRadiusM)
       val alone = links.map(link => fly(link, 60))
       for world <- 0 until worlds do
-        assertEquals(kernel(DuelNumber.MeanLast10s)(world), alone(world / 5 % 3)(DuelNumber.MeanLast10s)(world), s"world $world")
+        assertEquals(
+          kernel(DuelNumber.MeanLast10s)(world),
+          alone(world / 5 % 3)(DuelNumber.MeanLast10s)(world),
+          s"world $world"
+        )

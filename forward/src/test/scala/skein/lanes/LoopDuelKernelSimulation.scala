@@ -49,7 +49,8 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       evaders.take(world, PaperEvader(7 + 0.02 * world))
     val vehicles = LaneDynamics.of(model, duel(0, durationS)).fold(fail(_), identity)
     assertEquals(LoopDuelKernel.refusal(timing, link.maxS, vehicles), null)
-    val kernel = LoopDuelKernel(duel(0, durationS), timing, vehicles, link.maxS, pursuers, evaders, DuelNumber.all)
+    val kernel =
+      LoopDuelKernel(duel(0, durationS), timing, vehicles, link.maxS, pursuers, evaders, DuelNumber.all)
     kernel.fly(keys, Array.fill(worlds)(link), captureM)
     kernel
 

@@ -198,7 +198,7 @@ object TeamAgreementSimulation:
       policy.course(observed)
 
   object NoScores extends TimetableScores:
-    def start(): Unit  = ()
+    def start(): Unit = ()
     def score(
         agents: Array[TimetableAgents],
         views: Array[Int],
