@@ -1,7 +1,7 @@
 package skein.bench
 
 import skein.forward.{DelayTable, LoopTiming}
-import skein.lanes.{DuelWorlds, QuadrotorKernel}
+import skein.lanes.{DuelNumber, DuelWorlds, QuadrotorKernel}
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 
@@ -76,10 +76,10 @@ object Figures:
 
   private def budget(episodes: Int): Double =
     val worlds = new DuelWorlds:
-      private val all                   = Works.Candidates(1000, 1, DelayTable.vpn, 1)
-      def size: Int                     = episodes
-      override def withEfforts: Boolean = all.withEfforts
-      def key(world: Int): Int          = WorldRandom.key(1, 0, world % 1000)
-      def link(world: Int): DelayTable  = links(world / 1000)
+      private val all                     = Works.Candidates(1000, 1, DelayTable.vpn, 1)
+      def size: Int                       = episodes
+      def key(world: Int): Int            = WorldRandom.key(1, 0, world % 1000)
+      def link(world: Int): DelayTable    = links(world / 1000)
+      override def asked: Set[DuelNumber] = all.asked
       export all.{evader, pursuer}
     Works.batch(LoopTiming.Stream(), cores).fly(worlds).meanLast10sM.map(_.toDouble).sum / episodes

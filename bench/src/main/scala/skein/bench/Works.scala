@@ -1,7 +1,7 @@
 package skein.bench
 
 import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
-import skein.lanes.{DuelBatch, DuelWorlds, QuadrotorKernel}
+import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds, QuadrotorKernel}
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
@@ -70,7 +70,7 @@ object Works:
     val all      = new DuelWorlds:
       def size: Int                       = worlds
       override def shareEpisodes: Boolean = true
-      override def withEfforts: Boolean   = false
+      override def asked: Set[DuelNumber] = Works.asked
       def key(world: Int): Int            = WorldRandom.key(thread, 0, world / 256)
       def link(world: Int): DelayTable    = DelayTable.vpn
       def pursuer(world: Int): Policy     = policies(world % 256)
@@ -91,10 +91,13 @@ object Works:
   /** Pursuers of different turn rates, so many of them per episode. */
   final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends DuelWorlds:
     override def shareEpisodes: Boolean = perEpisode > 1
-    override def withEfforts: Boolean   = false // as in a search for the distance
+    override def asked: Set[DuelNumber] = Works.asked
     def key(world: Int): Int            = WorldRandom.key(seed, 0, world / perEpisode)
     def link(world: Int): DelayTable    = delays
     def pursuer(world: Int): Policy     = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
     def evader(world: Int): Policy      = Works.evader
 
   private val evader = PaperEvader()
+
+  /** As in a search for the distance. */
+  private val asked = Set(DuelNumber.MeanLast10s)

@@ -1,7 +1,7 @@
 package skein.budget
 
 import skein.forward.DelayTable
-import skein.lanes.DuelWorlds
+import skein.lanes.{DuelNumber, DuelWorlds}
 import skein.optimise.{Objective, RunningStats}
 import skein.policy.{Policy, Role}
 import skein.search.{Conditions, Effort}
@@ -111,9 +111,9 @@ final class DuelSubject(
     private val tables = links.toArray
     private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
 
-    def size: Int                     = tables.length * each
-    override def withEfforts: Boolean = objective.hasEffort
-    def key(world: Int): Int          = keys(world % each)
-    def link(world: Int): DelayTable  = tables(world / each)
-    def pursuer(world: Int): Policy   = DuelSubject.this.pursuer
-    def evader(world: Int): Policy    = DuelSubject.this.evader
+    def size: Int                       = tables.length * each
+    override def asked: Set[DuelNumber] = objective.asked(policy.role)
+    def key(world: Int): Int            = keys(world % each)
+    def link(world: Int): DelayTable    = tables(world / each)
+    def pursuer(world: Int): Policy     = DuelSubject.this.pursuer
+    def evader(world: Int): Policy      = DuelSubject.this.evader

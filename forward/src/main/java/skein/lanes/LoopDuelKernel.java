@@ -6,6 +6,7 @@ import static skein.simd.LaneMath.LANES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
+import scala.collection.immutable.Set;
 import skein.forward.DelayTable;
 import skein.forward.Duel;
 import skein.forward.LoopTiming;
@@ -22,6 +23,8 @@ import skein.port.Moves;
  * after construction but where links need more room than any before; one instance per thread.
  */
 final class LoopDuelKernel extends DuelKernel {
+  private static final int WORLDS = LanePolicy.WORLDS;
+
   /** Times stay within what integers of grains can hold. */
   private static final double MOST_S = 3.5;
 
@@ -31,7 +34,6 @@ final class LoopDuelKernel extends DuelKernel {
   private final LaneAgents evader, pursuer;
   private final boolean withVelocity, withAges;
   private final int[][] readAt = new int[2][WORLDS];
-  private final LaneScores scores;
 
   /** In which somebody is offered something in a beat. */
   private final LaneVectors vectors = new LaneVectors();
@@ -82,6 +84,7 @@ final class LoopDuelKernel extends DuelKernel {
    * @param model none that is {@link #refusal refused}
    * @param maxDelayS the longest one-way delay of any link flown over
    * @param pursuerPolicy takes the parameters of each world's pursuer before it flies
+   * @param asked what they are judged by
    */
   LoopDuelKernel(
       Duel duel,
@@ -89,8 +92,9 @@ final class LoopDuelKernel extends DuelKernel {
       LaneDynamics model,
       double maxDelayS,
       LanePolicy pursuerPolicy,
-      LanePolicy evaderPolicy) {
-    this(duel, timing, model, maxDelayS, pursuerPolicy, evaderPolicy, true);
+      LanePolicy evaderPolicy,
+      Set<DuelNumber> asked) {
+    this(duel, timing, model, maxDelayS, pursuerPolicy, evaderPolicy, asked, true);
   }
 
   /**
@@ -104,7 +108,9 @@ final class LoopDuelKernel extends DuelKernel {
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy,
+      Set<DuelNumber> asked,
       boolean shortCut) {
+    super(duel.durationS(), timing.periodS(), asked);
     durationS = duel.durationS();
     periodS = timing.periodS();
     steps = (int) Math.round(durationS / periodS);
@@ -125,14 +131,19 @@ final class LoopDuelKernel extends DuelKernel {
     evader =
         new LaneAgents(
             0, duel.evader(), periodS, steering, intervalS, decidesFirst, offers.together, deadTimeS, evaders,
-            evaderPolicy, evaderEffortRad);
+            evaderPolicy, evaderEffortRad());
     pursuer =
         new LaneAgents(
             1, duel.pursuer(), periodS, steering, intervalS, decidesFirst, offers.together, deadTimeS, pursuers,
-            pursuerPolicy, pursuerEffortRad);
+            pursuerPolicy, pursuerEffortRad());
     withVelocity = evaderPolicy.needsVelocity() || pursuerPolicy.needsVelocity();
     withAges = evaderPolicy.needsAges() || pursuerPolicy.needsAges();
-    scores = new LaneScores(durationS, periodS, this);
+    place(0, evaders);
+    place(1, pursuers);
+  }
+
+  private void place(int vehicle, LaneVehicles vehicles) {
+    scores().place(vehicle, vehicles.state, LaneVehicles.X, vehicles.state, LaneVehicles.Y);
   }
 
   /** From a reading to its decision, and from the decision before that to when its command acts. */
@@ -153,8 +164,8 @@ final class LoopDuelKernel extends DuelKernel {
     offers.start(worldKeys, links);
     evader.start();
     pursuer.start();
-    scores.captureWithin(captureRadiusM);
-    scores.start();
+    captureWithin(captureRadiusM);
+    scores().start();
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
         evader.startRow(row);
@@ -181,7 +192,6 @@ final class LoopDuelKernel extends DuelKernel {
       if (!isScored) score(row);
     }
     score(steps);
-    scores.finish();
   }
 
   private void read(int row, int vehicle, LaneVehicles vehicles) {
@@ -204,8 +214,7 @@ final class LoopDuelKernel extends DuelKernel {
   private void score(int row) {
     evader.vehicles.flyToRow(row);
     pursuer.vehicles.flyToRow(row);
-    double timeS = row * periodS;
-    scores.add(evader.vehicles, pursuer.vehicles, (float) timeS, Rollout.isLast10s(timeS, durationS));
+    scores().score((float) (row * periodS));
   }
 
   /** From a row's begin to the end of the episode, as far as integers count. */

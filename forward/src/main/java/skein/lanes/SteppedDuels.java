@@ -3,7 +3,6 @@ package skein.lanes;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
 
-import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import skein.forward.Duel;
 import skein.policy.Policy;
@@ -37,12 +36,10 @@ public final class SteppedDuels implements TimetableScores {
   /** The timetable's next operation, and up to which decisions are due. */
   private int next, dueUntil;
 
-  private float untilS, scoredAtS;
+  private float untilS;
 
-  /** Distances scored since {@link #forgetScores}: the newest, their sum and the least, m. */
-  public final float[] distance = new float[WORLDS],
-      distanceSum = new float[WORLDS],
-      distanceLeast = new float[WORLDS];
+  private static final int NEWEST = 0, SUM = 1, LEAST = 2;
+  private final Scoreboard scores = Scoreboard.ofLearners();
 
   /**
    * @param duel start, speeds and duration
@@ -190,32 +187,36 @@ public final class SteppedDuels implements TimetableScores {
 
   /** When the distances were scored last, since the timetable's start, s. */
   public float scoredAtS() {
-    return scoredAtS;
+    return scores.scoredAtS();
+  }
+
+  /** The distance scored last, m. */
+  public float distance(int world) {
+    return scores.soFar(NEWEST, world);
+  }
+
+  /** Of the distances scored since {@link #forgetScores} the sum, m. */
+  public float distanceSum(int world) {
+    return scores.soFar(SUM, world);
+  }
+
+  /** The same of the least. */
+  public float distanceLeast(int world) {
+    return scores.soFar(LEAST, world);
   }
 
   public void forgetScores() {
-    Arrays.fill(distanceSum, 0f);
-    Arrays.fill(distanceLeast, Float.POSITIVE_INFINITY);
+    scores.forget(SUM);
+    scores.forget(LEAST);
   }
 
   @Override
   public void start() {
-    scoredAtS = 0;
-    forgetScores();
+    scores.start();
   }
 
   @Override
-  public void score(TimetableAgents[] all, int[] views, int view, boolean isLast, float timeS) {
-    if (timeS > untilS + TOLERANCE_S) return;
-    scoredAtS = timeS;
-    LaneScores.distances(all, views, view, distance);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector now = FloatVector.fromArray(SPECIES, distance, i);
-      FloatVector.fromArray(SPECIES, distanceSum, i).add(now).intoArray(distanceSum, i);
-      FloatVector.fromArray(SPECIES, distanceLeast, i).min(now).intoArray(distanceLeast, i);
-    }
+  public void score(TimetableAgents[] all, int[] views, int view, float timeS) {
+    if (timeS <= untilS + TOLERANCE_S) scores.score(all, views, view, timeS);
   }
-
-  @Override
-  public void finish() {}
 }

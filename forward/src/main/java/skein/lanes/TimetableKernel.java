@@ -46,7 +46,6 @@ final class TimetableKernel {
   void fly(Timetable timetable, int worlds) {
     start(timetable, worlds);
     for (int i = 0; i < timetable.size(); i++) perform(i);
-    scores.finish();
   }
 
   /** Back to the start of an episode. */
@@ -74,9 +73,7 @@ final class TimetableKernel {
           agent.vehicles.look(
               times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
       case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
-      case SCORE ->
-          scores.score(
-              agents, views, first * agents.length, operations[field + 3] != 0, times[number]);
+      case SCORE -> scores.score(agents, views, first * agents.length, times[number]);
       case EXPOSE ->
           agent.expose(agents, views, first * agents.length, operations[field + 3], times, number);
       case JOIN -> agent.join(first, operations[field + 3] != 0, operations[field + 4]);

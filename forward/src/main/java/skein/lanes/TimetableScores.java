@@ -10,10 +10,6 @@ interface TimetableScores {
    *
    * @param agents by the vehicle's number
    * @param views of the timetable; that which is scored begins at {@code view}
-   * @param isLast whether it counts for the mean of the last 10 s
    */
-  void score(TimetableAgents[] agents, int[] views, int view, boolean isLast, float timeS);
-
-  /** At the end of the episode. */
-  void finish();
+  void score(TimetableAgents[] agents, int[] views, int view, float timeS);
 }

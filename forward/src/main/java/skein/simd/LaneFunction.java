@@ -24,7 +24,8 @@ public abstract class LaneFunction {
 
   /**
    * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An
-   *     output must not lie where an input does.
+   *     output must not lie where an input does, unless nothing reads that input but the output
+   *     itself and what it is computed of.
    * @param offsets where in its array each begins
    * @param parameters at their {@link #place places}; where all worlds have the same, one after the other
    * @param scratch of {@link #scratch()} numbers

@@ -37,6 +37,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   private val scores   = (engagement.durationS / timing.periodS).round.toInt
   private val judged   = engagement.judged.toArray
   private val against  = judged.map(engagement.against(_).toArray)
+  private val last10s  = Rollout.last10sFromS(engagement.durationS, timing.periodS)
   private var tallies  = judged.map(_ => Score())
 
   /** Flies one episode.
@@ -58,7 +59,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       captureRadiusM: Double,
       observer: LoopObserver = LoopObserver.Nobody
   ): Unit =
-    tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
+    tallies = judged.map(_ => Score(captureRadiusM, last10s))
     world.start(worldKey, observer)
     for tracker <- trackers; eye <- tracker do eye.start(worldKey)
     world.schedule(periodNs, ScoreNow, 0, 1)
@@ -135,8 +136,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
 
 object Rollout:
 
-  /** Whether what is scored at this time of an episode counts for the mean of its last 10 s. */
-  private[skein] def isLast10s(timeS: Double, durationS: Double): Boolean = timeS > durationS - 10 + 1e-9
+  /** The first score that counts for the mean of an episode's last 10 s, s. */
+  private[skein] def last10sFromS(durationS: Double, periodS: Double): Double =
+    (math.floor((durationS - 10 + 1e-9) / periodS) + 1) * periodS
 
   private[skein] val Never: Long = Long.MaxValue
 
@@ -148,7 +150,7 @@ object Rollout:
     case DuelWorld.Recognised    => tracker.recognised(number)
 
 /** Adds up distances as they come. */
-private[skein] final class Score(captureRadiusM: Double = 0.0, durationS: Double = 0.0):
+private[skein] final class Score(captureRadiusM: Double = 0.0, last10sFromS: Double = 0.0):
   var count                = 0
   private var least        = Double.PositiveInfinity
   private var leastAt      = 0.0
@@ -162,7 +164,7 @@ private[skein] final class Score(captureRadiusM: Double = 0.0, durationS: Double
     if distanceM < least then
       least = distanceM; leastAt = timeS
     if distanceM <= captureRadiusM && captureS.isInfinite then captureS = timeS
-    if Rollout.isLast10s(timeS, durationS) then
+    if timeS > last10sFromS - 1e-6 then
       lastSum += distanceM
       lastCount += 1
 

@@ -53,7 +53,8 @@ private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
 
   /** Where an input's numbers begin, by the function's number of it. */
   def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
-    arrays(number) = array
+    // Nearly always the same one: to store a reference costs the collector's bookkeeping.
+    if arrays(number) ne array then arrays(number) = array
     offsets(number) = offset
     starts(number) = offset
     strides(number) = stride

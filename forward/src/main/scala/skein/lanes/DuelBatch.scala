@@ -136,7 +136,7 @@ final class DuelBatch(
       onProgress: Int => Unit = _ => (),
       isCancelled: () => Boolean = () => false
   ): DuelOutcomes =
-    val outcomes = DuelOutcomes(worlds.size)
+    val outcomes = DuelOutcomes(worlds.size, worlds.asked)
     val together = shares(worlds.shareEpisodes)
     val batches  =
       if worlds.shareEpisodes then

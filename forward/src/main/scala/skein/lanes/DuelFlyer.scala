@@ -19,7 +19,7 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     for world <- numbers do
-      into.set(world, rollout(worlds, world).fly(worlds.key(world), captureRadiusM), worlds.withEfforts)
+      into.set(world, rollout(worlds, world).fly(worlds.key(world), captureRadiusM))
 
 /** The rollout of the world flown last, which also flies the next if that has the same policies and link.
   * Mutable.
@@ -44,9 +44,9 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   val batch: Int = DuelKernel.WORLDS
 
   /** A kernel and its policies, and the worlds that will fly by it. */
-  protected abstract class Lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean):
-    protected val pursuers: LanePolicy = LanePolicy.of(pursuer, withEfforts)
-    protected val evaders: LanePolicy  = LanePolicy.of(evader, withEfforts)
+  protected abstract class Lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]):
+    protected val pursuers: LanePolicy = LanePolicy.of(pursuer, asked(DuelNumber.PursuerEffort))
+    protected val evaders: LanePolicy  = LanePolicy.of(evader, asked(DuelNumber.EvaderEffort))
     private val ofLane                 = Array.ofDim[Int](batch)
     private var filled                 = 0
 
@@ -85,24 +85,17 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       // Lanes that no world needs fly the last one again.
       for lane <- filled until batch do put(lane, worlds, ofLane(filled - 1))
       fly(captureRadiusM)
-      val flown = kernel
-      for lane <- 0 until filled do
-        val world = ofLane(lane)
-        into.minDistanceM(world) = flown.minDistance(lane)
-        into.meanDistanceM(world) = flown.meanDistance(lane)
-        into.meanLast10sM(world) = flown.meanLast10s(lane)
-        into.captureS(world) = flown.captureS(lane)
-        into.setEfforts(world, withEfforts, flown.pursuerEffortRad(lane), flown.evaderEffortRad(lane))
+      kernel.tell(ofLane, filled, into)
       filled = 0
 
-  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes
+  protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes
 
   /** Whether the lanes know a world's link. */
   protected def canFly(link: Delays): Boolean
 
   private type Form = Either[Untraceable, PolicyLanes]
 
-  private val byForm = collection.mutable.HashMap.empty[(Form, Form, Boolean), Lanes]
+  private val byForm = collection.mutable.HashMap.empty[(Form, Form, Set[DuelNumber]), Lanes]
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     val filled  = collection.mutable.LinkedHashSet.empty[Lanes]
@@ -123,8 +116,8 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       if forms._1.isRight && forms._2.isRight && canFly(worlds.link(world)) then
         val chosen =
           byForm.getOrElseUpdate(
-            (forms._1, forms._2, worlds.withEfforts),
-            lanes(pursuer, evader, worlds.withEfforts)
+            (forms._1, forms._2, worlds.asked),
+            lanes(pursuer, evader, worlds.asked)
           )
         chosen.add(worlds, world)
         filled += chosen
@@ -140,8 +133,8 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
     case table: DelayTable => LoopDuelKernel.refusal(timing, table.maxS, model) == null
     case _                 => false
 
-  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes =
-    new Lanes(pursuer, evader, withEfforts):
+  protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
+    new Lanes(pursuer, evader, asked):
       private val keys    = Array.ofDim[Int](batch)
       private val links   = Array.ofDim[DelayTable](batch)
       private val kernels = collection.mutable.HashMap.empty[Double, LoopDuelKernel]
@@ -152,7 +145,10 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
         Iterator.iterate(LoopFlyer.FastestS)(_ * 1.4).find(_ >= slowest).get
 
       protected def kernel: LoopDuelKernel =
-        kernels.getOrElseUpdate(slowestS, LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders))
+        kernels.getOrElseUpdate(
+          slowestS,
+          LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders, asked)
+        )
 
       protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
         keys(lane) = worlds.key(world)
@@ -176,14 +172,15 @@ private final class TimetableFlyer(
 
   protected def canFly(link: Delays): Boolean = true
 
-  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes =
-    new Lanes(pursuer, evader, withEfforts):
+  protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
+    new Lanes(pursuer, evader, asked):
       protected val kernel: TimetableDuels = TimetableDuels(
         duel,
         timing,
         model,
         pursuers,
         evaders,
+        asked,
         eyes.pursuer.map(CameraTrackerLanes(_, duel.pursuer, duel.evader)).orNull,
         eyes.evader.map(CameraTrackerLanes(_, duel.evader, duel.pursuer)).orNull
       )

@@ -17,10 +17,8 @@ trait DuelWorlds:
     */
   def shareEpisodes: Boolean = false
 
-  /** Whether efforts are asked for. They cost a tenth of a flight: how far a direction is from the one before
-    * takes an arccosine.
-    */
-  def withEfforts: Boolean = true
+  /** What worlds are judged by. Nothing else is computed. */
+  def asked: Set[DuelNumber] = DuelNumber.all
 
   /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same
     * delays.
@@ -30,28 +28,42 @@ trait DuelWorlds:
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 
-/** What each world came to; see [[DuelOutcome]] for the meanings. One number per world, in metres, seconds
-  * and radians. Efforts are NaN where they were not [[DuelWorlds.withEfforts asked for]].
-  *
-  * @param flown how many worlds were flown: all, unless the call was cancelled. The others' smallest distance
-  *   is 0, as are all their numbers.
+/** What duels may be judged by; see [[DuelOutcome]] for the meanings. An effort costs a twentieth of a
+  * flight: how far a direction is from the one before takes an arccosine.
   */
-final class DuelOutcomes private[skein] (size: Int):
-  val minDistanceM, meanDistanceM, meanLast10sM, captureS, pursuerEffortRad, evaderEffortRad: Array[Float] =
-    Array.ofDim[Float](size)
+enum DuelNumber(private[lanes] val of: DuelOutcome => Double):
+  case MinDistance   extends DuelNumber(_.minDistanceM)
+  case MeanDistance  extends DuelNumber(_.meanDistanceM)
+  case MeanLast10s   extends DuelNumber(_.meanLast10sM)
+  case Capture       extends DuelNumber(_.captureS)
+  case PursuerEffort extends DuelNumber(_.pursuerEffortRad)
+  case EvaderEffort  extends DuelNumber(_.evaderEffortRad)
+
+object DuelNumber:
+  val all: Set[DuelNumber] = values.toSet
+
+/** What each world came to. One number per world, in metres, seconds and radians; NaN where it was not
+  * [[DuelWorlds.asked asked for]].
+  *
+  * @param flown how many worlds were flown: all, unless the call was cancelled. The others' numbers are 0.
+  */
+final class DuelOutcomes private[skein] (size: Int, asked: Set[DuelNumber] = DuelNumber.all):
+  private val came = DuelNumber.values.map(number => Array.fill(size)(if asked(number) then 0 else Float.NaN))
+
+  def apply(number: DuelNumber): Array[Float] = came(number.ordinal)
+
+  def minDistanceM: Array[Float]     = this(DuelNumber.MinDistance)
+  def meanDistanceM: Array[Float]    = this(DuelNumber.MeanDistance)
+  def meanLast10sM: Array[Float]     = this(DuelNumber.MeanLast10s)
+  def captureS: Array[Float]         = this(DuelNumber.Capture)
+  def pursuerEffortRad: Array[Float] = this(DuelNumber.PursuerEffort)
+  def evaderEffortRad: Array[Float]  = this(DuelNumber.EvaderEffort)
+
   private var done = 0
 
   def flown: Int = done
 
   private[skein] def flown_=(worlds: Int): Unit = done = worlds
 
-  private[skein] def set(world: Int, outcome: DuelOutcome, withEfforts: Boolean = true): Unit =
-    minDistanceM(world) = outcome.minDistanceM.toFloat
-    meanDistanceM(world) = outcome.meanDistanceM.toFloat
-    meanLast10sM(world) = outcome.meanLast10sM.toFloat
-    captureS(world) = outcome.captureS.toFloat
-    setEfforts(world, withEfforts, outcome.pursuerEffortRad.toFloat, outcome.evaderEffortRad.toFloat)
-
-  private[lanes] def setEfforts(world: Int, areAsked: Boolean, pursuerRad: Float, evaderRad: Float): Unit =
-    pursuerEffortRad(world) = if areAsked then pursuerRad else Float.NaN
-    evaderEffortRad(world) = if areAsked then evaderRad else Float.NaN
+  private[skein] def set(world: Int, outcome: DuelOutcome): Unit =
+    for number <- asked do this(number)(world) = number.of(outcome).toFloat

@@ -41,7 +41,7 @@ private final class SteppedBatch(
         nextNs(lane) = 0
       vehicles.use(some.length * Vehicles)
       flyAll(some.length)
-      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome, worlds.withEfforts)
+      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
 
   private def flyAll(count: Int): Unit =
     var flying = count

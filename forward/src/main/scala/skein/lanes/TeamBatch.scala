@@ -5,7 +5,7 @@ import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
 import skein.policy.TeamPolicy
-import skein.scenario.{Positions, Reduction}
+import skein.scenario.Positions
 import skein.simd.LaneMath
 import skein.units.Expect
 
@@ -45,16 +45,15 @@ final class TeamBatch(
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
       _        <- Expect.that(policies.size == engagement.agents.size):
         "a policy plays against one opponent; the lanes fly such policies in duels alone"
-      team <- TeamLanes.of(policies).left.map(refused => s"a policy is no formula: ${refused.getMessage}")
-      quantities <- QuantityLanes
-        .of(candidate.judged.map(_.quantity), policies.size)
+      team   <- TeamLanes.of(policies).left.map(refused => s"a policy is no formula: ${refused.getMessage}")
+      scores <- ScoreLanes
+        .of(candidate.judged, policies.size)
         .left
         .map(refused => s"a quantity is no formula: ${refused.getMessage}")
     yield Form(
       team,
-      quantities,
+      scores,
       engagement.durationS,
-      candidate.judged.map(each => (each.reduction, each.fromS)),
       engagement.agents.map(_.altitudeDownM)
     )(vehicles)
 
@@ -83,7 +82,7 @@ final class TeamBatch(
         form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy])
       )
     val ofQuantities: Vector[Array[Double]] = form.toVector.flatMap: form =>
-      candidate.judged.zipWithIndex.map((each, number) => form.quantities.parametersOf(number, each.quantity))
+      candidate.judged.zipWithIndex.map((each, number) => form.scores.parametersOf(number, each.quantity))
 
   /** One per thread. Mutable. */
   private final class Worker:
@@ -109,7 +108,7 @@ final class TeamBatch(
     private val views  = TeamViews(form.team)
     private val agents = Array.tabulate(count): self =>
       TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
-    private val scores  = TeamScores(form.quantities, first.judged)
+    private val scores  = Scoreboard(form.scores)
     private val kernel  = TimetableKernel(agents.map(identity[TimetableAgents]), scores)
     private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
     private var last    = Option.empty[Prepared]
@@ -139,9 +138,8 @@ final class TeamBatch(
   /** Candidates of one form fly side by side. */
   private final case class Form(
       team: TeamLanes,
-      quantities: QuantityLanes,
+      scores: ScoreLanes,
       durationS: Double,
-      judged: Vector[(Reduction, Double)],
       altitudesDownM: Vector[Double]
   )(val vehicles: LaneDynamics)
 
@@ -161,7 +159,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: VelocityRespons
       rollout = Rollout(candidate.engagement, timing, link, model)
     val downM    = IArray.from(candidate.engagement.agents.map(_.altitudeDownM))
     val count    = downM.length
-    val values   = candidate.judged.map(_ => ArrayBuffer.empty[Double])
+    val values   = candidate.judged.map(_ => ArrayBuffer.empty[(Double, Double)])
     val observer = new LoopObserver:
       private val northM, eastM = Array.ofDim[Double](count)
       override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
@@ -169,8 +167,6 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: VelocityRespons
         if vehicle == count - 1 && candidate.judged.exists(_.counts(timeS)) then
           val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
           for (each, found) <- candidate.judged.zip(values) if each.counts(timeS) do
-            found += each.quantity.of(places)
+            found += ((timeS, each.quantity.of(places)))
     rollout.fly(key, observer = observer): Unit
-    candidate.judged.zip(values).map((each, found) =>
-      if found.isEmpty then Double.NaN else each.reduction.of(found.toVector)
-    )
+    candidate.judged.zip(values).map((each, found) => each.of(found.toVector))

@@ -74,7 +74,7 @@ private[skein] object Timetable:
       key,
       observer = notes
     ): Unit
-    TimetableCompiler(notes, vehicles, durationS, model).result
+    TimetableCompiler(notes, vehicles, model).result
 
   /** The same loop; what stands still is predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
@@ -106,7 +106,6 @@ private[skein] object Timetable:
 private final class TimetableCompiler(
     notes: TimetableNotes,
     vehicles: Int,
-    durationS: Double,
     model: LaneDynamics
 ):
   import Timetable.{Fields, Numbers}
@@ -277,9 +276,8 @@ private final class TimetableCompiler(
     size += 1
 
   private def score(event: Note, at: Int): Unit =
-    val view   = event.view
-    val isLast = Rollout.isLast10s(event.atS, durationS)
-    operation(SCORE, 0, tell(view), if isLast then 1 else 0)
+    val view = event.view
+    operation(SCORE, 0, tell(view))
     took(event.atS)
     releaseView(view, at)
 

@@ -7,6 +7,7 @@ import skein.forward.{Duel, LoopTiming}
   * @param duel start, speeds and duration; its policies are not used
   * @param model the same as the timetables'
   * @param pursuerPolicy takes the parameters of each candidate's pursuer before it flies
+  * @param asked what they are judged by
   * @param pursuerEye by which alone the pursuer knows of the evader; null for one that is told
   */
 private[lanes] final class TimetableDuels(
@@ -15,10 +16,10 @@ private[lanes] final class TimetableDuels(
     model: LaneDynamics,
     pursuerPolicy: LanePolicy,
     evaderPolicy: LanePolicy,
+    asked: Set[DuelNumber] = DuelNumber.all,
     pursuerEye: CameraTrackerLanes = null,
     evaderEye: CameraTrackerLanes = null
-) extends DuelKernel:
-  private val scores = LaneScores(duel.durationS, timing.periodS, this)
+) extends DuelKernel(duel.durationS, timing.periodS, asked):
   private val kernel = TimetableKernel(
     Array(
       DuelAgents(0, duel.evader, model, evaderPolicy, evaderEffortRad, LaneObservation(), false, evaderEye),
@@ -42,5 +43,5 @@ private[lanes] final class TimetableDuels(
     * @param captureRadiusM a distance of at most this is a capture
     */
   def fly(timetable: Timetable, worlds: Int, captureRadiusM: Float): Unit =
-    scores.captureWithin(captureRadiusM)
+    captureWithin(captureRadiusM)
     kernel.fly(timetable, worlds)

@@ -2,15 +2,27 @@ package skein.lanes
 
 import skein.simd.LaneFunction
 
-/** A function of what a view shows, and of other numbers that stay where they are. */
-private[lanes] final class ViewCall(bound: BoundFunction, lanes: Int => Option[(Int, Int)]):
-  val call: LaneCall = LaneCall(bound)
+/** A function of what a view shows, and of other numbers that stay where they are.
+  *
+  * @param parameters read at each call
+  */
+private[lanes] final class ViewCall(
+    bound: BoundFunction,
+    lanes: Int => Option[(Int, Int)],
+    parameters: Array[Float] = Array.emptyFloatArray
+):
+  val call: LaneCall = LaneCall(bound, parameters)
 
   // The function's inputs that are read from views, with the vehicle and the field.
   private val (places, vehicles, fields) =
     bound.inputs.zipWithIndex
       .flatMap((input, place) => lanes(input).map((vehicle, field) => (place, vehicle, field)))
       .unzip3
+
+  /** What a vehicle shows of a field stands here from now on. */
+  def show(vehicle: Int, field: Int, array: Array[Float], from: Int): Unit =
+    for i <- places.indices if vehicles(i) == vehicle && fields(i) == field do
+      call.input(places(i), array, from)
 
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
     var i = 0

@@ -1,7 +1,7 @@
 package skein.optimise
 
 import skein.forward.Delays
-import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
 import skein.policy.{Policy, PolicyFamily, Role}
 import skein.simd.{LaneMath, WorldRandom}
 
@@ -101,7 +101,7 @@ final class DuelEvaluator(
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                       = policies.length * keys.length
     override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
-    override def withEfforts: Boolean   = objective.hasEffort
+    override def asked: Set[DuelNumber] = objective.asked(role)
     def key(world: Int): Int            = keys(world % keys.length)
     def link(world: Int): Delays        = DuelEvaluator.this.link
     def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))

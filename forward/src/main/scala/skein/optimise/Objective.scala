@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.lanes.DuelOutcomes
+import skein.lanes.{DuelNumber, DuelOutcomes}
 import skein.policy.Role
 import skein.units.Expect
 
@@ -34,6 +34,18 @@ enum DuelMeasure:
     case Capture(radiusM, withinS) => s"capture($radiusM, $withinS)"
     case CaptureTime(radiusM)      => s"captureTime($radiusM)"
 
+  /** By what of an episode it is told.
+    *
+    * @param role of the vehicle that is judged
+    */
+  def number(role: Role): DuelNumber = this match
+    case Last10s                        => DuelNumber.MeanLast10s
+    case Mean                           => DuelNumber.MeanDistance
+    case Min                            => DuelNumber.MinDistance
+    case Capture(_, _) | CaptureTime(_) => DuelNumber.Capture
+    case Effort if role == Role.Pursuer => DuelNumber.PursuerEffort
+    case Effort                         => DuelNumber.EvaderEffort
+
   def unit: String = this match
     case Last10s | Mean | Min => "m"
     case Effort               => "rad"
@@ -60,26 +72,25 @@ final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Dire
   /** The radius within which an episode counts as a capture, m; 0 where no measure asks. */
   def captureRadiusM: Double = terms.flatMap((_, measure) => measure.captureRadiusM).headOption.getOrElse(0.0)
 
-  /** Whether an effort counts. */
-  def hasEffort: Boolean = terms.exists((_, measure) => measure == DuelMeasure.Effort)
+  /** What must be known of an episode.
+    *
+    * @param role whose effort counts
+    */
+  def asked(role: Role): Set[DuelNumber] = terms.map((_, measure) => measure.number(role)).toSet
 
   /** Of one episode.
     *
     * @param role whose effort counts
     */
   def value(outcomes: DuelOutcomes, world: Int, role: Role, durationS: Double): Double =
-    val captureS = outcomes.captureS(world)
-    var sum      = 0.0
+    var sum = 0.0
     for (weight, measure) <- terms do
+      val told         = outcomes(measure.number(role))(world)
       val came: Double = measure match
-        case DuelMeasure.Last10s => outcomes.meanLast10sM(world)
-        case DuelMeasure.Mean    => outcomes.meanDistanceM(world)
-        case DuelMeasure.Min     => outcomes.minDistanceM(world)
         // The time of a score is known as a Float alone: a capture exactly then counts.
-        case DuelMeasure.Capture(_, withinS) => if captureS <= withinS.toFloat then 1.0 else 0.0
-        case DuelMeasure.CaptureTime(_)      => captureS.toDouble.min(durationS)
-        case DuelMeasure.Effort              =>
-          if role == Role.Pursuer then outcomes.pursuerEffortRad(world) else outcomes.evaderEffortRad(world)
+        case DuelMeasure.Capture(_, withinS) => if told <= withinS.toFloat then 1.0 else 0.0
+        case DuelMeasure.CaptureTime(_)      => told.toDouble.min(durationS)
+        case _                               => told
       sum += weight * came
     sum
 

@@ -45,7 +45,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       val eye      = LoggedEye(forms, duel.pursuer, duel.evader)
       val lanes    = DuelAgreement.taken(pursuer, evader)
       val vehicles = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
-      val flown    = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0), eye, null)
+      val flown    = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0), DuelNumber.all, eye, null)
       flown.fly(
         Timetable.of(2, duel.durationS, timing, DelayTable.vpn, key, vehicles, Map(1 -> camera)),
         worlds,
@@ -79,7 +79,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     val batch = DuelBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn))
     assert(told.startsWith("SIMD"), told)
-    assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel.meanDistance.toSeq)
+    assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel(DuelNumber.MeanDistance).toSeq)
 
   /** Where an image shows an opponent to the one and not to the other. */
   private def found(event: Event.Looked, lanes: Looked, world: Int): Option[Agreement.Departure] =

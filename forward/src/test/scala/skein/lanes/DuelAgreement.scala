@@ -112,20 +112,20 @@ private[skein] class DuelAgreement(
   ): Unit =
     def same(what: String, ours: Double, scalar: Double) =
       must(math.abs(ours - scalar) < placesOff(duel.durationS), s"world $world: $what $ours, scalar $scalar")
-    same("least distance", flown.minDistance(world), came.minDistanceM)
-    same("mean distance", flown.meanDistance(world), came.meanDistanceM)
-    same("mean of the last 10 s", flown.meanLast10s(world), came.meanLast10sM)
-    same("pursuer's effort", flown.pursuerEffortRad(world), came.pursuerEffortRad)
-    same("evader's effort", flown.evaderEffortRad(world), came.evaderEffortRad)
+    same("least distance", flown(DuelNumber.MinDistance)(world), came.minDistanceM)
+    same("mean distance", flown(DuelNumber.MeanDistance)(world), came.meanDistanceM)
+    same("mean of the last 10 s", flown(DuelNumber.MeanLast10s)(world), came.meanLast10sM)
+    same("pursuer's effort", flown(DuelNumber.PursuerEffort)(world), came.pursuerEffortRad)
+    same("evader's effort", flown(DuelNumber.EvaderEffort)(world), came.evaderEffortRad)
     // One captures a period before the other where that period's distance is within what distances may be
     // off.
-    val sooner = math.min(flown.captureS(world), came.captureS)
+    val sooner = math.min(flown(DuelNumber.Capture)(world), came.captureS)
     must(
-      flown.captureS(world) == came.captureS.toFloat ||
+      flown(DuelNumber.Capture)(world) == came.captureS.toFloat ||
         distances.exists((timeS, m) =>
           math.abs(timeS - sooner) < 1e-3 && math.abs(m - captureM) < math.sqrt(2) * placesOff(timeS)
         ),
-      s"world $world: captured after ${flown.captureS(world)} s, scalar ${came.captureS} s; " +
+      s"world $world: captured after ${flown(DuelNumber.Capture)(world)} s, scalar ${came.captureS} s; " +
         s"nearest to the radius: ${distances.minByOption((_, m) => math.abs(m - captureM))}"
     )
 
@@ -219,7 +219,7 @@ private[skein] object DuelAgreement:
     val slowestS = links.map(_.maxS).max
     val vehicles = LaneDynamics.of(model, duel).fold(munit.Assertions.fail(_), identity)
     munit.Assertions.assertEquals(LoopDuelKernel.refusal(timing, slowestS, vehicles), null)
-    val kernel = LoopDuelKernel(duel, timing, vehicles, slowestS, lanes(1), lanes(0))
+    val kernel = LoopDuelKernel(duel, timing, vehicles, slowestS, lanes(1), lanes(0), DuelNumber.all)
     kernel.fly(worlds.map(key), links, captureM)
     DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
 

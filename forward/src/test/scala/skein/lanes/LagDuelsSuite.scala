@@ -44,6 +44,7 @@ class LagDuelsSuite extends munit.FunSuite:
       MaxDelayS,
       pursuers,
       evaders,
+      DuelNumber.all,
       shortCut
     )
 
@@ -73,10 +74,10 @@ class LagDuelsSuite extends munit.FunSuite:
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
         val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
-        (kernel.minDistance(world) - scalar.minDistanceM).abs < 2e-3 &&
-        (kernel.meanDistance(world) - scalar.meanDistanceM).abs < 2e-3 &&
-        (kernel.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
-        (kernel.evaderEffortRad(world) - scalar.evaderEffortRad).abs < 2e-3
+        (kernel(DuelNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
+        (kernel(DuelNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
+        (kernel(DuelNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
+        (kernel(DuelNumber.EvaderEffort)(world) - scalar.evaderEffortRad).abs < 2e-3
       assert(equal == worlds, s"$equal of $worlds worlds agree")
 
     test(s"over $name kernel and scalar reference agree on the mean of 60 s to 1 cm"):
@@ -84,10 +85,18 @@ class LagDuelsSuite extends munit.FunSuite:
       val scalars = ArrayBuffer.empty[DuelOutcome]
       for world <- 0 until worlds do
         scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
-      assertEqualsDouble(kernel.meanLast10s.sum / worlds, scalars.map(_.meanLast10sM).sum / worlds, 0.01)
-      assertEqualsDouble(kernel.minDistance.sum / worlds, scalars.map(_.minDistanceM).sum / worlds, 0.01)
       assertEqualsDouble(
-        kernel.pursuerEffortRad.sum / worlds,
+        kernel(DuelNumber.MeanLast10s).sum / worlds,
+        scalars.map(_.meanLast10sM).sum / worlds,
+        0.01
+      )
+      assertEqualsDouble(
+        kernel(DuelNumber.MinDistance).sum / worlds,
+        scalars.map(_.minDistanceM).sum / worlds,
+        0.01
+      )
+      assertEqualsDouble(
+        kernel(DuelNumber.PursuerEffort).sum / worlds,
         scalars.map(_.pursuerEffortRad).sum / worlds,
         0.05
       )
@@ -118,15 +127,15 @@ class LagDuelsSuite extends munit.FunSuite:
       val kernel  = kernelOf(turnRates, radii)
       val longWay = kernelOf(turnRates, radii, shortCut = false)
       for each <- Seq(kernel, longWay) do each.fly(keys, Array.fill(worlds)(link), captureRadiusM)
-      assertEquals(kernel.meanLast10s.toSeq, longWay.meanLast10s.toSeq)
-      assertEquals(kernel.pursuerEffortRad.toSeq, longWay.pursuerEffortRad.toSeq)
+      assertEquals(kernel(DuelNumber.MeanLast10s).toSeq, longWay(DuelNumber.MeanLast10s).toSeq)
+      assertEquals(kernel(DuelNumber.PursuerEffort).toSeq, longWay(DuelNumber.PursuerEffort).toSeq)
 
   test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
-    val before   = kernel.meanLast10s.clone
+    val before   = kernel(DuelNumber.MeanLast10s).clone
     val reversed = kernelOf(turnRates.reverse, radii.reverse)
     reversed.fly(keys.reverse, Array.fill(worlds)(DelayTable.vpn), captureRadiusM)
-    assertEquals(reversed.meanLast10s.reverse.toSeq, before.toSeq)
+    assertEquals(reversed(DuelNumber.MeanLast10s).reverse.toSeq, before.toSeq)
 
   test("worlds of different links fly side by side as each would alone"):
     val links  = Vector(DelayTable.none, DelayTable.direct, DelayTable.vpn)
@@ -135,4 +144,8 @@ class LagDuelsSuite extends munit.FunSuite:
       kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), captureRadiusM)
       val alone = links.map(link => fly(link, 60))
       for world <- 0 until worlds do
-        assertEquals(kernel.meanLast10s(world), alone(world / 5 % 3).meanLast10s(world), s"world $world")
+        assertEquals(
+          kernel(DuelNumber.MeanLast10s)(world),
+          alone(world / 5 % 3)(DuelNumber.MeanLast10s)(world),
+          s"world $world"
+        )

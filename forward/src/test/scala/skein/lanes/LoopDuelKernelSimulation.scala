@@ -49,7 +49,8 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       evaders.take(world, PaperEvader(7 + 0.02 * world))
     val vehicles = LaneDynamics.of(model, duel(0, durationS)).fold(fail(_), identity)
     assertEquals(LoopDuelKernel.refusal(timing, link.maxS, vehicles), null)
-    val kernel = LoopDuelKernel(duel(0, durationS), timing, vehicles, link.maxS, pursuers, evaders)
+    val kernel =
+      LoopDuelKernel(duel(0, durationS), timing, vehicles, link.maxS, pursuers, evaders, DuelNumber.all)
     kernel.fly(keys, Array.fill(worlds)(link), captureM)
     kernel
 
@@ -107,9 +108,9 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       s"$timing: a world's result depends on its key and parameters alone, not on its lane or its neighbours"
     ):
       val link   = wild(150, 150)
-      val before = fly(timing, link, 20, lag).meanLast10s.clone
+      val before = fly(timing, link, 20, lag)(DuelNumber.MeanLast10s).clone
       // The others meet other delays.
       val some   = keys.zipWithIndex.map((key, world) => if world % 3 == 0 then key else key ^ 0x5a5a5a)
       val beside = fly(timing, link, 20, lag, some)
       for world <- 0 until worlds by 3 do
-        assertEquals(beside.meanLast10s(world), before(world), s"world $world")
+        assertEquals(beside(DuelNumber.MeanLast10s)(world), before(world), s"world $world")

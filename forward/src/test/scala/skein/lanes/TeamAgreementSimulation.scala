@@ -198,12 +198,10 @@ object TeamAgreementSimulation:
       policy.course(observed)
 
   object NoScores extends TimetableScores:
-    def start(): Unit  = ()
-    def finish(): Unit = ()
+    def start(): Unit = ()
     def score(
         agents: Array[TimetableAgents],
         views: Array[Int],
         view: Int,
-        isLast: Boolean,
         timeS: Float
     ): Unit = ()

@@ -50,12 +50,10 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private final class PlacesByWorld(count: Int) extends TimetableScores:
     val places: ArrayBuffer[Array[(Double, Double)]] = ArrayBuffer.empty
     def start(): Unit                                = places.clear()
-    def finish(): Unit                               = ()
     def score(
         all: Array[TimetableAgents],
         views: Array[Int],
         view: Int,
-        isLast: Boolean,
         timeS: Float
     ): Unit =
       for vehicle <- 0 until count do
@@ -141,7 +139,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
 
   for
     (name, draw, judging) <- quantities
-    reduction             <- Reduction.values
+    reduction             <- Reduction.values ++ Seq(OfMoment.Newest)
   do
     test(s"$name, $reduction: candidates come to what the scalar reference says, to 1e-3 of it"):
       val random     = SplitMix64(9)
@@ -166,6 +164,38 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
             1e-3 * value.abs.max(1),
             s"world $world, $number"
           )
+
+  test("numbers from different times on come to what each alone does, and are found at the scalar's moment"):
+    val random = SplitMix64(9)
+    val judged = Vector(
+      Judged(Separation, Reduction.Least, 0),
+      Judged(Separation, Reduction.Sd, 4),
+      Judged(OffRing(7), OfMoment.FirstWithin(1.5), 2),
+      Judged(OffRing(7), OfMoment.FirstWithin(0), 2),
+      Judged(WidestGap, OfMoment.Newest, 6),
+      Judged(WidestGap, Reduction.Most, 11)
+    )
+    val teams                                  = Vector.fill(40)(engagement(scenarios(0)._2(random), 10))
+    val batch                                  = TeamBatch(LoopTiming.Stream(), lag, 1)
+    def fly(by: Vector[Judged]): Seq[Seq[Int]] =
+      val candidates = teams.map(TeamCandidate(_, by))
+      val all        = new TeamWorlds:
+        def size: Int                            = candidates.size
+        def key(world: Int): Int                 = 4
+        def link(world: Int): Delays             = DelayTable.vpn
+        def candidate(world: Int): TeamCandidate = candidates(world)
+      assert(batch.fliesByLanes(candidates.head), batch.engine(candidates.head))
+      batch.fly(all).values.map(_.toSeq.map(java.lang.Float.floatToIntBits))
+    val together = fly(judged)
+    assertEquals(together, judged.flatMap(each => fly(Vector(each))))
+    val scalar = ScalarTeam(LoopTiming.Stream(), lag)
+    for (team, world) <- teams.zipWithIndex do
+      val truth = scalar.fly(TeamCandidate(team, judged), DelayTable.vpn, 4)
+      for number <- Seq(2, 3, 5) do
+        val bits = java.lang.Float.floatToIntBits(truth(number).toFloat)
+        assertEquals(together(number)(world), bits, s"world $world, $number")
+    val found = together(2).count(java.lang.Float.intBitsToFloat(_).isFinite)
+    assert(found > 0 && found < teams.size, s"$found of ${teams.size} are ever within the limit")
 
   private def avoiding(scenario: Crossing, durationS: Double) =
     TeamCandidate(Engagement.of(scenario.fleet, durationS), Vector(Judged(Separation, Reduction.Least, 0)))

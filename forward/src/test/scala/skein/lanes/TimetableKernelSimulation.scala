@@ -104,12 +104,12 @@ class TimetableKernelSimulation extends munit.FunSuite:
         for world <- 0 until worlds by 3 do
           val scalar = Rollout(duel(world, 5), timing, link, model).fly(key, captureM)
           all += 1
-          if (kernel.minDistance(world) - scalar.minDistanceM).abs < 2e-3 &&
-            (kernel.meanDistance(world) - scalar.meanDistanceM).abs < 2e-3 &&
-            (kernel.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
-            (kernel.evaderEffortRad(world) - scalar.evaderEffortRad).abs < 2e-3
+          if (kernel(DuelNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
+            (kernel(DuelNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
+            (kernel(DuelNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
+            (kernel(DuelNumber.EvaderEffort)(world) - scalar.evaderEffortRad).abs < 2e-3
           then close += 1
-          if kernel.captureS(world) == scalar.captureS.toFloat then captures += 1
+          if kernel(DuelNumber.Capture)(world) == scalar.captureS.toFloat then captures += 1
       assert(close == all, s"$close of $all worlds agree")
       assert(captures == all, s"$captures of $all captures agree")
 

@@ -48,7 +48,7 @@ import skein.signal.SplitMix64
     scalar(150)
     val slow    = Vector.fill(3)(60 * 1200 / seconds(scalar(60))).max * 1e-6
     val size    = PolicyLanes.get(candidates(0)).operations
-    val witness = kernel.meanLast10s.map(_.toDouble).sum / DuelKernel.WORLDS
+    val witness = kernel(DuelNumber.MeanLast10s).map(_.toDouble).sum / DuelKernel.WORLDS
     println(
       f"$name%-8s $rate%6.1f M/s  scalar $slow%.3f M/s  ${rate / slow}%5.0f times  $size%4d operations " +
         f" ${rate * size}%7.0f M operations/s  made in $compiledMs ms  witness $witness%.5f"

@@ -1,0 +1,46 @@
+package skein.lanes
+
+import skein.forward.Rollout
+import skein.scenario.Reduction
+
+/** What kernels that fly duels tell of the worlds flown last. Mutable.
+  *
+  * @param asked what they are judged by
+  */
+private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, asked: Set[DuelNumber]):
+  import DuelKernel.*
+
+  private val judged = DuelNumber.values.toVector.filter(asked).flatMap: number =>
+    (number match
+      case DuelNumber.MinDistance  => Some(Reduction.Least -> 0.0)
+      case DuelNumber.MeanDistance => Some(Reduction.Mean -> 0.0)
+      case DuelNumber.MeanLast10s  => Some(Reduction.Mean -> Rollout.last10sFromS(durationS, periodS))
+      case DuelNumber.Capture      => Some(OfMoment.FirstWithin(0) -> 0.0)
+      case _                       => None
+    ).map(number -> _)
+
+  private val place = judged.map(_._1).zipWithIndex.toMap
+
+  protected val scores: Scoreboard = Scoreboard.ofDistance(judged.map(_._2)*)
+
+  /** A distance of at most this is a capture, m. */
+  protected def captureWithin(radiusM: Float): Unit =
+    place.get(DuelNumber.Capture).foreach(scores.limit(_, radiusM))
+
+  /** The sums of all changes of the commanded headings, by the shorter way, rad. */
+  protected val pursuerEffortRad, evaderEffortRad: Array[Float] = Array.ofDim(WORLDS)
+
+  /** What each world came to. */
+  def apply(number: DuelNumber): Array[Float] = number match
+    case DuelNumber.PursuerEffort => pursuerEffortRad
+    case DuelNumber.EvaderEffort  => evaderEffortRad
+    case _                        => scores.values(place(number))
+
+  /** Tells what the first lanes' worlds came to. */
+  def tell(worlds: Array[Int], count: Int, into: DuelOutcomes): Unit = for number <- asked do
+    val (came, told) = (apply(number), into(number))
+    for lane <- 0 until count do told(worlds(lane)) = came(lane)
+
+private[lanes] object DuelKernel:
+  /** Worlds flown together. */
+  val WORLDS: Int = LanePolicy.WORLDS
