@@ -110,7 +110,7 @@ final class FlightAssembler(
         val planners     =
           if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
           else
-            opened.closing(workers(settings.planningByModel)): threads =>
+            opened.closing(workers(settings.planning)): threads =>
               threads.close()
               Future.successful(Done)
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)

@@ -5,22 +5,29 @@ import skein.policy.{Agent, Fleet}
 import skein.record.PlannedPath
 import skein.signal.Kinematics
 import skein.units.*
-import skein.vehicle.{PlaneReading, ReducedModel, VehicleKind}
+import skein.vehicle.{PlaneReading, VehicleKind}
 
-/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
-private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings):
+/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too.
+  *
+  * @param foreseen by which it is
+  */
+private abstract class Planning(
+    fleet: Fleet,
+    self: Int,
+    settings: PlanSettings,
+    protected val foreseen: ForeseenVehicle
+):
   protected val agent: Agent     = fleet.agents(self)
   protected val decider: Decider = Decider(fleet, self)
   private val startM             = -agent.startPositionNed.z
 
   /** At which it flies: its start's, as far as the limits let it. */
-  protected val altitudeM: Double      = settings.altitudeM(startM)
-  protected val response: ReducedModel = settings.responseAt(altitudeM)
+  protected val altitudeM: Double = settings.altitudeM(startM)
 
   final val planner: PlannerSettings = settings.planner
 
   /** How long after its arrival a command begins to act on the vehicle. */
-  final val deadTime: Span = Span.ofSeconds(response.deadTimeS)
+  final val deadTime: Span = Span.ofSeconds(foreseen.plant.deadTimeS)
 
   /** Whether plans depend on more vehicles than this one and its opponent. */
   def regardsTeam: Boolean

@@ -13,9 +13,10 @@ private final class TeamPlanning(
     fleet: Fleet,
     self: Int,
     policy: GoalPolicy,
+    foreseen: ForeseenVehicle,
     settings: PlanSettings,
     seed: Long
-) extends Planning(fleet, self, settings):
+) extends Planning(fleet, self, settings, foreseen):
   import Planning.{motion, straight}
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
@@ -46,7 +47,7 @@ private final class TeamPlanning(
         )
     val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))
     val alone = Situation(
-      PredictedVehicle(response, motion(view.kinematics(self))),
+      foreseen.at(view, self),
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
       Vector(Behaviour(Target.Along(along))),

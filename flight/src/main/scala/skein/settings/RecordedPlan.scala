@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.loop.{AnyLoop, Fallback, PlanSettings, Replay}
+import skein.loop.{AnyLoop, Fallback, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
@@ -53,9 +53,8 @@ object RecordedPlan:
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
-    ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++ Seq(
-      ParameterRow(Planning, settings.planning.text),
-      ParameterRow(Predictor, PredictionModel.text(settings.predictor)),
+    ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++
+      parameters(settings.planning, Some(settings.predictor)) ++ Seq(
       ParameterRow(MovesInFlight, settings.movesInFlight.toString)
     ) ++ Option.when(!settings.plant.isAirSim)(ParameterRow(
       Plant,
@@ -79,6 +78,14 @@ object RecordedPlan:
           ParameterRow(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
         ) ++ chosen.learning.map(learning => ParameterRow(Explore, learning.explore.toString))
 
+  /** The same of what a flight plans by.
+    *
+    * @param predictor absent where a recording cannot name it
+    */
+  def parameters(planning: PlanSettings, predictor: Option[PredictionModel]): Seq[ParameterRow] =
+    ParameterRow(Planning, planning.text) +:
+      predictor.map(model => ParameterRow(Predictor, PredictionModel.text(model))).toSeq
+
   /** Reads it back.
     *
     * @return or what is missing, or is not what `skein fly` records
@@ -101,6 +108,8 @@ object RecordedPlan:
       link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
       now      <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
       older    <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
+      _        <- Expect.that(loop != LoopKind.Plan || now.orElse(older).isDefined):
+        s"the recording has no parameter '$Predictor': by what model was planned is not known"
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
