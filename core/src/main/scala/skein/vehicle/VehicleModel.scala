@@ -26,5 +26,6 @@ trait VehicleModel[S]:
 
   def kinematics(state: S): Kinematics
 
-  /** The state of the vehicle's plant as numbers ([[PlantState]]), where a reading does not tell all of it. */
+  /** The state of the vehicle's plant as numbers ([[PlantState]]), where a reading does not tell all of it.
+    */
   def numbers: S => Vector[Double] = _ => Vector.empty

@@ -79,7 +79,7 @@ object Chase:
       clockKind: ClockKind,
       clock: Clock,
       predictor: PredictionModel = rover,
-      scenario: Rovers = Rovers()
+      scenario: Scenario = Rovers()
   ): PortFlight =
     PortFlight(
       s"${loop.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
@@ -127,7 +127,7 @@ object Chase:
       seed: Long,
       link: LatencyProfile = LatencyProfile.none,
       predictor: PredictionModel = rover,
-      scenario: Rovers = Rovers()
+      scenario: Scenario = Rovers()
   ): MemoryRecorder = VirtualTime
     .run(seed): system =>
       given ActorSystem = system

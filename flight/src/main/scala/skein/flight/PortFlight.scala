@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.loop.*
-import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
+import skein.loop.planning.PlanWorkers
 import skein.port.{SteppedTime, VehiclePort}
 import skein.record.*
 import skein.scenario.Scenario
@@ -37,15 +37,17 @@ final case class PortFlight(
 ):
   private val plans = loop == LoopKind.Plan
 
-  /** How its loop is run. Plans keep the scenario's limits. */
-  private val how: LoopSettings =
+  /** How its loop is run: with its predictor, and plans that keep the scenario's limits. [[Replay]] takes it.
+    */
+  val loopSettings: LoopSettings =
     val agents = scenario.fleet.agents
     settings.copy(
       model = predictor.fold(settings.model)(model => vehicle => model.forAgent(agents(vehicle))),
       planning = settings.planning.keeping(scenario)
     )
   if plans then
-    for reason <- JointPlanning.of(scenario.fleet, how).left do throw IllegalArgumentException(reason)
+    for reason <- JointPlanning.of(scenario.fleet, loopSettings).left do
+      throw IllegalArgumentException(reason)
 
   /** What its recording begins with. */
   def heading: RecordingHeader = RecordingHeader(
@@ -64,7 +66,7 @@ final case class PortFlight(
     ),
     scenario.agents.map(VehicleRow.of),
     ScenarioSettings.recorded(scenario) ++
-      (if plans then RecordedPlan.parameters(how.planning, predictor) else Nil)
+      (if plans then RecordedPlan.parameters(settings.planning, predictor) else Nil)
   )
 
   /** Starts it. The recorder gets everything down to the last row, and is closed.
@@ -79,7 +81,7 @@ final case class PortFlight(
     import system.dispatcher
     val endCondition = EndCondition(scenario, loop == LoopKind.Paused, recorder)
     val planners     = workers
-    val team         = Team(scenario.fleet, vehicles, clock, endCondition, how, planners)
+    val team         = Team(scenario.fleet, vehicles, clock, endCondition, loopSettings, planners)
     val flight       = Flight.start(loop, team, time, duration, clock, endCondition)
     endCondition.isOver.foreach(_ => flight.complete())
     val landed =
@@ -93,8 +95,8 @@ final case class PortFlight(
 
   private def workers: PlanWorkers =
     if !plans then PlanWorkers.none
-    else if clockKind == ClockKind.Virtual then CountedPlanWorkers.of(how.planning)
-    else FlightAssembler.threads(how.planning)
+    else if clockKind == ClockKind.Virtual then FlightAssembler.counted(settings.planning)
+    else FlightAssembler.threads(settings.planning)
 
 object PortFlight:
   /** @param landed how it ended, and what is on record

@@ -7,7 +7,6 @@ import scala.concurrent.Future
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
 import skein.loop.{AnyLoop, FlightOutcome}
 import skein.measure.RecordedTracks
-import skein.loop.planning.CountedPlanWorkers
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
@@ -74,7 +73,7 @@ object VirtualFlights:
           clock,
           settings,
           simulator = None,
-          CountedPlanWorkers.of,
+          FlightAssembler.counted,
           learnsOn = Some(system.dispatcher),
           solvers = Solvers(
             Here,
@@ -126,7 +125,7 @@ object VirtualFlights:
   private def serveSolver(settings: FlySettings, plan: FlightPlan, network: MemoryNetwork, clock: Clock)(using
       system: ActorSystem
   ): Future[SolverServer] =
-    def deciders = FlightDeciders.of(RecordedPlan(settings, plan), CountedPlanWorkers.of)
+    def deciders = FlightDeciders.of(RecordedPlan(settings, plan), FlightAssembler.counted)
     val desk     = SolverDesk(plan.seed, Here, _ => deciders, clock, system.dispatcher)
     SolverServer.start(SolverAt, network.host(There), desk)
 

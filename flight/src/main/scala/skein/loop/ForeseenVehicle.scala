@@ -2,6 +2,7 @@ package skein.loop
 
 import skein.planning.{Planner, PredictedVehicle}
 import skein.policy.Agent
+import skein.signal.Kinematics
 import skein.vehicle.*
 import scala.util.Try
 
@@ -14,11 +15,14 @@ private final class ForeseenVehicle(val plant: ObservedPlant[?], carriesS: Doubl
   /** The vehicle as a view has it. */
   def at(view: TeamView, vehicle: Int): PredictedVehicle[?] =
     val state = view.estimates.fold(Vector.empty)(_(vehicle).state)
-    PredictedVehicle.of(plant, Planning.motion(view.kinematics(vehicle)), carriesS, state)
+    PredictedVehicle.of(plant, ForeseenVehicle.motion(view.kinematics(vehicle)), carriesS, state)
 
 private object ForeseenVehicle:
   /** For speeds of 0, m/s. */
   private val LeastMps = 0.1
+
+  def motion(seen: Kinematics): PlaneReading =
+    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
   /** @param model by which its readings are carried forward. Of one without a plant of velocities, plans take
     *   AirSim's quadrotor at the vehicle's altitude
@@ -26,7 +30,7 @@ private object ForeseenVehicle:
     */
   def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =
     val plant = model match
-      case PlantModel(plant)                                                    => Right(plant)
+      case PlantModel(plant)                                                => Right(plant)
       case _: (QuadrotorModel | CarModel) | ConstantVelocity | ConstantTurn => Right(
           ReducedModel.airSimAt(settings.altitudeM(-agent.startPositionNed.z))
         )

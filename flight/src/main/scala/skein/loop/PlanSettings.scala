@@ -132,7 +132,11 @@ object PlanSettings:
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
   /** A setting as a word of the text, if it is one. */
-  private final class Word[A](suffix: String, val text: A => Option[String], parse: Option[String] => Option[A]):
+  private final class Word[A](
+      suffix: String,
+      val text: A => Option[String],
+      parse: Option[String] => Option[A]
+  ):
     def name(field: String): String                                 = field + suffix
     def read(values: Map[String, String], field: String): Option[A] = parse(values.get(name(field)))
 

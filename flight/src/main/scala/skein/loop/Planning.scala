@@ -3,13 +3,12 @@ package skein.loop
 import skein.planning.*
 import skein.policy.{Agent, Fleet}
 import skein.record.PlannedPath
-import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{PlaneReading, VehicleKind}
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too.
   *
-  * @param foreseen by which it is
+  * @param foreseen how the vehicle is
   */
 private abstract class Planning(
     fleet: Fleet,
@@ -155,9 +154,6 @@ object Planning:
     */
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
     memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
-
-  private[loop] def motion(seen: Kinematics): PlaneReading =
-    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
   private[loop] def straight(motion: PlaneReading, planner: PlannerSettings): PredictedTrack =
     PredictedTrack.straight(motion, planner.steps, planner.dtS)

@@ -20,7 +20,8 @@ private final class PursuitPlanning(
     settings: PlanSettings,
     seed: Long
 ) extends Planning(fleet, self, settings, vehicles(self)):
-  import Planning.{motion, straight}
+  import ForeseenVehicle.motion
+  import Planning.straight
   private val speed  = settings.speedMps(agent.speed.value)
   private val leastM =
     settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)

@@ -54,10 +54,12 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
 
   private val joint = Option
     .when(recording.flight.loopKind.contains(LoopKind.Plan) || recording.planned.nonEmpty)(())
-    .flatMap(_ => JointPlanning.of(fleet, settings.copy(seed = recording.flight.seed)).fold(
-      reason => throw IllegalArgumentException(reason),
-      identity
-    ))
+    .flatMap(_ =>
+      JointPlanning.of(fleet, settings.copy(seed = recording.flight.seed)).fold(
+        reason => throw IllegalArgumentException(reason),
+        identity
+      )
+    )
   private val planners = joint.fold(Vector.empty)(_.vehicles).map(fleet.agents(_).name)
 
   /** Decisions made together, by their time and vehicle. */

@@ -17,7 +17,8 @@ private final class TeamPlanning(
     settings: PlanSettings,
     seed: Long
 ) extends Planning(fleet, self, settings, foreseen):
-  import Planning.{motion, straight}
+  import ForeseenVehicle.motion
+  import Planning.straight
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
   private val objective = PlanCost(

@@ -55,14 +55,14 @@ object RecordedPlan:
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
     ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++
       parameters(settings.planning, Some(settings.predictor)) ++ Seq(
-      ParameterRow(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ Option.when(!settings.plant.isAirSim)(ParameterRow(
-      Plant,
-      settings.plant.text
-    )) ++ Option.when(settings.wire != Wire.AirSim)(ParameterRow(
-      Spoken,
-      settings.wire.label
-    )) ++ plan.solver.toSeq.map(choice => ParameterRow(SolverSummary.Parameter, choice.text)) ++
+        ParameterRow(MovesInFlight, settings.movesInFlight.toString)
+      ) ++ Option.when(!settings.plant.isAirSim)(ParameterRow(
+        Plant,
+        settings.plant.text
+      )) ++ Option.when(settings.wire != Wire.AirSim)(ParameterRow(
+        Spoken,
+        settings.wire.label
+      )) ++ plan.solver.toSeq.map(choice => ParameterRow(SolverSummary.Parameter, choice.text)) ++
       Option.when(settings.images.nonEmpty)(
         ParameterRow(Images, settings.images.map(_.text).mkString(" "))
       ) ++
@@ -104,11 +104,11 @@ object RecordedPlan:
       if parameters.contains(name) then parameter(name, expected)(parse).map(Some(_)) else Right(None)
 
     for
-      loop     <- AnyLoop.parse(flight.loop)
-      link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
-      now      <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
-      older    <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
-      _        <- Expect.that(loop != LoopKind.Plan || now.orElse(older).isDefined):
+      loop  <- AnyLoop.parse(flight.loop)
+      link  <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      now   <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
+      older <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
+      _     <- Expect.that(loop != LoopKind.Plan || now.orElse(older).isDefined):
         s"the recording has no parameter '$Predictor': by what model was planned is not known"
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))

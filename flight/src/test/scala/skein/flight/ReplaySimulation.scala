@@ -47,18 +47,19 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       check(settings.copy(loops = List(loop)), folder)
 
   for scenario <- Seq(PaperDuel(), Crossing(vehicles = 4)) do
-    folder.test(s"so does a plan of ${scenario.name} by a plant of one's own, from states that no reading tells"):
-      folder =>
-        val own  = settings.copy(loops = List(LoopKind.Plan), scenario = scenario, predictor = Tilting.predictor)
-        val plan = own.plans.head
-        check(own, folder)(using Tilting.scenarios)
-        val recording = fly(own, plan).recording
-        val states    = recording.planned.flatMap(_.states)
-        assertEquals(states.size, recording.planned.size)
-        assert(states.map(_.own.takeRight(2)).distinct.size > 10, "tilts do not differ")
+    folder.test(
+      s"so does a plan of ${scenario.name} by a plant of one's own, from states that no reading tells"
+    ): folder =>
+      val own = settings.copy(loops = List(LoopKind.Plan), scenario = scenario, predictor = Tilting.predictor)
+      val plan = own.plans.head
+      check(own, folder)(using Tilting.scenarios)
+      val recording = fly(own, plan).recording
+      val states    = recording.planned.flatMap(_.states)
+      assertEquals(states.size, recording.planned.size)
+      assert(states.map(_.own.takeRight(2)).distinct.size > 10, "tilts do not differ")
 
   test("from other states, or by a plant of other numbers, other plans come out"):
-    val own       = settings.copy(
+    val own = settings.copy(
       loops = List(LoopKind.Plan),
       scenario = Crossing(vehicles = 4),
       predictor = Tilting.predictor

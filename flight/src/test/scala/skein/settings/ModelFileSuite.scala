@@ -6,7 +6,7 @@ import skein.forecast.Structure
 import skein.forward.PlantResponse
 import skein.identify.{Fitted, HorizonError, Identification}
 import skein.policy.{Axis, SearchSpace}
-import skein.loop.planning.CountedPlanWorkers
+import skein.flight.FlightAssembler
 import skein.scenario.Scenarios
 import skein.solver.FlightDeciders
 import skein.testing.TemporaryFolders
@@ -44,7 +44,11 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     val fitted =
       structure.names.zip(values).map((name, value) => Fitted(name, value, value - 1, value + 1, false))
     val found = Identification(structure, fitted, structure.plant(values.toVector), 100, 9, 0.1, 0.2)
-    Fit(found, Vector(HorizonError(1, 9, 0.1, 0.2, 0.3, 0.4)), Vector(HorizonError(1, 50, 0.1, 0.2, 0.3, 0.4)))
+    Fit(
+      found,
+      Vector(HorizonError(1, 9, 0.1, 0.2, 0.3, 0.4)),
+      Vector(HorizonError(1, 50, 0.1, 0.2, 0.3, 0.4))
+    )
 
   private def text(use: Structure): String = ModelFile.render(
     use,
@@ -82,13 +86,20 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     )
 
   test("no structure and no parameter has the name of a key of these files"):
-    val section = ConfigFactory.parseString(text(late)).getConfig("skein.model")
+    val section                              = ConfigFactory.parseString(text(late)).getConfig("skein.model")
     def keys(of: com.typesafe.config.Config) = of.root.keySet.asScala.toSet
     def refused(label: String, name: String) =
-      intercept[IllegalArgumentException](Structure(label, SearchSpace(Vector(Axis(name, 0, 2))), _ => Fickle))
+      intercept[IllegalArgumentException](Structure(
+        label,
+        SearchSpace(Vector(Axis(name, 0, 2))),
+        _ => Fickle
+      ))
         .getMessage.stripPrefix("requirement failed: ")
     for key <- keys(section) -- Seq("lag", "late") do
-      assertEquals(refused(key, "gain"), s"expected another label of a structure: '$key' is a key of model files")
+      assertEquals(
+        refused(key, "gain"),
+        s"expected another label of a structure: '$key' is a key of model files"
+      )
     for key <- keys(section.getConfig("late")) -- late.names do
       assertEquals(
         refused("mine", key),
@@ -96,7 +107,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
       )
 
   test("plans are made by a plant of one's own that is a formula; by another they are refused before flight"):
-    val path                                    = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
+    val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
     def read(loop: String, plant: ObservedPlant[?]) =
       val known = Structure("late", late.space, _ => plant)
       val flags = ConfigFactory.parseString(
@@ -112,4 +123,4 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     // Elsewhere, too.
     val fickle = PredictionModel.Own(Structure("late", late.space, _ => Fickle), Vector(0.75, 0.25))
     val flown  = RecordedPlan(settings.copy(predictor = fickle), settings.plans.head)
-    assert(FlightDeciders.of(flown, CountedPlanWorkers.of).isLeft)
+    assert(FlightDeciders.of(flown, FlightAssembler.counted).isLeft)

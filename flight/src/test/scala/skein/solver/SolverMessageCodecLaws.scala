@@ -79,7 +79,10 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
       alignment <- Gen.option(alignment)
       sensed    <- Gen.option(Gen.zip(Gen.long, stamped(Gen.listOfN(3, number).map(_.toVector))))
       estimates <- Gen.option(
-        Gen.listOfN(vehicles, Gen.zip(kinematics, instant, instant, Gen.listOf(number).map(_.toVector)).map(Estimate(_, _, _, _))).map(_.toVector)
+        Gen.listOfN(
+          vehicles,
+          Gen.zip(kinematics, instant, instant, Gen.listOf(number).map(_.toVector)).map(Estimate(_, _, _, _))
+        ).map(_.toVector)
       )
     yield
       val said = sensed.map((number, values) =>

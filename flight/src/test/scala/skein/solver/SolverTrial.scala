@@ -122,8 +122,9 @@ object SolverTrial:
           steps += 1
       def deciders =
         val how   = LoopSettings(planning = planning, seed = seed)
-        val plans = Option.when(kind == LoopKind.Plan)(JointPlanning.of(fleet, how)).flatMap(_.toOption).flatten
-        val by    = CountedPlanWorkers(planning.searches, planning.slices)
+        val plans =
+          Option.when(kind == LoopKind.Plan)(JointPlanning.of(fleet, how)).flatMap(_.toOption).flatten
+        val by = CountedPlanWorkers(planning.searches, planning.slices)
         FlightDeciders(fleet, plans.map(FlightDeciders.Plans(_, planning.deadline, by)))
       val hand = Hand(
         system,

@@ -3,7 +3,13 @@ package skein.planning
 import skein.vehicle.{ObservedPlant, PlaneReading, ReducedModel}
 
 /** A heading besides what is read. */
-private final case class Headed(northM: Double, eastM: Double, northMps: Double, eastMps: Double, heading: Double)
+private final case class Headed(
+    northM: Double,
+    eastM: Double,
+    northMps: Double,
+    eastMps: Double,
+    heading: Double
+)
 
 class PredictedVehicleSuite extends munit.FunSuite:
 

@@ -267,8 +267,8 @@ final case class SolverClock(offset: Span, uncertainty: Span)
   */
 final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
-/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty where its kinematics
-  * tell all of one.
+/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty where its
+  * kinematics tell all of one.
   */
 final case class PlannedStates(own: Vector[Double], opponent: Vector[Double])
 

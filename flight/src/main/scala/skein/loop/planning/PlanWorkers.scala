@@ -5,7 +5,6 @@ import java.util.concurrent.atomic.AtomicReference
 import java.util.concurrent.locks.LockSupport
 import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
-import skein.loop.PlanSettings
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
 /** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so
@@ -54,9 +53,6 @@ final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
     def finish(): Vector[JointPlan] = found
 
   def close(): Unit = ()
-
-object CountedPlanWorkers:
-  def of(settings: PlanSettings): CountedPlanWorkers = CountedPlanWorkers(settings.searches, settings.slices)
 
 /** Searches on threads of its own until it is asked for the result; several problems take turns, slice by
   * slice.
