@@ -367,5 +367,5 @@ lazy val foreignEnvironment = project
 lazy val ownVehicle = project
   .in(file("examples/own-vehicle"))
   .dependsOn(cli)
-  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit, testsCompute := true)
   .settings(Compile / run / mainClass := Some("rovers.driveRovers"))

@@ -15,7 +15,7 @@ import skein.flight.{FlightAssembler, WarmUp}
 import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
 import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
 import skein.scenario.Scenarios
-import skein.settings.{RecordedPlan, SolverChoice}
+import skein.settings.{PredictionModel, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{Briefing, FlightDeciders, SolverDesk, SolverServer}
 import skein.units.{Clock, Expect}
@@ -161,15 +161,15 @@ final class DecideCommand(using scenarios: Scenarios)
       name = plan.settings.scenario.name
       _ <- Expect.that(only.forall(_ == name)):
         s"this solver decides for ${only.getOrElse("")} alone, the flight flies $name"
-    yield
-      // Whoever comes meanwhile waits for it, too.
-      val _ = warm.computeIfAbsent(
-        s"$name ${briefing.loop}",
-        _ =>
-          warmUp(plan)
-          true
-      )
-      FlightDeciders.of(plan, FlightAssembler.threads)
+      _ = // Whoever comes meanwhile waits for it, too.
+        warm.computeIfAbsent(
+          s"$name ${briefing.loop} ${PredictionModel.text(plan.settings.predictor)}",
+          _ =>
+            warmUp(plan)
+            true
+        )
+      deciders <- FlightDeciders.of(plan, FlightAssembler.threads)
+    yield deciders
 
   /** So that the first decisions do not wait for the compiler. */
   private def warmUp(plan: RecordedPlan): Unit =

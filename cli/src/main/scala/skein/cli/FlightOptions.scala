@@ -61,7 +61,7 @@ final case class FlightOptions(
     )
     plant: Option[String],
     @arg(doc =
-      "model that predicts, in `predictive`: reduced, drag, quadrotor, constant-velocity, " +
+      "model that predicts, in `predictive` and `plan`: reduced, drag, quadrotor, constant-velocity, " +
         "constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
     )
     predictor: Option[String],

@@ -20,7 +20,7 @@ final case class IdentifyOptions(
     vehicle: Seq[String],
     @arg(doc =
       "structure of the model that the file selects: lag, turn, drag, drag-and-turn, or one of your program's own; " +
-        "Skein's are fitted beside it"
+        "all are fitted beside it"
     )
     structure: String = Structure.Drag.label,
     @arg(doc = "how far each reading is predicted for the fit")
@@ -62,7 +62,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       fits       <- fit(flights, use, horizon.toSeconds)
       shown    = Shown(options.json.value)
       sensor   = sensorOf(recordings)
-      sections = tables(fits, flights, use) ++ sensor.map(sensorTable)
+      sections = tables(fits, flights) ++ sensor.map(sensorTable)
       _        = shown.say(clocks(recordings))
       _        = shown.tables(sections, Section.text(sections))
       from     = ModelFile.Provenance(
@@ -106,14 +106,25 @@ final class IdentifyCommand(using scenarios: Scenarios)
       use: Structure,
       horizonS: Double
   ): Either[String, Vector[Fit]] =
-    val structures = (Structure.ours :+ use).distinct
+    val structures = scenarios.structures
     val reflown    =
       if Structure.ours.contains(use) then flights.map(HorizonErrors.reflown(_)) else Vector.empty
-    Expect.each(structures.zipWithIndex): (structure, index) =>
-      for found <- Identification.of(flights, structure, horizonS)
-      yield
-        Console.err.println(s"fitted ${structure.label}: ${index + 1} of ${structures.size}")
-        Fit(found, HorizonErrors.of(found.plant, reflown), HorizonErrors.of(found.plant, flights))
+    Expect
+      .each(structures.zipWithIndex): (structure, index) =>
+        Identification.of(flights, structure, horizonS) match
+          case Right(found) =>
+            Console.err.println(s"fitted ${structure.label}: ${index + 1} of ${structures.size}")
+            Right(Some(Fit(
+              found,
+              HorizonErrors.of(found.plant, reflown),
+              HorizonErrors.of(found.plant, flights)
+            )))
+          // A program's other vehicles need not move as these.
+          case Left(reason) if structure != use && scenarios.ownStructures.contains(structure) =>
+            Console.err.println(s"${structure.label} is not fitted: $reason")
+            Right(None)
+          case Left(reason) => Left(reason)
+      .map(_.flatten)
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =
@@ -159,8 +170,8 @@ final class IdentifyCommand(using scenarios: Scenarios)
   private def version(recordings: Vector[Recording]): String =
     recordings.map(_.flight.version).distinct.mkString(", ")
 
-  private def tables(fits: Vector[Fit], flights: Vector[TimeHistory], use: Structure): Vector[Section] =
-    val names      = (Structure.DragAndTurn.names ++ use.names).distinct
+  private def tables(fits: Vector[Fit], flights: Vector[TimeHistory]): Vector[Section] =
+    val names      = (Structure.DragAndTurn.names ++ fits.flatMap(_.identification.structure.names)).distinct
     val parameters = fits.map: fit =>
       val found = fit.identification
       found.structure.label +: names.map(name => found.parameters.find(_.name == name).fold("")(interval)) ++:

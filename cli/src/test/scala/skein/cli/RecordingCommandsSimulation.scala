@@ -10,6 +10,7 @@ import skein.forecast.Structure
 import skein.loop.LoopKind
 import skein.mcap.file.McapFile
 import skein.record.{FlightTopics, MemoryRecorder, Recording, ImagingSensor}
+import skein.policy.{Axis, SearchSpace}
 import skein.report.DuelReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
@@ -96,13 +97,24 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
 
   flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
     folder =>
+      // Of a program's own structures all are fitted too, and one that cannot be is named.
+      def own(label: String, parameters: Int)(plant: Vector[Double] => ReducedModel) =
+        Structure(label, SearchSpace(Vector.tabulate(parameters)(i => Axis(s"lag-$i-s", 0.02, 30, 1))), plant)
+      val plain               = own("plain", 1)(values => ReducedModel.lag(1, values(0), 0))
+      val rich                = own("rich", 12)(values => ReducedModel.lag(1, values.sum, 0))
+      given Scenarios         = DuelReport.scenarios.copy(ownStructures = Vector(plain, rich))
       val (status, text, err) = run(IdentifyCommand(), folder.resolve("stream-vpn.duckdb").toString)
       assertEquals(status, 0, err)
-      assert(text.contains("position p50 m") && text.contains("drag-and-turn"), text)
+      assert(
+        text.contains("position p50 m") && text.contains("drag-and-turn") && text.contains("plain"),
+        text
+      )
+      assert(err.contains("rich is not fitted: expected at least 120 s of flight"), err)
       assert(Files.size(folder.resolve("model.svg")) > 10000)
       val file  = ModelFile.read(folder.resolve("model.conf").toString).fold(fail(_), identity)
       val named = ReducedModel.AirSim
       assertEquals(file.use, Structure.Drag)
+      assertEquals(file.models.keySet, Structure.ours.toSet + plain)
       val model = file.plant match
         case model: ReducedModel => model
         case other               => fail(s"expected a reduced model, came $other")

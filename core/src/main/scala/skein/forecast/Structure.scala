@@ -17,6 +17,12 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
       name.matches("[A-Za-z][A-Za-z0-9-]*"),
       s"structure $label: expected letters, digits and dashes as a name, came '$name'"
     )
+  require(!Structure.keys(label), s"expected another label of a structure: '$label' is a key of model files")
+  for name <- names do
+    require(
+      !Structure.keysOfEach(name),
+      s"structure $label: expected another name of a parameter: '$name' is a key of model files"
+    )
 
   /** Of the parameters, in the order of a fit's values. */
   def names: Vector[String] = space.axes.map(_.name)
@@ -34,6 +40,11 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
   * The bounds are wider than any multirotor.
   */
 object Structure:
+  /** Of a model file, beside the structures, and beside each one's parameters. */
+  private val keys       = Set("use", "version", "horizon", "altitude-m", "recordings", "vehicles")
+  private val keysOfEach =
+    Set("predictions", "velocity-rms-mps", "position-rms-m", "against-quadrotor", "against-readings")
+
   private val gain     = Axis("gain", 0.05, 5, 0.9)
   private val lag      = Axis("lag-s", 0.02, 30, 1)
   private val deadTime = Axis("dead-time-s", 0, 1, 0.05)

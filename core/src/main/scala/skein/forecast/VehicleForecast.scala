@@ -68,8 +68,9 @@ final case class VehicleForecast[S] private (
 
   /** The estimate at an instant on the simulator's clock; not before the newest reading. */
   def estimateAt(validAt: Instant, delays: OneWayDelays, now: Instant): Estimate =
-    val at = validAt.max(newest.validAt)
-    Estimate(model.kinematics(advancedTo(at, delays, now)), at, newest.validAt)
+    val at    = validAt.max(newest.validAt)
+    val flown = advancedTo(at, delays, now)
+    Estimate(model.kinematics(flown), at, newest.validAt, model.numbers(flown))
 
   /** Where the vehicle was at an instant on the simulator's clock, by the cubic through the two readings
     * around it; absent where there are none, or none close enough together.
@@ -178,8 +179,14 @@ object VehicleForecast:
   *
   * @param predictedFor the simulator's time at which this is expected to be true
   * @param readAt the simulator's time of the reading that it was carried forward from
+  * @param state of its plant, as numbers, where kinematics do not tell all of it
   */
-final case class Estimate(kinematics: Kinematics, predictedFor: Instant, readAt: Instant):
+final case class Estimate(
+    kinematics: Kinematics,
+    predictedFor: Instant,
+    readAt: Instant,
+    state: Vector[Double] = Vector.empty
+):
 
   /** How far the reading was carried. */
   def age: Span = predictedFor.since(readAt)

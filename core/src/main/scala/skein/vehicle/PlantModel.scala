@@ -41,6 +41,10 @@ final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[Pla
 
   def kinematics(flying: Flying[S]): Kinematics = flying.now
 
+  override def numbers: Flying[S] => Vector[Double] = _.state match
+    case _: PlaneReading => Vector.empty
+    case state           => PlantState.numbers(state)
+
 object PlantModel:
 
   /** @param acting the commanded velocity that acts, m/s

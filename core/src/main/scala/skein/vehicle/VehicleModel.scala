@@ -25,3 +25,7 @@ trait VehicleModel[S]:
   def corrected(state: S, seen: Kinematics, sinceSeen: Span): S
 
   def kinematics(state: S): Kinematics
+
+  /** The state of the vehicle's plant as numbers ([[PlantState]]), where a reading does not tell all of it.
+    */
+  def numbers: S => Vector[Double] = _ => Vector.empty

@@ -6,13 +6,13 @@ import skein.cli.SkeinApp
 import skein.flight.PortFlight
 import skein.forecast.Structure
 import skein.link.{LinkProfile, MemoryNetwork, NetworkPlan, TcpTransport, Transport}
-import skein.loop.{LoopKind, LoopSettings, OwnLoop}
+import skein.loop.{LoopKind, LoopSettings, OwnLoop, PlanSettings}
 import skein.policy.*
 import skein.record.{ClockKind, MemoryRecorder, Recorder}
 import skein.scenario.*
+import skein.settings.PredictionModel
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.vehicle.PlantModel
 import skein.vtime.VirtualTime
 
 /** Drives from corner to corner; remembers which is the next. */
@@ -26,14 +26,23 @@ final case class Patrol(corners: Vector[Vector3], mps: Double) extends AgentPoli
     val mps  = this.mps / way.norm.max(1e-9)
     (Action.VelocityAt(way.x * mps, way.y * mps, Metres(0)), next)
 
-/** Drives towards its opponent, the slower the nearer it is, and stops at a distance. */
-final case class Heel(distanceM: Double, mps: Double) extends AgentPolicy:
-  type Memory = Unit
-  def start: Unit                                             = ()
-  def choose(seen: Observation, memory: Unit): (Action, Unit) =
-    val way   = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
-    val speed = (way.norm - distanceM).max(0).min(mps) / way.norm.max(1e-9)
-    (Action.VelocityAt(way.x * speed, way.y * speed, Metres(0)), ())
+/** Drives towards another vehicle, the slower the nearer it is, and stops at a distance. A plan in its place
+  * has it that far behind the other.
+  *
+  * @param leader its place in the scenario
+  */
+final case class Heel(leader: Int, distanceM: Double, mostMps: Double) extends GoalPolicy:
+  def course(seen: TeamObservation): Course =
+    val north = seen.northM(leader) - seen.northM(seen.self)
+    val east  = seen.eastM(leader) - seen.eastM(seen.self)
+    val way   = StrictMath.hypot(north, east)
+    val speed = (way - distanceM).max(0) / way.max(1e-9)
+    Course.of(north * speed, east * speed, mostMps, seen.headingRad)
+
+  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+    val (north, east) = (seen.northMps(leader), seen.eastMps(leader))
+    val sinceS        = aheadS - distanceM / StrictMath.hypot(north, east).max(0.1)
+    (seen.northM(leader) + north * sinceS, seen.eastM(leader) + east * sinceS)
 
 /** Two robots: one patrols, the other stays at its heels. */
 final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Scenario:
@@ -43,7 +52,7 @@ final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Sce
     val (hare, hound) = (MetresPerSecond(hareMps), MetresPerSecond(houndMps))
     Vector(
       Agent("Hare", Role.Evader, hare, Vector3(4, 0, 0), Radians(0), Patrol(corners, hareMps)),
-      Agent("Hound", Role.Pursuer, hound, Vector3(-4, -4, 0), Radians(0), Heel(1, houndMps))
+      Agent("Hound", Role.Pursuer, hound, Vector3(-4, -4, 0), Radians(0), Heel(leader = 0, 1, houndMps))
     )
 
   private val distance = Series("distance", "m")(tracks => tracks.distanceM(0, 1, _))
@@ -58,16 +67,30 @@ object Program extends SkeinApp(ScenarioKind(Rovers())):
 
 /** Drives, live and in virtual time. */
 object Chase:
-  def flight(loop: LoopKind | OwnLoop, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
+  /** As its simulator drives. */
+  val rover: PredictionModel = PredictionModel.Own(RoverPlant.structure, Vector(3, 1.5, 0.4, 0))
+
+  /** For one robot one search is enough. */
+  val planning: PlanSettings = PlanSettings(searches = 1)
+
+  def flight(
+      loop: LoopKind | OwnLoop,
+      duration: Span,
+      clockKind: ClockKind,
+      clock: Clock,
+      predictor: PredictionModel = rover,
+      scenario: Scenario = Rovers()
+  ): PortFlight =
     PortFlight(
       s"${loop.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
       loop,
-      Rovers(),
+      scenario,
       duration,
       clockKind,
       clock,
-      LoopSettings.every(Span.ofMillis(100)).copy(model = _ => PlantModel(RoverPlant())),
-      simulator = "rovers"
+      LoopSettings.every(Span.ofMillis(100)).copy(planning = planning),
+      simulator = "rovers",
+      predictor = Some(predictor)
     )
 
   /** Simulated robots listen at a host, the loop connects. */
@@ -102,13 +125,15 @@ object Chase:
       loop: LoopKind | OwnLoop,
       duration: Span,
       seed: Long,
-      link: LatencyProfile = LatencyProfile.none
+      link: LatencyProfile = LatencyProfile.none,
+      predictor: PredictionModel = rover,
+      scenario: Scenario = Rovers()
   ): MemoryRecorder = VirtualTime
     .run(seed): system =>
       given ActorSystem = system
       import system.dispatcher
       val clock    = Clock.ofNanos(VirtualTime.clock(system))
-      val planned  = flight(loop, duration, ClockKind.Virtual, clock)
+      val planned  = flight(loop, duration, ClockKind.Virtual, clock, predictor, scenario)
       val recorder = MemoryRecorder(planned.heading)
       val network  = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(link)), seed, clock)
       drive(planned, (network.host("robots"), "robots"), network.host("control"), recorder).map(_ => recorder)

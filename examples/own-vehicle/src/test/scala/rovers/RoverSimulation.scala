@@ -7,18 +7,36 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.concurrent.duration.DurationInt
 import skein.forward.PlantResponse
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
-import skein.loop.{LoopKind, OwnLoop, Replay}
+import skein.flight.{PortFlight, Replayed}
+import skein.loop.{LoopKind, LoopSettings, OwnLoop, Replay}
 import skein.measure.FlightSummary
-import skein.policy.Action
+import skein.policy.{Action, Agent, LeadOnCircuit, Racetrack, Role}
 import skein.port.VehicleError
-import skein.record.Recording
+import skein.record.{ClockKind, MemoryRecorder, Recording}
 import skein.report.Report
-import skein.scenario.Scenarios
+import skein.scenario.{Scenario, Scenarios}
 import skein.settings.{ModelFile, PredictionModel, VehicleChoice}
-import skein.signal.LatencyProfile
+import skein.signal.{Kinematics, LatencyProfile}
 import skein.units.*
-import skein.vehicle.PlantModel
+import skein.vehicle.{PlantModel, Setpoint, VehicleModel}
 import skein.vtime.VirtualTime
+
+/** Stays where it was seen: a model without a plant. */
+private object Coasting extends VehicleModel[Kinematics]:
+  def start(seen: Kinematics): Kinematics                                         = seen
+  def advanced(state: Kinematics, setpoint: Setpoint, span: Span): Kinematics     = state
+  def corrected(state: Kinematics, seen: Kinematics, sinceSeen: Span): Kinematics = seen
+  def kinematics(state: Kinematics): Kinematics                                   = state
+
+/** Two robots drive round a circuit whose turns are narrower than they drive at that speed. */
+private final case class Laps(mps: Double = 2) extends Scenario:
+  val circuit: Racetrack    = Racetrack(straightM = 8, radiusM = 1.5)
+  def agents: Vector[Agent] =
+    for (name, alongM) <- Vector("One" -> 0.0, "Other" -> circuit.lengthM / 2)
+    yield
+      val (north, east) = circuit.point(alongM)
+      val policy        = LeadOnCircuit(circuit, mps, aheadM = 1)
+      Agent(name, Role.Traveller, MetresPerSecond(mps), Vector3(north, east, 0), Radians(0), policy)
 
 class RoverSimulation extends munit.FunSuite:
   import Program.scenarios
@@ -30,6 +48,7 @@ class RoverSimulation extends munit.FunSuite:
       LoopKind.Futures,
       LoopKind.Stream,
       LoopKind.Predictive,
+      LoopKind.Plan,
       turns
     )
 
@@ -41,11 +60,86 @@ class RoverSimulation extends munit.FunSuite:
       s"${loop.label}: after 10 s the hound is at the hare's heels, " +
         "and everything is decided again from the recording"
     ):
-      val recording = Chase.virtual(loop, Span.ofSeconds(20), seed = 1).recording
+      val recorder  = Chase.virtual(loop, Span.ofSeconds(20), seed = 1)
+      val recording = recorder.recording
       assertEquals(recording.ending.map(_.how.toString), Some("Completed"))
       for (atS, distance) <- distances(recording) if atS > 10 do
         assert(distance > 0.5 && distance < 3.5, s"$distance m at $atS s")
-      assertEquals(Replay(Rovers().fleet, recording).firstDifference, None)
+      assertEquals(replayed(recorder).decidedAgain, None)
+
+  private def fileOf(recorder: MemoryRecorder): Path =
+    val file = Files.createTempDirectory("rovers").resolve("drive.duckdb")
+    assert(recorder.writeTo(file).isRight)
+    file
+
+  /** By the command `replay`. */
+  private def replayed(recorder: MemoryRecorder): Replayed =
+    Replayed.of(fileOf(recorder)).fold(fail(_), identity)
+
+  /** How far the hound is off the place behind the hare after 10 s, on the average, m. */
+  private def offM(recording: Recording): Double =
+    val hare  = recording.readings.filter(_.vehicle == "Hare").map(_.state)
+    val hound = recording.readings.filter(_.vehicle == "Hound").map(_.state)
+    val offs  =
+      for at <- hound if at.validAt.since(hound.head.validAt).toSeconds > 10
+      yield
+        val near = hare.minBy(other => math.abs(other.validAt.since(at.validAt).toNanos))
+        val v    = near.value.velocityNed
+        val goal =
+          near.value.positionNed + v * at.validAt.since(near.validAt).toSeconds - v * (1 / v.norm.max(0.1))
+        goal.horizontalDistance(at.value.positionNed)
+    offs.sum / offs.size
+
+  private val slow = PredictionModel.Own(RoverPlant.structure, Vector(1, 0.5, 1.2, 0))
+
+  test("planned by its own plant, the hound is at its place behind the hare, where its policy lags behind"):
+    def off(loop: LoopKind) =
+      offM(Chase.virtual(loop, Span.ofSeconds(30), seed = 1, LatencyProfile.direct).recording)
+    val (planned, byPolicy) = (off(LoopKind.Plan), off(LoopKind.Predictive))
+    assert(planned < 0.3, s"$planned m")
+    assert(byPolicy > 1, s"$byPolicy m")
+
+  test("round a circuit with narrow turns, plans by the robots' own plant stay on it, and by another do not"):
+    val laps                     = Laps()
+    def off(by: PredictionModel) =
+      val driven =
+        Chase.virtual(LoopKind.Plan, Span.ofSeconds(25), 1, LatencyProfile.direct, by, laps).recording
+      val offs = driven.readings.map(_.state.value.positionNed).map: at =>
+        val (north, east) = laps.circuit.point(laps.circuit.nearest(at.x, at.y))
+        at.horizontalDistance(Vector3(north, east, 0))
+      offs.sum / offs.size
+    val own = off(Chase.rover)
+    assert(own < 0.2, s"$own m")
+    for other <- Seq(PredictionModel.AirSimDrag, slow) do
+      val by = off(other)
+      assert(own < by / 2, s"$own m by the own plant, $by m by $other")
+
+  test("the plant, and what no reading tells of a robot at rest, are on record; by another its plans differ"):
+    val recorder  = Chase.virtual(LoopKind.Plan, Span.ofSeconds(5), seed = 1)
+    val recording = recorder.recording
+    assert(recording.planned.forall(_.states.exists(_.own.size == 4)))
+    val settings = LoopSettings(planning = Chase.planning, model = _ => slow.at(0))
+    assert(Replay(Rovers().fleet, recording, settings).firstDifference.isDefined)
+    assertEquals(
+      Replayed.of(
+        fileOf(recorder)
+      )(using Scenarios.ours.copy(kinds = Program.scenarios.kinds)).left.map(_.takeWhile(_ != ',')),
+      Left("its parameter 'predictor': expected a model's name or five numbers")
+    )
+
+  test("a model that cannot be planned by is refused before the drive, with the reason"):
+    val coasting = LoopSettings(model = _ => Coasting)
+    val said     = intercept[IllegalArgumentException]:
+      PortFlight(
+        "coasting",
+        LoopKind.Plan,
+        Rovers(),
+        Span.ofSeconds(1),
+        ClockKind.Virtual,
+        Clock.system,
+        coasting
+      )
+    assert(said.getMessage.startsWith("Hound: expected a model of a plant"), said.getMessage)
 
   test("equal seeds give equal recordings"):
     def digest = Chase.virtual(LoopKind.Stream, Span.ofSeconds(10), seed = 7).digest

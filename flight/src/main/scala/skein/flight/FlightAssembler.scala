@@ -10,7 +10,7 @@ import skein.airsim.{Vehicles, WorldSettings}
 import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
-import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
+import skein.loop.planning.{CountedPlanWorkers, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
@@ -110,7 +110,7 @@ final class FlightAssembler(
         val planners     =
           if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
           else
-            opened.closing(workers(settings.planningByModel)): threads =>
+            opened.closing(workers(settings.planning)): threads =>
               threads.close()
               Future.successful(Done)
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
@@ -284,6 +284,9 @@ object FlightAssembler:
   def threads(planning: PlanSettings): PlanWorkers =
     val threads = planning.searches.min(Runtime.getRuntime.availableProcessors)
     new ThreadedPlanWorkers(threads, BackgroundThread.factory("skein-plan"))
+
+  /** The same in virtual time, where slices are counted. */
+  def counted(planning: PlanSettings): PlanWorkers = CountedPlanWorkers(planning.searches, planning.slices)
 
   private val noSteps =
     "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"

@@ -3,10 +3,11 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.loop.*
+import skein.loop.planning.PlanWorkers
 import skein.port.{SteppedTime, VehiclePort}
 import skein.record.*
 import skein.scenario.Scenario
-import skein.settings.ScenarioSettings
+import skein.settings.{PredictionModel, RecordedPlan, ScenarioSettings}
 import skein.units.*
 
 /** One flight of a loop with vehicles of any kind that have a [[VehiclePort]], live or in virtual time. The
@@ -18,6 +19,9 @@ import skein.units.*
   * @param link name of the network between loop and vehicles, for the report
   * @param simulator name of the vehicles' simulator, for the report
   * @param clockKind real or virtual time; [[clock]] reads it
+  * @param predictor of all vehicles, in the place of `settings.model`. The recording keeps it, so that
+  *   `replay` repeats what was planned by it
+  * @throws IllegalArgumentException if its loop plans, and the vehicles' models cannot be planned by
   */
 final case class PortFlight(
     id: String,
@@ -28,8 +32,23 @@ final case class PortFlight(
     clock: Clock,
     settings: LoopSettings = LoopSettings(),
     link: String = "none",
-    simulator: String = "own"
+    simulator: String = "own",
+    predictor: Option[PredictionModel] = None
 ):
+  private val plans = loop == LoopKind.Plan
+
+  /** How its loop is run: with its predictor, and plans that keep the scenario's limits. [[Replay]] takes it.
+    */
+  val loopSettings: LoopSettings =
+    val agents = scenario.fleet.agents
+    settings.copy(
+      model = predictor.fold(settings.model)(model => vehicle => model.forAgent(agents(vehicle))),
+      planning = settings.planning.keeping(scenario)
+    )
+  if plans then
+    for reason <- JointPlanning.of(scenario.fleet, loopSettings).left do
+      throw IllegalArgumentException(reason)
+
   /** What its recording begins with. */
   def heading: RecordingHeader = RecordingHeader(
     FlightRow(
@@ -46,7 +65,8 @@ final case class PortFlight(
       clock.now()
     ),
     scenario.agents.map(VehicleRow.of),
-    ScenarioSettings.recorded(scenario)
+    ScenarioSettings.recorded(scenario) ++
+      (if plans then RecordedPlan.parameters(settings.planning, predictor) else Nil)
   )
 
   /** Starts it. The recorder gets everything down to the last row, and is closed.
@@ -60,16 +80,23 @@ final case class PortFlight(
   ): PortFlight.UnderWay =
     import system.dispatcher
     val endCondition = EndCondition(scenario, loop == LoopKind.Paused, recorder)
-    val team         = Team(scenario.fleet, vehicles, clock, endCondition, settings)
+    val planners     = workers
+    val team         = Team(scenario.fleet, vehicles, clock, endCondition, loopSettings, planners)
     val flight       = Flight.start(loop, team, time, duration, clock, endCondition)
     endCondition.isOver.foreach(_ => flight.complete())
     val landed =
       for
         outcome <- flight.outcome
+        _ = planners.close()
         _ = recorder.offer(FlightAssembly.ending(outcome, clock.now()))
         written <- recorder.close()
       yield (outcome, written)
     PortFlight.UnderWay(flight, landed)
+
+  private def workers: PlanWorkers =
+    if !plans then PlanWorkers.none
+    else if clockKind == ClockKind.Virtual then FlightAssembler.counted(settings.planning)
+    else FlightAssembler.threads(settings.planning)
 
 object PortFlight:
   /** @param landed how it ended, and what is on record

@@ -1,7 +1,7 @@
 package skein.flight
 
 import java.nio.file.Path
-import skein.loop.{AnyLoop, Replay}
+import skein.loop.{AnyLoop, JointPlanning, Replay}
 import skein.measure.RecordedScenario
 import skein.record.*
 import skein.scenario.Scenarios
@@ -42,7 +42,9 @@ object Replayed:
   private def ofKnown(file: Path, recording: Recording)(using Scenarios): Either[String, Replayed] =
     for
       flown <- RecordedPlan.of(recording)
-      decided = Replay(flown.fleet, recording, flown.settings.planningByModel).firstDifference
+      settings = flown.settings.loopSettings(flown.plan)
+      _ <- JointPlanning.of(flown.fleet, settings)
+      decided = Replay(flown.fleet, recording, settings).firstDifference
       flight  = recording.flight
       again <- Option.when(flight.isVirtual && flight.isBuiltIn)(flyAgain(file, recording, flown)) match
         case None         => Right(None)

@@ -5,9 +5,8 @@ import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
-import skein.loop.{AnyLoop, FlightOutcome, PlanSettings}
+import skein.loop.{AnyLoop, FlightOutcome}
 import skein.measure.RecordedTracks
-import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
@@ -74,7 +73,7 @@ object VirtualFlights:
           clock,
           settings,
           simulator = None,
-          workers,
+          FlightAssembler.counted,
           learnsOn = Some(system.dispatcher),
           solvers = Solvers(
             Here,
@@ -126,16 +125,13 @@ object VirtualFlights:
   private def serveSolver(settings: FlySettings, plan: FlightPlan, network: MemoryNetwork, clock: Clock)(using
       system: ActorSystem
   ): Future[SolverServer] =
-    def deciders = FlightDeciders.of(RecordedPlan(settings, plan), workers)
-    val desk     = SolverDesk(plan.seed, Here, _ => Right(deciders), clock, system.dispatcher)
+    def deciders = FlightDeciders.of(RecordedPlan(settings, plan), FlightAssembler.counted)
+    val desk     = SolverDesk(plan.seed, Here, _ => deciders, clock, system.dispatcher)
     SolverServer.start(SolverAt, network.host(There), desk)
 
   private val Here     = "localhost"
   private val There    = "solver"
   private val SolverAt = Address(There, 7400)
-
-  private def workers(planning: PlanSettings): PlanWorkers =
-    CountedPlanWorkers(planning.searches, planning.slices)
 
 /** A flight in virtual time and all that was recorded of it. */
 final case class VirtualFlightResult(landed: FlightResult, recorder: MemoryRecorder)

@@ -51,12 +51,20 @@ object JointPlanning:
 
   /** Absent where nobody plans.
     *
-    * @param seed of the searches' random numbers
+    * @return or why the vehicles that plan, or their opponents, cannot be planned by their models
     */
-  def of(fleet: Fleet, settings: PlanSettings, seed: Long): Option[JointPlanning] =
-    val vehicles  = fleet.agents.indices.toVector.filter(vehicle => Planning.plans(fleet.agents(vehicle)))
-    val plannings = vehicles.map: vehicle =>
-      fleet.agents(vehicle).policy match
-        case goal: GoalPolicy => TeamPlanning(fleet, vehicle, goal, settings, seed)
-        case _                => PursuitPlanning(fleet, vehicle, settings, seed)
-    Option.when(vehicles.nonEmpty)(JointPlanning(vehicles, plannings))
+  def of(fleet: Fleet, settings: LoopSettings): Either[String, Option[JointPlanning]] =
+    import settings.{planning, seed}
+    val vehicles = fleet.agents.indices.toVector.filter(vehicle => Planning.plans(fleet.agents(vehicle)))
+    if vehicles.isEmpty then Right(None)
+    else
+      for
+        known <- Expect.each((vehicles ++ OpponentModel.known(fleet)).distinct): vehicle =>
+          ForeseenVehicle.of(fleet.agents(vehicle), settings.model(vehicle), planning).map(vehicle -> _)
+      yield
+        val foreseen  = known.toMap
+        val plannings = vehicles.map: vehicle =>
+          fleet.agents(vehicle).policy match
+            case goal: GoalPolicy => TeamPlanning(fleet, vehicle, goal, foreseen(vehicle), planning, seed)
+            case _                => PursuitPlanning(fleet, vehicle, foreseen, planning, seed)
+        Some(JointPlanning(vehicles, plannings))

@@ -11,6 +11,10 @@ object OpponentModel:
     case policy: Policy => Planner.refusal(policy).toLeft(policy)
     case _              => Left("it plays against more than one vehicle")
 
+  /** Whose decisions plans may foresee, by their places. */
+  private[loop] def known(fleet: Fleet): Vector[Int] =
+    fleet.agents.indices.toVector.filter(vehicle => of(fleet.agents(vehicle)).isRight)
+
   /** Who is taken to fly straight on, and why, in a line each for the user. */
   def missing(fleet: Fleet): Vector[String] =
     val duellists =

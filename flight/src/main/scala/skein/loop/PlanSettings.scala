@@ -1,12 +1,10 @@
 package skein.loop
 
-import scala.compiletime.ops.int.-
 import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
 import skein.planning.*
-import skein.scenario.{Fence, Kept}
+import skein.scenario.{Fence, Kept, Scenario}
 import skein.units.*
-import skein.vehicle.ReducedModel
 
 /** How `plan` plans.
   *
@@ -24,7 +22,6 @@ import skein.vehicle.ReducedModel
   * @param geofenceM to be kept to north and south, east and west of the origin; 0: none
   * @param kept of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds
   *   [[PlanSettings.SpeedDoubt]]; not in the text
-  * @param response of the vehicles to their commands
   */
 final case class PlanSettings(
     deadline: Span = Span.ofMillis(60),
@@ -39,8 +36,7 @@ final case class PlanSettings(
     slowestShare: Double = 1,
     separationM: Double = 0,
     geofenceM: Double = 0,
-    kept: Vector[Kept] = Vector.empty,
-    response: ReducedModel = ReducedModel.AirSim
+    kept: Vector[Kept] = Vector.empty
 ):
   /** What cannot be flown. */
   def mistakes: Seq[String] =
@@ -71,12 +67,6 @@ final case class PlanSettings(
       check("geofenceM", geofenceM, geofenceM >= 0, "0 or more")
     ).flatten
 
-  /** [[response]] of a vehicle at this altitude; the one that AirSim's quadrotor has by default depends on
-    * it.
-    */
-  def responseAt(altitudeM: Double): ReducedModel =
-    if response == ReducedModel.AirSim then ReducedModel.airSimAt(altitudeM) else response
-
   def planner: PlannerSettings =
     PlannerSettings(
       horizonSteps,
@@ -95,6 +85,9 @@ final case class PlanSettings(
     ))).toVector ++
       kept.collect { case Kept.Inside(fence) => Geofence(fence, PlanSettings.Doubt) }
 
+  /** The same, that keep a scenario's limits, but for those of quantities of its own. */
+  def keeping(scenario: Scenario): PlanSettings = copy(kept = scenario.limits.flatMap(_.kept))
+
   /** What the scenario says that any two vehicles keep between them, opponents too, m; 0: nothing. */
   def apartM: Double = kept.collect { case Kept.Apart(leastM) => leastM }.maxOption.getOrElse(0)
 
@@ -112,10 +105,10 @@ final case class PlanSettings(
       case (Some(least), Some(most)) if least > most => (least + most) / 2
       case _ => ownM.max(leastM.getOrElse(ownM)).min(mostM.getOrElse(Double.PositiveInfinity))
 
-  /** As [[PlanSettings.parse]] reads it back, apart from the response. */
+  /** As [[PlanSettings.parse]] reads it back. */
   def text: String = PlanSettings.words
     .zip(productIterator)
-    .map { case ((field, word), value) => s"${word.name(field)}=${word.text(value)}" }
+    .flatMap { case ((field, word), value) => word.text(value).map(text => s"${word.name(field)}=$text") }
     .mkString(" ")
 
 object PlanSettings:
@@ -138,25 +131,32 @@ object PlanSettings:
   /** Work for a tenth of a millisecond with lanes, for two without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
-  /** A setting as a word of the text. */
-  private final class Word[A](suffix: String, val text: A => String, parse: String => Option[A]):
+  /** A setting as a word of the text, if it is one. */
+  private final class Word[A](
+      suffix: String,
+      val text: A => Option[String],
+      parse: Option[String] => Option[A]
+  ):
     def name(field: String): String                                 = field + suffix
-    def read(values: Map[String, String], field: String): Option[A] = values.get(name(field)).flatMap(parse)
+    def read(values: Map[String, String], field: String): Option[A] = parse(values.get(name(field)))
 
-  private given Word[Span]   = Word("Ns", _.toNanos.toString, _.toLongOption.map(Span.ofNanos))
-  private given Word[Int]    = Word("", _.toString, _.toIntOption)
-  private given Word[Double] = Word("", _.toString, _.toDoubleOption)
-  private given Word[String] = Word("", identity, Some(_))
+  private def word[A](suffix: String, text: A => String, parse: String => Option[A]): Word[A] =
+    Word(suffix, value => Some(text(value)), _.flatMap(parse))
+
+  private given Word[Span]   = word("Ns", _.toNanos.toString, _.toLongOption.map(Span.ofNanos))
+  private given Word[Int]    = word("", _.toString, _.toIntOption)
+  private given Word[Double] = word("", _.toString, _.toDoubleOption)
+  private given Word[String] = word("", identity, Some(_))
+
+  // The scenario says these.
+  private given Word[Vector[Kept]] = Word("", _ => None, _ => Some(Vector.empty))
 
   private val mirror = summon[Mirror.ProductOf[PlanSettings]]
 
-  /** All settings but the last two, by their names. */
+  /** All settings, by their names. */
   private val words: Vector[(String, Word[Any])] =
     constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
-      summonAll[Tuple.Map[
-        Tuple.Take[mirror.MirroredElemTypes, Tuple.Size[mirror.MirroredElemTypes] - 2],
-        Word
-      ]].toList.asInstanceOf[List[Word[Any]]]
+      summonAll[Tuple.Map[mirror.MirroredElemTypes, Word]].toList.asInstanceOf[List[Word[Any]]]
     )
 
   /** Reads settings back from their text; absent where that is no such text. */
@@ -164,6 +164,5 @@ object PlanSettings:
     val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
     val read   = words.flatMap((field, word) => word.read(values, field))
     Option
-      .when(read.size == words.size)(PlanSettings())
-      .map(usual => mirror.fromProduct(Tuple.fromArray((read ++ Seq(usual.kept, usual.response)).toArray)))
+      .when(read.size == words.size)(mirror.fromProduct(Tuple.fromArray(read.toArray)))
       .filter(_.mistakes.isEmpty)

@@ -3,24 +3,30 @@ package skein.loop
 import skein.planning.*
 import skein.policy.{Agent, Fleet}
 import skein.record.PlannedPath
-import skein.signal.Kinematics
 import skein.units.*
-import skein.vehicle.{PlaneReading, ReducedModel, VehicleKind}
+import skein.vehicle.{PlaneReading, VehicleKind}
 
-/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
-private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings):
+/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too.
+  *
+  * @param foreseen how the vehicle is
+  */
+private abstract class Planning(
+    fleet: Fleet,
+    self: Int,
+    settings: PlanSettings,
+    protected val foreseen: ForeseenVehicle
+):
   protected val agent: Agent     = fleet.agents(self)
   protected val decider: Decider = Decider(fleet, self)
   private val startM             = -agent.startPositionNed.z
 
   /** At which it flies: its start's, as far as the limits let it. */
-  protected val altitudeM: Double      = settings.altitudeM(startM)
-  protected val response: ReducedModel = settings.responseAt(altitudeM)
+  protected val altitudeM: Double = settings.altitudeM(startM)
 
   final val planner: PlannerSettings = settings.planner
 
   /** How long after its arrival a command begins to act on the vehicle. */
-  final val deadTime: Span = Span.ofSeconds(response.deadTimeS)
+  final val deadTime: Span = Span.ofSeconds(foreseen.plant.deadTimeS)
 
   /** Whether plans depend on more vehicles than this one and its opponent. */
   def regardsTeam: Boolean
@@ -148,9 +154,6 @@ object Planning:
     */
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
     memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
-
-  private[loop] def motion(seen: Kinematics): PlaneReading =
-    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
   private[loop] def straight(motion: PlaneReading, planner: PlannerSettings): PredictedTrack =
     PredictedTrack.straight(motion, planner.steps, planner.dtS)

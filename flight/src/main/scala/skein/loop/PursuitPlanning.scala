@@ -13,9 +13,15 @@ import skein.units.*
   *
   * In its place the vehicle's own policy decides within the turn limit.
   */
-private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSettings, seed: Long)
-    extends Planning(fleet, self, settings):
-  import Planning.{motion, straight}
+private final class PursuitPlanning(
+    fleet: Fleet,
+    self: Int,
+    vehicles: Map[Int, ForeseenVehicle],
+    settings: PlanSettings,
+    seed: Long
+) extends Planning(fleet, self, settings, vehicles(self)):
+  import ForeseenVehicle.motion
+  import Planning.straight
   private val speed  = settings.speedMps(agent.speed.value)
   private val leastM =
     settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
@@ -45,7 +51,7 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
       else if regardsTeam then Planning.unplanned(fleet, but = opponent)
       else Vector.empty
     val situation = Situation(
-      PredictedVehicle(response, motion(view.kinematics(self))),
+      foreseen.at(view, self),
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
       Behaviours.around(target(opponent, view), settings.behaviours, stream),
@@ -54,12 +60,12 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
     Part(objective, situation, stream)
 
   private def target(opponent: Int, view: TeamView): Target =
-    val now = motion(view.kinematics(opponent))
     OpponentModel.of(fleet.agents(opponent)) match
       case Right(policy) =>
         val speed = fleet.agents(opponent).speed.value
-        Target.Opponent(PredictedVehicle(response, now), speed, view.headingRad(opponent, fleet), policy)
-      case Left(_) => Target.Along(straight(now, planner))
+        val now   = vehicles(opponent).at(view, opponent)
+        Target.Opponent(now, speed, view.headingRad(opponent, fleet), policy)
+      case Left(_) => Target.Along(straight(motion(view.kinematics(opponent)), planner))
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1 || speed < agent.speed.value
 

@@ -14,8 +14,11 @@ import skein.units.*
   * predictions and whom they are of; for one that plans, how far each search had come. Decided again, and
   * compared to the last bit: everything else in a decision, above all whom it was made against and the
   * heading chosen. The memory from decision to decision is the replay's own.
+  *
+  * @param settings that the flight had; of a loop that does not plan, none of them count
+  * @throws IllegalArgumentException if it planned by models that cannot be planned by here
   */
-final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = PlanSettings())(using
+final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = LoopSettings())(using
     scenarios: Scenarios = Scenarios.ours
 ):
   import Replay.*
@@ -51,7 +54,12 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
 
   private val joint = Option
     .when(recording.flight.loopKind.contains(LoopKind.Plan) || recording.planned.nonEmpty)(())
-    .flatMap(_ => JointPlanning.of(fleet, planning, recording.flight.seed))
+    .flatMap(_ =>
+      JointPlanning.of(fleet, settings.copy(seed = recording.flight.seed)).fold(
+        reason => throw IllegalArgumentException(reason),
+        identity
+      )
+    )
   private val planners = joint.fold(Vector.empty)(_.vehicles).map(fleet.agents(_).name)
 
   /** Decisions made together, by their time and vehicle. */
@@ -225,19 +233,25 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
     yield view.copy(estimates = recorded.predicted.map(estimates(view, recorded, _)))
 
   private def estimates(view: TeamView, recorded: DecisionRow, predicted: Predicted) =
+    val states = planned.get((recorded.vehicle, recorded.sequence)).flatMap(_.states)
     view.readings.flatten.map: reading =>
-      val name      = rows.name(reading.vehicle)
-      val read      = reading.state.value
-      val estimated =
+      val name               = rows.name(reading.vehicle)
+      val read               = reading.state.value
+      val (estimated, state) =
         if name == recorded.vehicle then
-          moved(read, predicted.ownPositionNed, predicted.ownVelocityNed)
+          (moved(read, predicted.ownPositionNed, predicted.ownVelocityNed), states.map(_.own))
         else if name == recorded.opponent.vehicle then
-          moved(read, predicted.opponentPositionNed, predicted.opponentVelocityNed)
+          (moved(read, predicted.opponentPositionNed, predicted.opponentVelocityNed), states.map(_.opponent))
         else
           sightingOf(recorded, name).flatMap(_.predicted) match
-            case Some(motion) => moved(read, motion.positionNed, motion.velocityNed)
-            case None         => moved(read, OutOfSight, read.velocityNed)
-      skein.forecast.Estimate(estimated, predicted.actsAt, reading.state.validAt)
+            case Some(motion) => (moved(read, motion.positionNed, motion.velocityNed), None)
+            case None         => (moved(read, OutOfSight, read.velocityNed), None)
+      skein.forecast.Estimate(
+        estimated,
+        predicted.actsAt,
+        reading.state.validAt,
+        state.getOrElse(Vector.empty)
+      )
 
   private def moved(read: Kinematics, positionNed: Vector3, velocityNed: Vector3): Kinematics =
     read.copy(positionNed = positionNed, velocityNed = velocityNed)

@@ -6,6 +6,7 @@ import skein.record.{
   DecisionRow,
   MeasurementRow,
   Observations,
+  PlannedStates,
   Predicted,
   PredictedMotion,
   ReadingRow,
@@ -102,6 +103,12 @@ private final class Rows(fleet: Fleet):
         val expected = estimates(other).kinematics
         PredictedMotion(expected.positionNed, expected.velocityNed)
     )
+
+  /** The states of the plants that a decision was planned from, where kinematics do not tell them. */
+  def plannedStates(decision: Decision): Option[PlannedStates] =
+    decision.view.estimates
+      .map(estimates => PlannedStates(estimates(decision.vehicle).state, estimates(decision.opponent).state))
+      .filter(states => states.own.nonEmpty || states.opponent.nonEmpty)
 
   /** What a decision was made from of what sensors said. */
   def sensings(decision: Decision): Vector[Sensing] =

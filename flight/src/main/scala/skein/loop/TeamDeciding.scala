@@ -212,8 +212,12 @@ private final class TeamDeciding(
           (made, None)
       .collect { case made if made._1.nonEmpty => made }
 
-  /** How the decisions of those vehicles are planned that plan. */
-  val planning: Option[JointPlanning] = JointPlanning.of(fleet, settings.planning, settings.seed)
+  /** How the decisions of those vehicles are planned that plan.
+    *
+    * @throws IllegalArgumentException where their models cannot be planned by
+    */
+  lazy val planning: Option[JointPlanning] =
+    JointPlanning.of(fleet, settings).fold(reason => throw IllegalArgumentException(reason), identity)
 
   /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned.
     */

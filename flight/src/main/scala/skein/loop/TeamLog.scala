@@ -99,7 +99,8 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
         plan.cost,
         clock.now().since(decision.decidedAt),
         plan.breaches,
-        plan.course
+        plan.course,
+        rows.plannedStates(decision)
       )
     )
     if !plan.isSearched then

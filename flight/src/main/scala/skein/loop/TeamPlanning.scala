@@ -13,10 +13,12 @@ private final class TeamPlanning(
     fleet: Fleet,
     self: Int,
     policy: GoalPolicy,
+    foreseen: ForeseenVehicle,
     settings: PlanSettings,
     seed: Long
-) extends Planning(fleet, self, settings):
-  import Planning.{motion, straight}
+) extends Planning(fleet, self, settings, foreseen):
+  import ForeseenVehicle.motion
+  import Planning.straight
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
   private val objective = PlanCost(
@@ -46,7 +48,7 @@ private final class TeamPlanning(
         )
     val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))
     val alone = Situation(
-      PredictedVehicle(response, motion(view.kinematics(self))),
+      foreseen.at(view, self),
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
       Vector(Behaviour(Target.Along(along))),

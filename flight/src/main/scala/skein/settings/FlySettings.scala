@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
-import skein.loop.{AnyLoop, Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
+import skein.loop.{AnyLoop, Deadline, Fallback, JointPlanning, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
@@ -12,7 +12,7 @@ import skein.record.ImagingSensor
 import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
+import skein.vehicle.VehicleKind
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
@@ -73,17 +73,6 @@ final case class FlySettings(
   /** What stands in the world. */
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
 
-  /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by
-    * that of each vehicle's altitude. They keep the scenario's limits, but for those of quantities of its
-    * own.
-    */
-  def planningByModel: PlanSettings = planning.copy(
-    kept = scenario.limits.flatMap(_.kept),
-    response = predictor match
-      case PredictionModel.Fitted(model, _) => model
-      case _                                => ReducedModel.AirSim
-  )
-
   /** Who flies. */
   def fleet: Fleet = scenario.fleet
 
@@ -99,23 +88,18 @@ final case class FlySettings(
   def deadlineOf(plan: FlightPlan): Option[Span] =
     if plan.solver.isEmpty then deadline else deadline.orElse(Some(period))
 
-  /** How the loops are run. */
+  /** How the loops are run. Plans keep the scenario's limits. */
   def loopSettings: LoopSettings =
     val agents = fleet.agents
     val timely = LoopSettings
       .every(period)
       .copy(
-        model = vehicle => modelOf(agents(vehicle)),
-        planning = planningByModel,
+        model = vehicle => predictor.forAgent(agents(vehicle)),
+        planning = planning.keeping(scenario),
         movesInFlight = movesInFlight,
         deadline = deadline.map(Deadline(_, fallback))
       )
     if scenario.isAsPublished then timely.asPublished else timely
-
-  /** By which an agent's readings are carried forward. */
-  private def modelOf(agent: Agent): VehicleModel[?] = agent.kind match
-    case VehicleKind.Multirotor => predictor.at(-agent.startPositionNed.z)
-    case VehicleKind.Car        => CarModel()
 
   /** The flights, the truth first, then those with policies of files. The seeds of different loops and links
     * differ, so that they do not meet the same delays; flights that differ in the policy alone have the same
@@ -305,13 +289,11 @@ object FlySettings:
       .map("predictor: " + _)
 
   private def planMistake(settings: FlySettings): Option[String] =
-    settings.predictor match
-      case PredictionModel.Own(structure, _) if settings.loops.contains(LoopKind.Plan) =>
-        Some(
-          "predictor: expected a reduced model with the loop plan, which plans by no other, " +
-            s"came one of structure ${structure.label}"
-        )
-      case _ => None
+    settings.plans
+      .filter(_.loop == LoopKind.Plan)
+      .flatMap(plan => JointPlanning.of(plan.fleet(settings), settings.loopSettings(plan)).left.toOption)
+      .headOption
+      .map("predictor: " + _)
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 
@@ -334,9 +316,8 @@ object FlySettings:
 
   private given ConfigReader[PlanSettings] =
     val standard = PlanSettings()
-    // These are not configured: what else is set, and the machine, say them.
+    // These are not configured: the scenario, and the machine, say them.
     given ConfigReader[Vector[Kept]] = unread(standard.kept)
-    given ConfigReader[ReducedModel] = unread(standard.response)
     val blocks = ConfigFactory.parseString(s"blocks-per-slice = ${standard.blocksPerSlice}").root
     ConfigKeys.reader[PlanSettings].contramapConfig(_.withFallback(blocks))
 

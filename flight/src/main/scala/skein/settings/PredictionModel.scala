@@ -1,6 +1,7 @@
 package skein.settings
 
 import skein.forecast.Structure
+import skein.policy.Agent
 import skein.scenario.Scenarios
 import scala.util.Try
 import skein.vehicle.*
@@ -36,6 +37,11 @@ enum PredictionModel:
     case Own(structure, values) => PlantModel(structure.plant(values))
     case ConstantVelocity       => skein.vehicle.ConstantVelocity
     case ConstantTurn           => skein.vehicle.ConstantTurn
+
+  /** Of an agent's vehicle. */
+  def forAgent(agent: Agent): VehicleModel[?] = agent.kind match
+    case VehicleKind.Multirotor => at(-agent.startPositionNed.z)
+    case VehicleKind.Car        => CarModel()
 
 object PredictionModel:
   val Quadrotor: PredictionModel = Named("quadrotor")

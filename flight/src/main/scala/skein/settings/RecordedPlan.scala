@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.loop.{AnyLoop, Fallback, PlanSettings, Replay}
+import skein.loop.{AnyLoop, Fallback, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
@@ -55,8 +55,6 @@ object RecordedPlan:
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
     val deadline = settings.deadlineOf(plan)
     val told     = Seq[(String, Option[Any])](
-      Planning                -> Some(settings.planning.text),
-      Predictor               -> Some(PredictionModel.text(settings.predictor)),
       MovesInFlight           -> Some(settings.movesInFlight),
       Plant                   -> Option.when(!settings.plant.isAirSim)(settings.plant.text),
       Spoken                  -> Option.when(settings.wire != Wire.AirSim)(settings.wire.label),
@@ -71,7 +69,16 @@ object RecordedPlan:
         Explore                                             -> chosen.learning.map(_.explore)
       )
     ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++
+      parameters(settings.planning, Some(settings.predictor)) ++
       told.collect { case (name, Some(value)) => ParameterRow(name, value.toString) }
+
+  /** The same of what a flight plans by.
+    *
+    * @param predictor absent where a recording cannot name it
+    */
+  def parameters(planning: PlanSettings, predictor: Option[PredictionModel]): Seq[ParameterRow] =
+    ParameterRow(Planning, planning.text) +:
+      predictor.map(model => ParameterRow(Predictor, PredictionModel.text(model))).toSeq
 
   /** Reads it back.
     *
@@ -91,10 +98,12 @@ object RecordedPlan:
       if parameters.contains(name) then parameter(name, expected)(parse).map(Some(_)) else Right(None)
 
     for
-      loop     <- AnyLoop.parse(flight.loop)
-      link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
-      now      <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
-      older    <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
+      loop  <- AnyLoop.parse(flight.loop)
+      link  <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      now   <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
+      older <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
+      _     <- Expect.that(loop != LoopKind.Plan || now.orElse(older).isDefined):
+        s"the recording has no parameter '$Predictor': by what model was planned is not known"
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)

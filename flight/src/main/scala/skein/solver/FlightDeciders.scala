@@ -73,14 +73,12 @@ object FlightDeciders:
   /** Those of a flight.
     *
     * @param workers what a flight that plans searches with
+    * @return or why it cannot be planned here
     */
-  def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): FlightDeciders =
+  def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): Either[String, FlightDeciders] =
     val fleet = flown.plan.fleet(flown.settings)
-    val how   = flown.settings.planningByModel
+    val how   = flown.settings.planning
     val plans =
-      if flown.plan.loop != LoopKind.Plan then None
-      else
-        JointPlanning
-          .of(fleet, how, flown.plan.seed)
-          .map(Plans(_, how.deadline, workers(how)))
-    FlightDeciders(fleet, plans)
+      if flown.plan.loop != LoopKind.Plan then Right(None)
+      else JointPlanning.of(fleet, flown.settings.loopSettings(flown.plan))
+    plans.map(planning => FlightDeciders(fleet, planning.map(Plans(_, how.deadline, workers(how)))))

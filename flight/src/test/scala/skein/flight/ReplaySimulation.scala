@@ -3,7 +3,7 @@ package skein.flight
 import java.nio.file.Path
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.record.*
-import skein.scenario.{PaperDuel, Scenarios}
+import skein.scenario.{Crossing, PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
 import skein.testing.{Optimised, TemporaryFolders}
@@ -29,7 +29,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private def fly(settings: FlySettings, plan: FlightPlan): MemoryRecorder =
     VirtualFlights.fly(settings, plan).fold(fail(_), identity).recorder
 
-  private def check(settings: FlySettings, folder: Path): Unit =
+  private def check(settings: FlySettings, folder: Path)(using Scenarios): Unit =
     for plan <- settings.plans do
       val recorder = fly(settings, plan)
       val file     = plan.file(folder)
@@ -45,6 +45,31 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       s"${loop.label} decides the same when it is flown again, and when its recording is decided upon again"
     ): folder =>
       check(settings.copy(loops = List(loop)), folder)
+
+  for scenario <- Seq(PaperDuel(), Crossing(vehicles = 4)) do
+    folder.test(
+      s"so does a plan of ${scenario.name} by a plant of one's own, from states that no reading tells"
+    ): folder =>
+      val own = settings.copy(loops = List(LoopKind.Plan), scenario = scenario, predictor = Tilting.predictor)
+      val plan = own.plans.head
+      check(own, folder)(using Tilting.scenarios)
+      val recording = fly(own, plan).recording
+      val states    = recording.planned.flatMap(_.states)
+      assertEquals(states.size, recording.planned.size)
+      assert(states.map(_.own.takeRight(2)).distinct.size > 10, "tilts do not differ")
+
+  test("from other states, or by a plant of other numbers, other plans come out"):
+    val own = settings.copy(
+      loops = List(LoopKind.Plan),
+      scenario = Crossing(vehicles = 4),
+      predictor = Tilting.predictor
+    )
+    val plan      = own.plans.head
+    val recording = fly(own, plan).recording
+    val untold    = recording.copy(planned = recording.planned.map(_.copy(states = None)))
+    assert(Replay(own.fleet, untold, own.loopSettings(plan)).firstDifference.isDefined)
+    val other = own.copy(predictor = PredictionModel.Own(Tilting.structure, Vector(1.5, 0.15)))
+    assert(Replay(own.fleet, recording, other.loopSettings(plan)).firstDifference.isDefined)
 
   folder.test("so does a predictive flight by a reduced model, which the recording holds"): folder =>
     check(

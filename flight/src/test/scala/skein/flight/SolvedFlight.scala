@@ -58,7 +58,7 @@ object SolvedFlight:
   def desk(id: Long = 1)(using system: ActorSystem)(using Scenarios): SolverDesk = SolverDesk(
     id,
     Build,
-    Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+    Briefing.plan(_).flatMap(FlightDeciders.of(_, FlightAssembler.threads)),
     Clock.system,
     system.dispatcher
   )

@@ -9,7 +9,7 @@ import skein.loop.{Fallback, LoopKind, FlightOutcome, PlanSettings, Replay}
 import skein.policy.{PolicyFamily, Role}
 import skein.record.EventKind
 import skein.scenario.{Crossing, PaperDuel, Scenarios}
-import skein.settings.{FlySettings, PolicyFile, RecordedPlan, SolverChoice}
+import skein.settings.{FlySettings, PolicyFile, PredictionModel, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.*
 import skein.testing.Optimised
@@ -18,7 +18,7 @@ import skein.vtime.VirtualTime
 
 /** Flights whose solver stands behind the emulated network: wire, connection and all. */
 class SolverFlightSimulation extends munit.FunSuite, Optimised:
-  private given Scenarios = Scenarios.ours
+  private given Scenarios = Tilting.scenarios
 
   private val settings = FlySettings(
     List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive),
@@ -54,10 +54,14 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(digest, Right(flown.recorder.digest))
 
   test("planned elsewhere over a hop that takes no time, a flight is the one that its own process plans"):
-    for scenario <- Seq(PaperDuel(), Crossing(vehicles = 4)) do
+    for
+      scenario  <- Seq(PaperDuel(), Crossing(vehicles = 4))
+      predictor <- Seq(PredictionModel.Quadrotor, Tilting.predictor)
+    do
       val plans = settings.copy(
         loops = List(LoopKind.Plan),
         scenario = scenario,
+        predictor = predictor,
         solver = SolverChoice.parse("link:none").toOption,
         planning = PlanSettings(horizonSteps = 10, searches = 2, slices = 2, blocksPerSlice = 1)
       )
@@ -70,7 +74,16 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(there.planned, here.planned)
       assertEquals(there.readings, here.readings)
       val again = RecordedPlan.of(there).fold(fail(_), identity)
-      assertEquals(Replay(again.fleet, there, again.settings.planningByModel).firstDifference, None)
+      assertEquals(Replay(again.fleet, there, again.settings.loopSettings).firstDifference, None)
+
+  test("a solver whose program has not got the plant that is planned by says so, and what it expected"):
+    val plans = settings.copy(loops = List(LoopKind.Plan), predictor = Tilting.predictor)
+    val asked = Briefing.of(plans, plans.plans.last)
+    assert(Briefing.plan(asked).isRight)
+    assertEquals(
+      Briefing.plan(asked)(using Scenarios.ours).left.map(_.takeWhile(_ != ',')),
+      Left("its parameter 'predictor': expected a model's name or five numbers")
+    )
 
   test("without a deadline of its own, a decision made elsewhere has the period for one"):
     val slow  = settings.copy(solver = SolverChoice.parse("link:constant:300ms").toOption)
@@ -108,7 +121,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         val desk               = SolverDesk(
           1,
           "ours",
-          Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+          Briefing.plan(_).flatMap(FlightDeciders.of(_, FlightAssembler.threads)),
           clock,
           system.dispatcher,
           byVectors = byVectors
@@ -169,7 +182,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       val desk    = SolverDesk(
         1,
         "ours",
-        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+        Briefing.plan(_).flatMap(FlightDeciders.of(_, FlightAssembler.threads)),
         clock,
         system.dispatcher
       )

@@ -47,7 +47,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
     for one <- recording.solved if one.vehicle == "Pursuer" do
       assert(one.thinking >= flight.settings.planning.deadline, one)
     val again = RecordedPlan.of(recording).fold(fail(_), identity)
-    assertEquals(Replay(again.fleet, recording, again.settings.planningByModel).firstDifference, None)
+    assertEquals(Replay(again.fleet, recording, again.settings.loopSettings).firstDifference, None)
 
   test("a solver that ends and is started again in a flight: the flight hovers, flies on, and replays"):
     val first  = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)

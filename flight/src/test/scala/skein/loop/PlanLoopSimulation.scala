@@ -4,6 +4,7 @@ import skein.record.EventKind
 import skein.signal.LatencyProfile
 import skein.testing.Optimised
 import skein.units.*
+import skein.vehicle.ReducedModel
 
 class PlanLoopSimulation extends munit.FunSuite, Optimised:
   private val planning  = PlanSettings(behaviours = 1, searches = 1, slices = 3)
@@ -42,7 +43,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
     for decision <- duel.recording.decisions if decision.vehicle == "Pursuer" do
       val acts  = decision.predicted.get.actsAt + decision.trueAge.get.clockOffset
       val ahead = acts.since(decision.decidedAt).toMillis
-      val least = 60 + 1000 * planning.response.deadTimeS - decision.trueAge.get.uncertainty.toMillis
+      val least = 60 + 1000 * ReducedModel.AirSim.deadTimeS - decision.trueAge.get.uncertainty.toMillis
       assert(ahead >= least && ahead <= least + 200, s"decision ${decision.sequence}: $ahead ms")
 
   test("the pursuer keeps its turning circle"):

@@ -15,6 +15,7 @@ import skein.policy.{
 import skein.scenario.{Kept, PaperDuel}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
+import skein.vehicle.QuadrotorModel
 
 /** What a pursuer plans upon: its own limits, what it keeps from whom, and how far it may turn at once. */
 class PlanningSuite extends munit.FunSuite:
@@ -26,8 +27,23 @@ class PlanningSuite extends munit.FunSuite:
     val state = Kinematics(places(vehicle), Vector3(1, 2, 0), Quaternion.Identity, Vector3.Zero)
     view.withReading(Reading(vehicle, 0, Stamped(state, now, now, now)))
 
+  private def foreseen(fleet: Fleet) = fleet.agents.indices
+    .map: vehicle =>
+      val known = ForeseenVehicle.of(fleet.agents(vehicle), QuadrotorModel.AirSim, PlanSettings())
+      vehicle -> known.fold(fail(_), identity)
+    .toMap
+
+  private def pursuit(settings: PlanSettings, fleet: Fleet = fleet) =
+    PursuitPlanning(fleet, pursuer, foreseen(fleet), settings, seed = 3)
+
+  private def teamwork(fleet: Fleet, policy: GoalPolicy, settings: PlanSettings) =
+    TeamPlanning(fleet, pursuer, policy, foreseen(fleet)(pursuer), settings, seed = 3)
+
+  private def jointly(fleet: Fleet, settings: PlanSettings) =
+    JointPlanning.of(fleet, LoopSettings(planning = settings, seed = 3)).fold(fail(_), identity)
+
   private def part(settings: PlanSettings, decidedBefore: Option[Span] = None) =
-    PursuitPlanning(fleet, pursuer, settings, seed = 3)
+    pursuit(settings)
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
   test(
@@ -37,11 +53,11 @@ class PlanningSuite extends munit.FunSuite:
     val apart = part(PlanSettings(separationM = 5))
     assertEquals(apart.objective.separation, SeparationCost(5, margin = 1))
     assertEquals(apart.situation.others.size, 1) // the other pair's evader
-    assert(PursuitPlanning(fleet, pursuer, PlanSettings(separationM = 5), 3).regardsTeam)
+    assert(pursuit(PlanSettings(separationM = 5)).regardsTeam)
     val alone = part(PlanSettings())
     assertEquals(alone.objective.separation, SeparationCost(0, margin = 0))
     assertEquals(alone.situation.others.size, 0)
-    assert(!PursuitPlanning(fleet, pursuer, PlanSettings(), 3).regardsTeam)
+    assert(!pursuit(PlanSettings()).regardsTeam)
 
   test(
     "what the scenario keeps between any two is kept from " +
@@ -56,7 +72,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(part(least).situation.others.size, 2)
     val little = PlanSettings(separationM = 0.5)
     assertEquals(part(little).objective.separation, SeparationCost(0.5, margin = 1))
-    assert(PursuitPlanning(fleet, pursuer, little, 3).regardsTeam)
+    assert(pursuit(little).regardsTeam)
 
   /** What is decided in the place of a plan by a policy that turns so far from where it was told to head,
     * 0.25 rad.
@@ -66,7 +82,7 @@ class PlanningSuite extends munit.FunSuite:
       def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
         own + turn
     val turning  = Fleet(fleet.agents.updated(pursuer, fleet.agents(pursuer).copy(policy = Turning)))
-    val planning = PursuitPlanning(turning, pursuer, settings, seed = 3)
+    val planning = pursuit(settings, turning)
     decidedBy(planning, isOld = true)
 
   private def decidedBy(planning: Planning, isOld: Boolean): (Decision, PlannedDecision) =
@@ -88,7 +104,7 @@ class PlanningSuite extends munit.FunSuite:
 
   test("a speed is chosen where less than the vehicle's own may be commanded"):
     assertEquals(byPolicy(0.1, PlanSettings(slowestShare = 0.999))._1.speed, Some(MetresPerSecond(10)))
-    assertEquals(decidedBy(PursuitPlanning(fleet, pursuer, PlanSettings(), 3), isOld = false)._1.speed, None)
+    assertEquals(decidedBy(pursuit(PlanSettings()), isOld = false)._1.speed, None)
 
   test("it may turn for as long as it has not decided, at most for half a second"):
     assertEquals(part(PlanSettings()).situation.sinceDecisionS, 0.0)
@@ -108,7 +124,7 @@ class PlanningSuite extends munit.FunSuite:
     def flownBy(policy: AgentPolicy) =
       Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
     def target(policy: AgentPolicy) =
-      val posed = PursuitPlanning(flownBy(policy), pursuer, PlanSettings(behaviours = 1), 3)
+      val posed = pursuit(PlanSettings(behaviours = 1), flownBy(policy))
         .pose(Memory(0.25, None, 7), view.withMove(SentCommand(evader, 1, 0.7, now)), now)
       posed.situation.behaviours.head.target
     target(KeepHeading) match
@@ -149,7 +165,7 @@ class PlanningSuite extends munit.FunSuite:
 
   private def teamPart(policy: Moving, settings: PlanSettings, decidedBefore: Option[Span] = None) =
     val team = Fleet(fleet.agents.map(_.copy(policy = policy)))
-    TeamPlanning(team, pursuer, policy, settings, seed = 3)
+    teamwork(team, policy, settings)
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
   test("one of a team cruises as fast as the place moves where its policy wants to be"):
@@ -186,8 +202,8 @@ class PlanningSuite extends munit.FunSuite:
     val kept  = PlanSettings(kept = Vector(Kept.NoFaster(5), Kept.NoFaster(2), Kept.Above(1)))
     val posed = teamPart(Moving(), kept).objective
     assertEquals((posed.limits.maxSpeed, posed.cruiseSpeed), (1.8, 1.8))
-    val pursuit = PursuitPlanning(fleet, pursuer, kept, 3).pose(Memory(0.25, None, 7), view, now).objective
-    assertEquals((pursuit.limits.minSpeed, pursuit.limits.maxSpeed, pursuit.cruiseSpeed), (1.8, 1.8, 1.8))
+    val alone = pursuit(kept).pose(Memory(0.25, None, 7), view, now).objective
+    assertEquals((alone.limits.minSpeed, alone.limits.maxSpeed, alone.cruiseSpeed), (1.8, 1.8, 1.8))
     assertEquals(PlanSettings(kept = Vector(Kept.NoFaster(5))).speedMps(3), 3.0)
 
   test("the altitude is a vehicle's own as far as floor and ceiling let it, a metre inside, or midway"):
@@ -216,7 +232,7 @@ class PlanningSuite extends munit.FunSuite:
       if place == pursuer then agent.copy(policy = Moving()) else agent.copy(policy = Together)
     ))
     def posed(separationM: Double) =
-      TeamPlanning(mixed, pursuer, Moving(), PlanSettings(separationM = separationM), seed = 3)
+      teamwork(mixed, Moving(), PlanSettings(separationM = separationM))
         .pose(Memory(0.25, None, 7), view, now)
     assertEquals(posed(0.5).situation.others.size, fleet.agents.size - 1)
     assertEquals(posed(0).situation.others.size, 0)
@@ -227,7 +243,7 @@ class PlanningSuite extends munit.FunSuite:
 
   test("in the plan's place the policy of one of a team decides its heading and its speed"):
     val team             = Fleet(fleet.agents.map(_.copy(policy = Moving())))
-    val planning         = TeamPlanning(team, pursuer, Moving(), PlanSettings(), seed = 3)
+    val planning         = teamwork(team, Moving(), PlanSettings())
     val (decision, made) = decidedBy(planning, isOld = true)
     assertEqualsDouble(decision.heading.value, 0, 1e-12)
     assertEquals((decision.speed, made.byPolicy), (Some(MetresPerSecond(3)), true))
@@ -238,7 +254,7 @@ class PlanningSuite extends munit.FunSuite:
       "against what the policy would do, else the policy's way"
   ):
     val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
-    val planning             = TeamPlanning(team, pursuer, Moving(), PlanSettings(), seed = 3)
+    val planning             = teamwork(team, Moving(), PlanSettings())
     val memory               = Memory(0.25, Some(now - Span.ofMillis(200)), 7)
     val posed                = planning.pose(memory, view, now)
     val rollout              = ManoeuvreRollout(posed.situation, posed.objective, planning.planner.dtS)
@@ -259,7 +275,7 @@ class PlanningSuite extends munit.FunSuite:
 
   test("where nothing was searched for a vehicle for more than half a horizon, its policy decides"):
     val settings = PlanSettings(horizonSteps = 20, step = Span.ofMillis(50))
-    val joint    = JointPlanning.of(fleet, settings, seed = 3).getOrElse(fail("nobody plans"))
+    val joint    = jointly(fleet, settings).getOrElse(fail("nobody plans"))
     val memories = joint.vehicles.map(_ => Memory(0.25, Some(now - Span.ofMillis(200)), 7))
     val views    = joint.vehicles.map(_ => view)
     val parts    = joint.pose(memories, views, now)
@@ -270,6 +286,6 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(byPolicy(0.5, 0.501), Vector(false, true))
     assertEquals(byPolicy(0.501, 0), Vector(true, false))
     assertEquals(
-      JointPlanning.of(Fleet(fleet.agents.map(_.copy(policy = Together))), settings, 3).map(_.vehicles),
+      jointly(Fleet(fleet.agents.map(_.copy(policy = Together))), settings).map(_.vehicles),
       None
     )

@@ -33,7 +33,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     .value
 
   private def found(fleet: Fleet, recording: Recording): Option[Difference] =
-    Replay(fleet, recording, planning).firstDifference
+    Replay(fleet, recording, LoopSettings(planning = planning)).firstDifference
 
   private val duels = PaperDuel(pairs = 2).fleet
 

@@ -6,7 +6,7 @@ import skein.planning.Geofence
 import skein.port.Moves
 import skein.scenario.Fence
 import skein.units.*
-import skein.vehicle.{ConstantTurn, ConstantVelocity, ReducedModel}
+import skein.vehicle.{ConstantTurn, ConstantVelocity}
 
 /** What loops are flown by: the bounds of every number, and what follows from it. */
 class SettingsSuite extends munit.FunSuite:
@@ -117,11 +117,8 @@ class SettingsSuite extends munit.FunSuite:
     assertEquals(PlanSettings.parse(text), Some(PlanSettings(slices = 7, separationM = 2.5)))
     for value <- text.split(' ') do assertEquals(PlanSettings.parse(text.replace(value, "x=1")), None, value)
 
-  test("plans: the horizon in seconds, a fence around the origin, and the vehicle's answer at its altitude"):
+  test("plans: the horizon in seconds, and a fence around the origin"):
     val settings = PlanSettings(horizonSteps = 20, step = ms(50), geofenceM = 30)
     assertEquals((settings.planner.steps, settings.planner.dtS), (20, 0.05))
     assertEquals(settings.geofences, Vector(Geofence(Fence.rectangle(-30, 30, -30, 30))))
     assertEquals(PlanSettings().geofences, Vector.empty)
-    assertEquals(PlanSettings().responseAt(35), ReducedModel.airSimAt(35))
-    val own = ReducedModel.AirSim.copy(lagS = 0.3)
-    assertEquals(PlanSettings(response = own).responseAt(35), own)

@@ -1,13 +1,17 @@
 package skein.settings
 
+import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
 import skein.forecast.Structure
 import skein.forward.PlantResponse
 import skein.identify.{Fitted, HorizonError, Identification}
 import skein.policy.{Axis, SearchSpace}
+import skein.flight.FlightAssembler
 import skein.scenario.Scenarios
+import skein.solver.FlightDeciders
 import skein.testing.TemporaryFolders
 import skein.vehicle.*
+import scala.jdk.CollectionConverters.*
 
 /** Reached at once, after a time: a plant of a user's own. */
 final case class Late(gain: Double, override val deadTimeS: Double) extends ObservedPlant[PlaneReading]:
@@ -18,6 +22,15 @@ final case class Late(gain: Double, override val deadTimeS: Double) extends Obse
   def step(from: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
     val (north, east) = (gain * northMps, gain * eastMps)
     PlaneReading(from.northM + north * dtS, from.eastM + east * dtS, north, east)
+
+/** Arithmetic on the time of day: no formula. */
+object Fickle extends ObservedPlant[PlaneReading]:
+  def initial: PlaneReading                                            = PlaneReading(0, 0, 0, 0)
+  def stepS: Double                                                    = 0.1
+  def read(state: PlaneReading): PlaneReading                          = state
+  def corrected(state: PlaneReading, seen: PlaneReading): PlaneReading = seen
+  def step(from: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+    from.copy(northM = System.nanoTime.toDouble)
 
 class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
   private val late = Structure(
@@ -31,7 +44,11 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     val fitted =
       structure.names.zip(values).map((name, value) => Fitted(name, value, value - 1, value + 1, false))
     val found = Identification(structure, fitted, structure.plant(values.toVector), 100, 9, 0.1, 0.2)
-    Fit(found, Vector.empty, Vector(HorizonError(1, 50, 0.1, 0.2, 0.3, 0.4)))
+    Fit(
+      found,
+      Vector(HorizonError(1, 9, 0.1, 0.2, 0.3, 0.4)),
+      Vector(HorizonError(1, 50, 0.1, 0.2, 0.3, 0.4))
+    )
 
   private def text(use: Structure): String = ModelFile.render(
     use,
@@ -68,12 +85,42 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
       Some("model.conf: use: expected a structure (lag, turn, drag, drag-and-turn), came 'late'")
     )
 
-  test("plans are refused with a model of one's own structure, by which none is made"):
-    val path  = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
-    val flags = com.typesafe.config.ConfigFactory.parseString(
-      s"""skein.fly { loops = [plan], links = [none], predictor = "$path" }"""
-    )
-    val said = FlySettings.read(
-      flags.withFallback(com.typesafe.config.ConfigFactory.load())
-    ).left.getOrElse("accepted")
-    assert(said.contains("predictor: expected a reduced model with the loop plan"), said)
+  test("no structure and no parameter has the name of a key of these files"):
+    val section                              = ConfigFactory.parseString(text(late)).getConfig("skein.model")
+    def keys(of: com.typesafe.config.Config) = of.root.keySet.asScala.toSet
+    def refused(label: String, name: String) =
+      intercept[IllegalArgumentException](Structure(
+        label,
+        SearchSpace(Vector(Axis(name, 0, 2))),
+        _ => Fickle
+      ))
+        .getMessage.stripPrefix("requirement failed: ")
+    for key <- keys(section) -- Seq("lag", "late") do
+      assertEquals(
+        refused(key, "gain"),
+        s"expected another label of a structure: '$key' is a key of model files"
+      )
+    for key <- keys(section.getConfig("late")) -- late.names do
+      assertEquals(
+        refused("mine", key),
+        s"structure mine: expected another name of a parameter: '$key' is a key of model files"
+      )
+
+  test("plans are made by a plant of one's own that is a formula; by another they are refused before flight"):
+    val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
+    def read(loop: String, plant: ObservedPlant[?]) =
+      val known = Structure("late", late.space, _ => plant)
+      val flags = ConfigFactory.parseString(
+        s"""skein.fly { loops = [$loop], links = [none], predictor = "$path" }"""
+      )
+      given Scenarios = scenarios.copy(ownStructures = Vector(known))
+      FlySettings.read(flags.withFallback(ConfigFactory.load()))
+    val settings = read("plan", Late(0.75, 0.25)).fold(fail(_), identity)
+    assertEquals(settings.loopSettings.model(0), PlantModel(Late(0.75, 0.25)))
+    val said = read("plan", Fickle).left.getOrElse("accepted")
+    assert(said.contains("predictor: Pursuer: plans fly by lanes, and the vehicle is no formula: "), said)
+    assert(read("predictive", Fickle).isRight)
+    // Elsewhere, too.
+    val fickle = PredictionModel.Own(Structure("late", late.space, _ => Fickle), Vector(0.75, 0.25))
+    val flown  = RecordedPlan(settings.copy(predictor = fickle), settings.plans.head)
+    assert(FlightDeciders.of(flown, FlightAssembler.counted).isLeft)

@@ -79,7 +79,10 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
       alignment <- Gen.option(alignment)
       sensed    <- Gen.option(Gen.zip(Gen.long, stamped(Gen.listOfN(3, number).map(_.toVector))))
       estimates <- Gen.option(
-        Gen.listOfN(vehicles, Gen.zip(kinematics, instant, instant).map(Estimate(_, _, _))).map(_.toVector)
+        Gen.listOfN(
+          vehicles,
+          Gen.zip(kinematics, instant, instant, Gen.listOf(number).map(_.toVector)).map(Estimate(_, _, _, _))
+        ).map(_.toVector)
       )
     yield
       val said = sensed.map((number, values) =>
@@ -189,7 +192,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 4 of the solver's protocol, came version 9")
+      Left("expected messages of version 5 of the solver's protocol, came version 9")
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),

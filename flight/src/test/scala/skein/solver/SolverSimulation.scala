@@ -28,7 +28,10 @@ class SolverSimulation extends munit.FunSuite, Optimised:
   ): SolverTrial =
     val recording = trial.recording
     assertEquals(trial.outcome, FlightOutcome.Completed)
-    assertEquals(Replay(fleet, hovering(recording), SolverTrial.planning).firstDifference, None)
+    assertEquals(
+      Replay(fleet, hovering(recording), LoopSettings(planning = SolverTrial.planning)).firstDifference,
+      None
+    )
     for (vehicle, solved) <- recording.solved.groupBy(_.vehicle) do
       val numbers = solved.map(_.question)
       assertEquals(numbers, numbers.sorted.distinct, s"$vehicle used answers out of order")
@@ -213,7 +216,11 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     assert(trial.byFallback.nonEmpty)
     // A plan goes on from the last one that was used, and is another where that is not known.
     assert(trial.events(EventKind.SolverRestarted).nonEmpty)
-    assert(Replay(team, unsaid(trial.recording), SolverTrial.planning).firstDifference.isDefined)
+    assert(Replay(
+      team,
+      unsaid(trial.recording),
+      LoopSettings(planning = SolverTrial.planning)
+    ).firstDifference.isDefined)
 
   test("a prediction is made for when the command of a plan acts that was made elsewhere"):
     def ahead(hopMs: Double) =

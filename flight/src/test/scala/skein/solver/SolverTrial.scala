@@ -121,8 +121,10 @@ object SolverTrial:
           sum += states(0).positionNed.horizontalDistance(states(1).positionNed)
           steps += 1
       def deciders =
-        val plans = Option.when(kind == LoopKind.Plan)(JointPlanning.of(fleet, planning, seed)).flatten
-        val by    = CountedPlanWorkers(planning.searches, planning.slices)
+        val how   = LoopSettings(planning = planning, seed = seed)
+        val plans =
+          Option.when(kind == LoopKind.Plan)(JointPlanning.of(fleet, how)).flatMap(_.toOption).flatten
+        val by = CountedPlanWorkers(planning.searches, planning.slices)
         FlightDeciders(fleet, plans.map(FlightDeciders.Plans(_, planning.deadline, by)))
       val hand = Hand(
         system,

@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.vehicle.{PlaneReading, Plant, ReducedModel}
+import skein.vehicle.{ObservedPlant, PlaneReading, Plant, PlantState, ReducedModel}
 
 /** A vehicle, and how it will move.
   *
@@ -36,8 +36,39 @@ final case class PredictedVehicle[S](
     copy(state = now)
 
 object PredictedVehicle:
+  /** Within which a vehicle that is told to stand still is taken to do so, s. */
+  private val StandsWithinS = 10.0
+
   def apply(model: ReducedModel, at: PlaneReading): PredictedVehicle[PlaneReading] =
-    PredictedVehicle(model, at.copy(northM = 0, eastM = 0), at.northM, at.eastM, model.lagS)
+    of(model, at, model.lagS)
+
+  /** A vehicle by what is read of it.
+    *
+    * @param state of its plant as numbers, where the reading does not tell all of it; else empty
+    */
+  def of[S](
+      plant: ObservedPlant[S],
+      at: PlaneReading,
+      carriesS: Double,
+      state: Vector[Double] = Vector.empty
+  ): PredictedVehicle[S] =
+    val held = if state.isEmpty then plant.initial else PlantState.of(plant.initial, state)
+    PredictedVehicle(
+      plant,
+      plant.corrected(held, at.copy(northM = 0, eastM = 0)),
+      at.northM,
+      at.eastM,
+      carriesS
+    )
+
+  /** For how long a plant's velocity carries it on: the way that it goes once it is told to stand still, over
+    * its speed before, m/s.
+    */
+  def carriesS(plant: ObservedPlant[?], speedMps: Double): Double = plant match
+    case model: ReducedModel => model.lagS
+    case _                   =>
+      val still = of(plant, PlaneReading(0, 0, speedMps, 0), 0).flown(0, 0, StandsWithinS).motion
+      StrictMath.hypot(still.northM, still.eastM) / speedMps
 
   /** Of a plan's step, none longer than the plant's. */
   private[planning] def pieces(plant: Plant[?], dtS: Double): Int =

@@ -1,6 +1,7 @@
 package skein.planning
 
 import java.util.Arrays
+import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.lanes.PlantLanes
 import skein.vehicle.{PlaneReading, Plant, ReducedModel}
@@ -72,7 +73,7 @@ private[planning] final class VehicleLanes(steps: Int):
 
   /** The state's numbers have a row for each piece of a step. */
   private final class PlantFlight(plant: Plant[?], pieces: Int, pieceS: Double) extends Flight:
-    private val lanes  = PlantLanes.of(plant).fold(why => throw IllegalArgumentException(why), identity)
+    private val lanes  = compiled(plant).fold(why => throw IllegalArgumentException(why), identity)
     private val step   = lanes.step.call
     private val read   = lanes.read.call
     private val count  = lanes.count
@@ -104,11 +105,18 @@ private[planning] final class VehicleLanes(steps: Int):
       for _ <- 1 to pieces do step.next()
       read.next()
 
-private object VehicleLanes:
+private[planning] object VehicleLanes:
   private final val Size = CandidateBlock.Size
 
   /** Kept; of more, all are compiled anew. */
   private val MostPlants = 64
+
+  private val compiledPlants = ConcurrentHashMap[Plant[?], Either[String, PlantLanes]]()
+
+  /** A plant compiled, once for all threads that plan; or why it cannot be. */
+  def compiled(plant: Plant[?]): Either[String, PlantLanes] =
+    if compiledPlants.size >= MostPlants then compiledPlants.clear()
+    compiledPlants.computeIfAbsent(plant, PlantLanes.of(_))
 
   /** How a plant is flown step by step. */
   private sealed trait Flight:

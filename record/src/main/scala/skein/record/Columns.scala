@@ -154,6 +154,8 @@ private[record] object FieldColumns:
 
   given FieldColumns[PlannedPath] = _ => columns[PlannedPath]("courseNorthM", "courseEastM", "courseStep")
 
+  given FieldColumns[PlannedStates] = _ => columns[PlannedStates]("ownState", "opponentState")
+
   given FieldColumns[SolverClock] = _ => columns[SolverClock]("solverClockOffset", "solverClockUncertainty")
 
   /** An action by its name and numbers: `actionX` to `actionZ` are north, east and down of a velocity, m/s,

@@ -218,6 +218,7 @@ final case class Sighting(
   * @param took from asking until the decision was there
   * @param breaches of hard limits within the plan's horizon
   * @param course where the plan leads; absent where the policy decided in its place
+  * @param states from which it was planned, where readings do not tell all of them
   */
 final case class Planned(
     vehicle: String,
@@ -227,7 +228,8 @@ final case class Planned(
     cost: Option[Double],
     took: Span,
     breaches: Long,
-    course: Option[PlannedPath] = None
+    course: Option[PlannedPath] = None,
+    states: Option[PlannedStates] = None
 ) extends Record
 
 /** A decision that was made in another process, and the times of its ways there and back.
@@ -264,6 +266,11 @@ final case class SolverClock(offset: Span, uncertainty: Span)
   * acts.
   */
 final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
+
+/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty where its
+  * kinematics tell all of one.
+  */
+final case class PlannedStates(own: Vector[Double], opponent: Vector[Double])
 
 /** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)

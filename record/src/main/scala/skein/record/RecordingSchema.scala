@@ -56,8 +56,9 @@ object RecordingSchema:
       "One row for each scan of a lidar, if scans are recorded. `xyz` are compressed by " +
         "Zstandard: three numbers of 32 bits for each point, in the lidar's frame."
     case "plan" =>
-      "How a plan was found: candidates, slices of each search, cost, broken limits; and the " +
-        "planned path, from the moment at which its command acts, a position for each step."
+      "How a plan was found: candidates, slices of each search, cost, broken limits; the " +
+        "planned path, from the moment at which its command acts, a position for each step; and what no " +
+        "reading tells of the states that it begins with, as numbers of the vehicle's and its opponent's plant."
     case "solved" =>
       "Decisions that were made in another process: when the question left and the answer came, " +
         "and how long the solver took. Questions without a row were not answered in time."

@@ -86,6 +86,8 @@ private[record] object Table:
     name => added(optional(summon[FieldColumns[Action]](name)))
   private given course: FieldColumns[Option[PlannedPath]] =
     name => added(optional(summon[FieldColumns[PlannedPath]](name)))
+  private given states: FieldColumns[Option[PlannedStates]] =
+    name => added(optional(summon[FieldColumns[PlannedStates]](name)))
 
   val flight: Table[FlightRow]                = table("flight")
   val parameter: Table[ParameterRow]          = table("parameter")

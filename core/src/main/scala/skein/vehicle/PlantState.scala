@@ -1,0 +1,32 @@
+package skein.vehicle
+
+/** States of plants as numbers, to be kept and sent: of case classes of doubles, or of such, in their order.
+  */
+object PlantState:
+  def numbers(state: Any): Vector[Double] = state match
+    case number: Double   => Vector(number)
+    case several: Product => several.productIterator.flatMap(numbers).toVector
+    case _                => Vector.empty
+
+  /** A state of the same form.
+    *
+    * @throws IllegalArgumentException if it has another count of numbers, or cannot be made of its parts
+    */
+  def of[S](like: S, numbers: Vector[Double]): S =
+    val expected = PlantState.numbers(like).size
+    require(numbers.size == expected, s"expected a state of $expected numbers, came ${numbers.size}")
+    val left                 = numbers.iterator
+    def made(part: Any): Any = part match
+      case _: Double        => left.next()
+      case several: Product =>
+        val parts = several.productIterator.map(made).toArray.asInstanceOf[Array[Object]]
+        val maker = several.getClass.getDeclaredConstructors
+          .find(_.getParameterCount == parts.length)
+          .getOrElse(throw IllegalArgumentException(
+            s"expected states that are made of their parts alone, of a case class at the top level or in an object, " +
+              s"came ${several.getClass.getName}"
+          ))
+        maker.setAccessible(true)
+        maker.newInstance(parts*)
+      case other => other
+    made(like).asInstanceOf[S]

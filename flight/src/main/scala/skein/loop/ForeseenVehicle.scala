@@ -1,0 +1,45 @@
+package skein.loop
+
+import skein.planning.{Planner, PredictedVehicle}
+import skein.policy.Agent
+import skein.signal.Kinematics
+import skein.vehicle.*
+import scala.util.Try
+
+/** How plans foresee one vehicle: by the plant that its readings are carried forward by.
+  *
+  * @param carriesS see [[PredictedVehicle.carriesS]]
+  */
+private final class ForeseenVehicle(val plant: ObservedPlant[?], carriesS: Double):
+
+  /** The vehicle as a view has it. */
+  def at(view: TeamView, vehicle: Int): PredictedVehicle[?] =
+    val state = view.estimates.fold(Vector.empty)(_(vehicle).state)
+    PredictedVehicle.of(plant, ForeseenVehicle.motion(view.kinematics(vehicle)), carriesS, state)
+
+private object ForeseenVehicle:
+  /** For speeds of 0, m/s. */
+  private val LeastMps = 0.1
+
+  def motion(seen: Kinematics): PlaneReading =
+    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+
+  /** @param model by which its readings are carried forward. Of one without a plant of velocities, plans take
+    *   AirSim's quadrotor at the vehicle's altitude
+    * @return or why nobody plans by it
+    */
+  def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =
+    val plant = model match
+      case PlantModel(plant)                                                => Right(plant)
+      case _: (QuadrotorModel | CarModel) | ConstantVelocity | ConstantTurn => Right(
+          ReducedModel.airSimAt(settings.altitudeM(-agent.startPositionNed.z))
+        )
+      case other => Left(s"expected a model of a plant (skein.vehicle.PlantModel) to plan by, came $other")
+    val known =
+      for
+        plant <- plant
+        _     <- Planner.refusal(plant).map("plans fly by lanes, and " + _).toLeft(())
+        rest = plant.initial
+        _ <- Try(PlantState.of(rest, PlantState.numbers(rest))).toEither.left.map(_.getMessage)
+      yield ForeseenVehicle(plant, PredictedVehicle.carriesS(plant, agent.speed.value.max(LeastMps)))
+    known.left.map(reason => s"${agent.name}: $reason")
