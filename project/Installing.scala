@@ -30,15 +30,17 @@ object Installing extends AutoPlugin {
       Def.task(IO.delete(beside.value)),
       installedBeside.all(ScopeFilter(inAnyProject)),
       Def.task {
-        val replaced = beside.value / "replaced"
-        for (part <- (beside.value * "*" * "*" * "*").get if !part.getPath.startsWith(replaced.getPath)) {
-          val path      = IO.relativize(beside.value, part).get
-          val installed = ivyHome.value / "local" / path
+        val published = beside.value
+        val local     = ivyHome.value / "local"
+        val replaced  = published / "replaced"
+        for (part <- (published * "*" * "*" * "*").get if !part.getPath.startsWith(replaced.getPath)) {
+          val path      = IO.relativize(published, part).get
+          val installed = local / path
           IO.createDirectories(Seq(installed.getParentFile, (replaced / path).getParentFile))
           if (installed.exists) Files.move(installed.toPath, (replaced / path).toPath)
           Files.move(part.toPath, installed.toPath)
         }
-        IO.delete(beside.value)
+        IO.delete(published)
       }
     ).value
   )
