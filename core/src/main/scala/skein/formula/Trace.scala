@@ -173,6 +173,28 @@ object Trace:
           if seen.add(next.id) then walk.push((next, 0))
     order.result()
 
+  /** The same expressions with others in the place of some nodes. */
+  def replaced(of: Vector[Node], in: Trace)(by: Node => Option[Node]): Vector[Node] =
+    val made = mutable.HashMap.empty[Node, Node]
+    for node <- needed(of) do made(node) = by(node).getOrElse(in.again(node, node.args.map(made)))
+    of.map(made)
+
+  /** Of what these need, the largest numbers that come of some leaves alone, and of what is fixed: computed
+    * apart, as soon as these leaves are known, they leave least to be computed later.
+    */
+  def earliest(of: Vector[Node])(isKnown: Node => Boolean): Vector[Node] =
+    val order        = needed(of)
+    val fixed, known = mutable.HashSet.empty[Node]
+    for node <- order do
+      if if node.args.isEmpty then node.op != Input else node.args.forall(fixed) then fixed += node
+      else if isKnown(node) || node.args.nonEmpty && node.args.forall(arg => fixed(arg) || known(arg)) then
+        known += node
+    val usedLate = mutable.HashSet.from(of)
+    // Conditions are no numbers: what they compare is.
+    for node <- order.reverseIterator if usedLate(node) && (!known(node) || node.op.isCondition) do
+      usedLate ++= node.args
+    order.filter(node => known(node) && usedLate(node) && !node.op.isCondition)
+
   /** Of what a node needs, that at every 256th level, the lowest first. A recursion that remembers what it
     * has done and goes to these first stays within a thread's stack.
     */

@@ -30,7 +30,11 @@ final case class ReducedModel(
   require(lagS > 0 && turnLagS > 0, s"both lags must be positive, came $lagS s and $turnLagS s")
   require(deadTimeS >= 0 && dragPerM >= 0, s"negative: dead time $deadTimeS s or drag $dragPerM /m")
 
-  private val turns = turnLagS != lagS
+  private val drags       = dragPerM != 0
+  private val turns       = turnLagS != lagS
+  private val turnsSlowly = turnLagS > lagS
+  private val slowLagS    = lagS.max(turnLagS)
+  private val fasterPerS  = (1 / lagS - 1 / turnLagS).abs
 
   def initial: PlaneReading                                            = PlaneReading(0, 0, 0, 0)
   def read(state: PlaneReading): PlaneReading                          = state
@@ -40,10 +44,10 @@ final case class ReducedModel(
   /** Within a piece of the flight, from its begin. */
   def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
     import from.{eastMps as vy, northMps as vx}
-    val drag             = dragPerM * math.sqrt(vx * vx + vy * vy)
-    val rate             = 1 / lagS + drag
-    val perRate          = 1 / rate
-    val left             = StrictMath.exp(-rate * spanS)
+    val drag             = if drags then dragPerM * math.sqrt(vx * vx + vy * vy) else 0
+    val perRate          = 1 / (1 / lagS + drag)
+    val slowLeft         = StrictMath.exp(-(1 / slowLagS + drag) * spanS)
+    val left             = if turnsSlowly then slowLeft * fasterLeft(spanS) else slowLeft
     val carriesS         = (1 - left) * perRate
     val reached          = gain / lagS * perRate
     val (goalVx, goalVy) = (wantedVx * reached, wantedVy * reached)
@@ -54,10 +58,19 @@ final case class ReducedModel(
       goalVx + offVx * left,
       goalVy + offVy * left
     )
-    if turns then across(alike, wantedVx, wantedVy, offVx, offVy, left, carriesS, drag, spanS) else alike
+    if turns then
+      val crossLeft    = if turnsSlowly then slowLeft else slowLeft * fasterLeft(spanS)
+      val carryAcrossS = (1 - crossLeft) * (1 / (1 / turnLagS + drag))
+      across(alike, wantedVx, wantedVy, offVx, offVy, crossLeft - left, carryAcrossS - carriesS)
+    else alike
+
+  /** Over what remains of an error that dies away the slower: drag takes the same of both. */
+  private def fasterLeft(spanS: Double) = StrictMath.exp(-fasterPerS * spanS)
 
   /** Of what the velocity is off, the part across the command dies away at its own rate. Told to stand still,
     * all dies away with the lag along.
+    *
+    * @param leftMore of that part than of the rest, and for how much longer it carries, s
     */
   private def across(
       alike: PlaneReading,
@@ -65,23 +78,18 @@ final case class ReducedModel(
       wantedVy: Double,
       offVx: Double,
       offVy: Double,
-      left: Double,
-      carriesS: Double,
-      drag: Double,
-      spanS: Double
+      leftMore: Double,
+      carryMoreS: Double
   ): PlaneReading =
-    val square     = wantedVx * wantedVx + wantedVy * wantedVy
-    val share      = (offVx * wantedVx + offVy * wantedVy) / square
-    val crossVx    = if square > 0 then offVx - share * wantedVx else 0
-    val crossVy    = if square > 0 then offVy - share * wantedVy else 0
-    val crossRate  = 1 / turnLagS + drag
-    val crossLeft  = StrictMath.exp(-crossRate * spanS)
-    val carryMoreS = (1 - crossLeft) / crossRate - carriesS
+    val square  = wantedVx * wantedVx + wantedVy * wantedVy
+    val share   = (offVx * wantedVx + offVy * wantedVy) / square
+    val crossVx = if square > 0 then offVx - share * wantedVx else 0
+    val crossVy = if square > 0 then offVy - share * wantedVy else 0
     PlaneReading(
       alike.northM + crossVx * carryMoreS,
       alike.eastM + crossVy * carryMoreS,
-      alike.northMps + crossVx * (crossLeft - left),
-      alike.eastMps + crossVy * (crossLeft - left)
+      alike.northMps + crossVx * leftMore,
+      alike.eastMps + crossVy * leftMore
     )
 
 object ReducedModel:

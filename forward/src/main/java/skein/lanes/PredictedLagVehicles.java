@@ -43,7 +43,7 @@ final class PredictedLagVehicles extends PredictedVehicles {
     for (Propagation.Part part : propagation.parts()) {
       int place = part.command();
       if (place != Propagation.Rest()) {
-        float moved = (float) part.span() * speed, faster = (float) part.rest() * speed;
+        float moved = part.numbers()[0] * speed, faster = part.numbers()[1] * speed;
         add(sent.cos, place * WORLDS, moved, seenX, into);
         add(sent.sin, place * WORLDS, moved, seenY, into);
         if (withVelocity) {

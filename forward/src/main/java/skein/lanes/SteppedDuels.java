@@ -147,7 +147,7 @@ public final class SteppedDuels implements TimetableScores {
         timetable.views(),
         operations[field + 2] * VEHICLES,
         timetable.times(),
-        operation * Timetable.Numbers());
+        operation * timetable.numbers());
     Directions own = agents[vehicle].headings, theirs = agents[1 - vehicle].headings;
     int known = operations[field + 3] * WORLDS, before = operations[field + 4] * WORLDS;
     observation.difference(LaneObservation.X, north);

@@ -22,6 +22,7 @@ final class TimetableKernel {
 
   // Of the episode's timetable.
   private int[] operations, views;
+  private int numbers;
   private float[] times;
   private Propagation[] propagations;
   private boolean readsVelocity;
@@ -57,6 +58,7 @@ final class TimetableKernel {
     scores.start();
     operations = timetable.operations();
     views = timetable.views();
+    numbers = timetable.numbers();
     times = timetable.times();
     propagations = timetable.propagations();
     // Predictions start from velocities, whoever looks at them.
@@ -65,7 +67,7 @@ final class TimetableKernel {
 
   /** Does the timetable's next operation. */
   void perform(int operation) {
-    int field = operation * Timetable.Fields(), number = operation * Timetable.Numbers();
+    int field = operation * Timetable.Fields(), number = operation * numbers;
     TimetableAgents agent = agents[operations[field + 1]];
     int first = operations[field + 2];
     switch (operations[field]) {

@@ -16,26 +16,38 @@ private[lanes] final class BoundFunction private (
     val nodes: Vector[Node],
     val function: LaneFunction
 ):
+  /** The function's number of an input of the expressions. */
+  def place(input: Int): Int = inputs.indexOf(input)
+
   /** How many there are. */
   def outputs: Int = nodes.size
 
 private[lanes] object BoundFunction:
-  private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int])
+  private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int], Vector[(Int, Int)])
   private val compiled = ConcurrentHashMap[Key, LaneFunction]()
 
-  def of(outputs: Vector[Node]): BoundFunction =
+  /** @param rowOf the rows of inputs that stand in one array, by their numbers in the expressions; of all of
+    *   these, [[LaneCall.input]] takes the array and where its first row begins
+    * @param areRows whether the outputs are the rows of one array
+    */
+  def of(
+      outputs: Vector[Node],
+      rowOf: PartialFunction[Int, Int] = PartialFunction.empty,
+      areRows: Boolean = false
+  ): BoundFunction =
     val trace  = Trace()
     val number = mutable.LinkedHashMap.empty[Int, Int]
-    val made   = mutable.HashMap.empty[Node, Node]
-    for node <- Trace.needed(outputs) do
-      made(node) = node.op match
-        case Op.Input => trace.input(number.getOrElseUpdate(node.index, number.size))
-        case _        => trace.again(node, node.args.map(made))
-    val own      = outputs.map(made)
+    val own    = Trace.replaced(outputs, trace): node =>
+      Option.when(node.op == Op.Input)(trace.input(number.getOrElseUpdate(node.index, number.size)))
+    val inputs = number.keys.toVector
+    val shared = inputs.indexWhere(rowOf.isDefinedAt)
+    val places = inputs.indices.toVector.map(i => rowOf.lift(inputs(i)).fold((i, 0))((shared, _))) ++
+      own.indices.map(i => if areRows then (inputs.size, i) else (inputs.size + i, 0))
     val needed   = Trace.needed(own)
-    val key: Key = (needed.map(node => (node.op, node.args.map(_.id), leafOf(node))), own.map(_.id))
-    val function = compiled.computeIfAbsent(key, _ => LaneCompiler.compile(number.size, own))
-    BoundFunction(number.keys.toArray, own, function)
+    val key: Key = (needed.map(node => (node.op, node.args.map(_.id), leafOf(node))), own.map(_.id), places)
+    val function =
+      compiled.computeIfAbsent(key, _ => LaneCompiler.compile(inputs.size, own, places = places))
+    BoundFunction(inputs.toArray, own, function)
 
   private def leafOf(node: Node): Long =
     if node.isConst then java.lang.Double.doubleToRawLongBits(node.value) else node.index.toLong

@@ -12,7 +12,7 @@ import skein.forward.{
   VelocityResponse
 }
 import skein.units.Expect
-import skein.vehicle.{Quadrotor, ReducedModel}
+import skein.vehicle.Quadrotor
 
 /** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
   * delays of its own.
@@ -48,7 +48,10 @@ private[skein] trait LaneDynamics:
 
 /** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
 private[skein] trait EventClock:
-  /** At most [[Timetable.Numbers]] numbers that tell this time, s; never earlier than the time before.
+  /** How many numbers tell a time. */
+  def numbers: Int
+
+  /** The [[numbers]] that tell this time, s; never earlier than the time before.
     *
     * @param acts whether a command begins to act
     */
@@ -72,7 +75,7 @@ private[skein] object LaneDynamics:
           s"the lanes fly models with lags of $LeastLagS s at least"
         )
         .flatMap(PlantLanes.of)
-        .map(DragDynamics(drag, _))
+        .map(PlantDynamics(_))
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
@@ -139,6 +142,7 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
 
   def clock(): EventClock = new EventClock:
     private var actedS                                                      = 0.0
+    def numbers: Int                                                        = 3
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val dt      = atS - actedS
       val remains = model.lag.remains(dt)
@@ -151,33 +155,33 @@ private object LagDynamics:
   /** Below, too many periods' commands are under way for [[LagVehicles]]. */
   private val LeastPeriodS = 0.02
 
-/** By [[TimetableDragVehicles]]; alone as a plant. */
-private final class DragDynamics(model: ReducedModel, lanes: PlantLanes) extends PlantDynamics(lanes):
-  override def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
-
 /** By [[TimetablePlants]]. */
-private sealed class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
+private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   override def stepS: Double                        = lanes.plant.stepS
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
-  def clock(): EventClock                           = PieceClock(lanes.plant.stepS)
+  def clock(): EventClock                           = PieceClock(lanes)
 
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     PlantFlights(duelist, lanes, timing)
 
-/** How many pieces end until then, and the time since the last. A piece begins with a command, or with the
-  * end of another.
+/** How many steps end until then, and the numbers of the time since the last ([[PlantStages]]). A step begins
+  * with a command, or with the end of another.
   */
-private final class PieceClock(lengthS: Double) extends EventClock:
-  private var pieceS                                                      = 0.0
+private final class PieceClock(lanes: PlantLanes) extends EventClock:
+  private val lengthS = lanes.plant.stepS
+  private val told    = lanes.stages.tell(lanes.plant)
+  private var pieceS  = 0.0
+
+  def numbers: Int                                                        = 1 + lanes.stages.times
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
     var pieces = 0
     while atS > pieceS + lengthS do
       pieceS += lengthS
       pieces += 1
     into(at) = pieces.toFloat
-    into(at + 1) = (atS - pieceS).toFloat
+    for (number, i) <- told(atS - pieceS).zipWithIndex do into(at + 1 + i) = number.toFloat
     if acts then pieceS = atS
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
@@ -195,6 +199,7 @@ private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDyna
 
   def clock(): EventClock = new EventClock:
     private var steps                                                       = hoveredNs / stepNs
+    def numbers: Int                                                        = 2
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val now   = hoveredNs + Nanos.of(atS)
       val flown = now / stepNs

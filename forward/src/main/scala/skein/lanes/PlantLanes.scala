@@ -2,8 +2,7 @@ package skein.lanes
 
 import java.util.Arrays
 import skein.formula.{Formula, Untraceable}
-import skein.forward.Duelist
-import skein.vehicle.Plant
+import skein.vehicle.{PlaneReading, Plant}
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
 private[skein] final class PlantLanes private (val plant: Plant[?], stepping: Formula, reading: Formula):
@@ -16,6 +15,12 @@ private[skein] final class PlantLanes private (val plant: Plant[?], stepping: Fo
   val initial: Array[Float] = numbersOf(plant.initial).map(_.toFloat).toArray
   if initial.length != count || reading.inputs.size != count then
     throw Untraceable(s"a state of $count doubles was expected")
+
+  val resting: PlaneReading                 = readingOf(plant)
+  private def readingOf[S](plant: Plant[S]) = plant.read(plant.initial)
+
+  /** Its step in parts. */
+  lazy val stages: PlantStages = PlantStages(stepping, reading)
 
   /** Fills in the numbers of a state at rest, of all worlds. */
   def rest(array: Array[Float], from: Int): Unit =
@@ -52,75 +57,3 @@ private[skein] object PlantLanes:
     case number: Double   => Vector(number)
     case several: Product => several.productIterator.flatMap(numbersOf).toVector
     case _                => Vector.empty
-
-/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock tells how many steps end before a moment, and
-  * how long it is after the last of these. The scalar reference is `skein.forward.PlantVehicle`.
-  */
-private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
-    extends TimetableVehicles(duelist):
-  import TimetableVehicles.WORLDS
-  private val step = lanes.step.call
-  private val read = lanes.read.call
-
-  private var begun, next =
-    Array.ofDim[Float](lanes.count * WORLDS) // when the present step began, and what comes of it
-  private val north, east, whole, rest = Array.ofDim[Float](WORLDS)
-  private val speed                    = duelist.speed.toFloat
-  private var isCommanded              = false
-  Arrays.fill(whole, lanes.plant.stepS.toFloat)
-  step.input(lanes.count, north, 0)
-  step.input(lanes.count + 1, east, 0)
-  read.input(lanes.count, startX, 0)
-  read.input(lanes.count + 1, startY, 0)
-
-  def start(worlds: Int): Unit =
-    lanes.rest(begun, 0)
-    isCommanded = false
-
-  def rest(world: Int): Unit =
-    for i <- 0 until lanes.count do
-      begun(i * WORLDS + world) = lanes.initial(i)
-      next(i * WORLDS + world) = lanes.initial(i)
-    // Until its first command, where other worlds had theirs, it is told to stand still.
-    north(world) = 0
-    east(world) = 0
-
-  def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
-    fly(times, at)
-    read.inputs(0, lanes.count, next, 0)
-    read.output(0, seenX, into)
-    read.output(1, seenY, into)
-    read.output(2, seenVx, into)
-    read.output(3, seenVy, into)
-    read()
-
-  def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
-    fly(times, at)
-    goOn()
-    isCommanded = true
-    var world = 0
-    while world < WORLDS do
-      north(world) = commanded.cos(from + world) * speed
-      east(world) = commanded.sin(from + world) * speed
-      world += 1
-
-  /** To a moment, from the beginning of a step. */
-  private def fly(times: Array[Float], at: Int): Unit =
-    if isCommanded then
-      for _ <- 1 to times(at).toInt do
-        fly(whole)
-        goOn()
-      Arrays.fill(rest, times(at + 1))
-      fly(rest)
-    else System.arraycopy(begun, 0, next, 0, begun.length)
-
-  private def fly(forS: Array[Float]): Unit =
-    step.inputs(0, lanes.count, begun, 0)
-    step.input(lanes.count + 2, forS, 0)
-    step.outputs(lanes.count, next, 0)
-    step()
-
-  private def goOn(): Unit =
-    val before = begun
-    begun = next
-    next = before

@@ -14,7 +14,7 @@ private[skein] final class Propagation(
     Propagation(parts.map(part => part.copy(command = place(part.command))), first, second)
 
   /** About so much memory is held. */
-  private[lanes] def bytes: Long = 48 + 56L * parts.length
+  private[lanes] def bytes: Long = 48 + parts.iterator.map(part => 48L + 4 * part.numbers.length).sum
 
 private[skein] object Propagation:
   /** Of what is not carried forward. */
@@ -26,4 +26,4 @@ private[skein] object Propagation:
   /** @param command the decision that it carries, 0 where there is none yet; in a timetable its place, or
     *   [[Rest]]
     */
-  final case class Part(command: Int, span: Double, rest: Double)
+  final case class Part(command: Int, numbers: Array[Float])

@@ -26,11 +26,12 @@ import skein.vehicle.ConstantVelocity
   * @param vehicles how many fly
   * @param operations [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then
   *   places
-  * @param times [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[EventClock]]
-  *   tells; of a decision, the time since the one before, and in a duel the ages of the own and of the
-  *   opponent's reading; by who sees, the age of the own reading, the time, and until when a belief is
-  *   carried ([[CameraTrackerLanes.look]]); of an image what [[CameraTrackerLanes.expose]] takes; of a score,
-  *   the time; s
+  * @param numbers how many `times` there are of each operation
+  * @param times of each operation: of what happens to a vehicle, what its [[EventClock]] tells; of a
+  *   decision, the time since the one before, and in a duel the ages of the own and of the opponent's
+  *   reading; by who sees, the age of the own reading, the time, and until when a belief is carried
+  *   ([[CameraTrackerLanes.look]]); of an image what [[CameraTrackerLanes.expose]] takes; of a score, the
+  *   time; s
   * @param views what is decided and scored upon: the places of all vehicles' readings, one view after the
   *   other
   * @param propagations by which readings are carried forward, in loops that predict
@@ -40,6 +41,7 @@ import skein.vehicle.ConstantVelocity
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
     val operations: Array[Int],
+    val numbers: Int,
     val times: Array[Float],
     val views: Array[Int],
     val propagations: Array[Propagation],
@@ -53,8 +55,10 @@ private[skein] final class Timetable private[lanes] (
     4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
 
 private[skein] object Timetable:
-  val Fields: Int  = 6
-  val Numbers: Int = 4
+  val Fields: Int = 6
+
+  /** Of an operation, at least: some clocks tell more. */
+  private[lanes] val LeastNumbers: Int = 4
 
   /** The timetable of a world of this key, for so many vehicles of this kind.
     *
@@ -108,7 +112,7 @@ private final class TimetableCompiler(
     vehicles: Int,
     model: LaneDynamics
 ):
-  import Timetable.{Fields, Numbers}
+  import Timetable.Fields
   import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
   /** By time, and events of one time as they were noted. Only commands act later than what was noted after
@@ -136,7 +140,8 @@ private final class TimetableCompiler(
   private var count        = 0
 
   private val operations = Array.ofDim[Int](end * Fields)
-  private val times      = Array.ofDim[Float](end * Numbers)
+  private val numbers    = Timetable.LeastNumbers.max(clocks.map(_.numbers).max)
+  private val times      = Array.ofDim[Float](end * numbers)
   private var size       = 0
 
   def result: Timetable =
@@ -155,7 +160,8 @@ private final class TimetableCompiler(
     Timetable(
       vehicles,
       java.util.Arrays.copyOf(operations, size * Fields),
-      java.util.Arrays.copyOf(times, size * Numbers),
+      numbers,
+      java.util.Arrays.copyOf(times, size * numbers),
       views.result(),
       propagations.result(),
       readings.map(_.size).max,
@@ -224,9 +230,9 @@ private final class TimetableCompiler(
       // Taken before the one before is given back: its effort is counted from there.
       headings(agent).take(own + 1)
     )
-    times(size * Numbers + 1) = event.ownAgeS.toFloat
-    times(size * Numbers + 2) = event.opponentAgeS.toFloat
-    times(size * Numbers + 3) = event.aheadS.toFloat
+    times(size * numbers + 1) = event.ownAgeS.toFloat
+    times(size * numbers + 2) = event.opponentAgeS.toFloat
+    times(size * numbers + 3) = event.aheadS.toFloat
     took(event.elapsedS)
     releaseView(view, at)
     headings(agent).release(own, at)
@@ -259,9 +265,9 @@ private final class TimetableCompiler(
   private def expose(event: Note, at: Int): Unit =
     val view = event.view
     operation(EXPOSE, event.agent, tell(view), event.number % CameraTracker.Ring)
-    times(size * Numbers + 1) = event.elapsedS.toFloat
-    times(size * Numbers + 2) = event.ownAgeS.toFloat
-    times(size * Numbers + 3) = event.opponentAgeS.toFloat
+    times(size * numbers + 1) = event.elapsedS.toFloat
+    times(size * numbers + 2) = event.ownAgeS.toFloat
+    times(size * numbers + 3) = event.opponentAgeS.toFloat
     took(event.atS)
     releaseView(view, at)
 
@@ -296,12 +302,12 @@ private final class TimetableCompiler(
 
   /** Ends an operation that happens to a vehicle. */
   private def happens(event: Note, acts: Boolean): Unit =
-    clocks(event.agent).tell(event.atS, acts, times, size * Numbers)
+    clocks(event.agent).tell(event.atS, acts, times, size * numbers)
     size += 1
 
   /** Ends another operation. */
   private def took(seconds: Double): Unit =
-    times(size * Numbers) = seconds.toFloat
+    times(size * numbers) = seconds.toFloat
     size += 1
 
 /** Places for numbered things until their last use; as few as possible. */

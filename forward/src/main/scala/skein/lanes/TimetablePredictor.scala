@@ -39,11 +39,14 @@ private[skein] object TimetablePredictor:
     case PlantModel(lag: ReducedModel) if lag.dragPerM == 0 && lag.turnLagS == lag.lagS =>
       Right(LagPredictor(lag))
     case PlantModel(drag: ReducedModel) =>
-      Either.cond(
-        drag.lagS.min(drag.turnLagS) >= LeastLagS,
-        DragPredictor(drag),
-        s"the lanes predict by models with lags of $LeastLagS s at least"
-      )
+      Either
+        .cond(
+          drag.lagS.min(drag.turnLagS) >= LeastLagS,
+          drag,
+          s"the lanes predict by models with lags of $LeastLagS s at least"
+        )
+        .flatMap(PlantLanes.of)
+        .map(DragPredictor(_))
     case ConstantVelocity => Right(CoastPredictor)
     case _                => Left("the lanes predict by reduced models and constant velocity")
 
@@ -69,24 +72,28 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
     def moved(t: Double)   = t - lag.carriesS(t)
     val parts              = flown.map: part =>
       val (left, after) = (totalS - part.fromS, totalS - part.untilS)
-      Propagation.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
+      Propagation.Part(
+        part.decision,
+        Array(moved(left) - moved(after), reached(left) - reached(after)).map(_.toFloat)
+      )
     Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
-/** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last.
-  */
-private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
-  def vehicles(duelist: Duelist): PredictedVehicles = PredictedDragVehicles(model, duelist.speed)
+/** By [[PredictedPlants]]. */
+private final class DragPredictor(lanes: PlantLanes) extends TimetablePredictor:
+  private val tell = lanes.stages.tell(lanes.plant)
+
+  def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, duelist.speed)
 
   def propagator: Propagator =
-    ReducedPropagator(model.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))
+    ReducedPropagator(lanes.plant.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))
 
   private def pieces(part: ReducedPropagator.Flown): Propagation.Part =
     var pieceS = part.fromS
     var pieces = 0
-    while part.untilS > pieceS + ReducedModel.PieceS do
-      pieceS += ReducedModel.PieceS
+    while part.untilS > pieceS + lanes.plant.stepS do
+      pieceS += lanes.plant.stepS
       pieces += 1
-    Propagation.Part(part.decision, pieces, part.untilS - pieceS)
+    Propagation.Part(part.decision, (pieces.toDouble +: tell(part.untilS - pieceS)).map(_.toFloat))
 
 /** Which command acts when, as [[PlantModel]] takes it: each a dead time after it has come. A command that
   * repeats the one before is a new one here, and nothing there: with drag a piece more begins.

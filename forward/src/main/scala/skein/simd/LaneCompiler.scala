@@ -23,8 +23,16 @@ object LaneCompiler:
     * @param differences so many of the first inputs are differences of two arrays' numbers; what is taken
     *   away stands in the arrays behind those of the outputs
     * @param parameters how many each world has; 0: all worlds have the same
+    * @param places of the inputs and then of the outputs, where several stand in one array, one after the
+    *   other: the array's number and the row in it; none: each has its own
     */
-  def compile(inputs: Int, outputs: Vector[Node], differences: Int = 0, parameters: Int = 0): LaneFunction =
+  def compile(
+      inputs: Int,
+      outputs: Vector[Node],
+      differences: Int = 0,
+      parameters: Int = 0,
+      places: Vector[(Int, Int)] = Vector.empty
+  ): LaneFunction =
     val passes  = Passes.of(outputs)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
     val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.getOrElse(0)
@@ -63,7 +71,16 @@ object LaneCompiler:
               s"pass$number",
               Names.apply,
               ClassFile.ACC_STATIC,
-              code => PassCompiler(code, pass, inputs, differences, inputs + outputs.size, parameters).emit()
+              code =>
+                PassCompiler(
+                  code,
+                  pass,
+                  inputs,
+                  differences,
+                  inputs + outputs.size,
+                  parameters,
+                  places
+                ).emit()
             ): Unit
       )
     val lookup = MethodHandles.lookup().defineHiddenClass(bytes, true)
@@ -97,7 +114,8 @@ private final class PassCompiler(
     inputs: Int,
     differences: Int,
     subtrahends: Int,
-    parameters: Int
+    parameters: Int,
+    places: Vector[(Int, Int)]
 ):
   import Names.*
   private val count          = LaneFunction.COUNT
@@ -129,7 +147,7 @@ private final class PassCompiler(
           Names.apply,
           ClassFile.ACC_STATIC,
           other =>
-            val first = PassCompiler(other, pass, inputs, differences, subtrahends, parameters)
+            val first = PassCompiler(other, pass, inputs, differences, subtrahends, parameters, places)
             first.body()
             other.return_()
             for array <- first.arrays.keys.toVector.sorted do arrays(array) = (fresh(), fresh())
@@ -462,10 +480,17 @@ private final class PassCompiler(
     stored()
 
   private def input(number: Int): Int =
-    val (array, offset) = arrays.getOrElseUpdate(number, (fresh(), fresh()))
-    code.getstatic(math, "SPECIES", species).aload(array).iload(offset).iload(world).iadd()
+    code.getstatic(math, "SPECIES", species)
+    locate(number)
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
+
+  /** The array of an input or output, and the index of the present worlds in it. */
+  private def locate(number: Int): Unit =
+    val (of, row)       = places.applyOrElse(number, (own: Int) => (own, 0))
+    val (array, offset) = arrays.getOrElseUpdate(of, (fresh(), fresh()))
+    code.aload(array).iload(offset).iload(world).iadd()
+    if row > 0 then code.loadConstant(row * count).iadd(): Unit
 
   private def store(vector: Int, argument: Int, to: Int): Unit =
     code.aload(vector).aload(argument).iload(world).loadConstant(to).iadd()
@@ -476,8 +501,8 @@ private final class PassCompiler(
     ): Unit
 
   private def storeTo(vector: Int, number: Int): Unit =
-    val (array, offset) = arrays.getOrElseUpdate(number, (fresh(), fresh()))
-    code.aload(vector).aload(array).iload(offset).iload(world).iadd()
+    code.aload(vector)
+    locate(number)
     code.invokevirtual(
       float,
       "intoArray",

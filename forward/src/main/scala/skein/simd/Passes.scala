@@ -23,10 +23,10 @@ private object Passes:
   // round.
 
   /** Vector operations that one pass takes at most. */
-  private val Most = 50
+  private val Most = Integer.getInteger("most", 60)
 
   /** Constants that one pass takes at most, of 32 registers. */
-  private val MostConstants = 20
+  private val MostConstants = Integer.getInteger("consts", 20)
 
   def of(outputs: Vector[Node]): Vector[Pass] =
     val order = Trace.needed(outputs)

@@ -1,0 +1,117 @@
+package skein.lanes
+
+import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace}
+import skein.vehicle.Plant
+
+/** A plant's step, cut by when its numbers are known, for worlds whose steps begin and end together. What
+  * comes of the state and the command alone is computed as a step begins and kept; what comes of the time
+  * alone is the same in all worlds, and told; only the rest is computed at each moment. Compiled once for all
+  * plants of a form.
+  *
+  * Parameters of all functions are the speed of a command of length 1, then the plant's own numbers, then
+  * those of the time.
+  */
+private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
+  import PlantStages.*
+
+  private val trace    = Trace()
+  private val count    = stepping.outputs.size
+  private val speed    = trace.param(0)
+  private val stepOwn  = angles(stepping, 1, leafOfStep)
+  private val stepped  = stepping.outputs.map((_, node) => stepOwn.convert(node))
+  private val firstOwn = 1 + stepOwn.derived.size
+  private val readOwn  = angles(reading, firstOwn, stepped)
+  private val seen     = reading.outputs.map((_, node) => readOwn.convert(node))
+  private val located  =
+    seen.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(StartX + i)) else node)
+  private val firstTime = firstOwn + readOwn.derived.size
+
+  private def angles(formula: Formula, first: Int, leaf: Int => Node) =
+    Angles(formula.trace, trace, leaf, _ => None, number => trace.param(first + number))
+
+  private def leafOfStep(input: Int) =
+    if input < count then trace.input(State + input)
+    else if input < count + 2 then trace.mul(trace.input(North + input - count), speed)
+    else trace.input(Time)
+
+  private val (ofState, timed) =
+    cut(
+      stepped ++ located,
+      _.index >= North,
+      i => trace.input(Kept + i)
+    )
+  private val (ofTime, late) = cut(timed, _.index == Time, i => trace.param(firstTime + i))
+  private val timesOf        = Evaluation(ofTime)
+
+  /** What comes of some inputs alone, and the rest of these expressions, by it. */
+  private def cut(of: Vector[Node], isKnown: Node => Boolean, by: Int => Node): (Vector[Node], Vector[Node]) =
+    val early = Trace.earliest(of)(node => node.op == Op.Input && isKnown(node))
+    val place = early.zipWithIndex.toMap
+    (early, Trace.replaced(of, trace)(place.get(_).map(by)))
+
+  /** The command stays for the next step, if that comes of itself. */
+  private val keeps = ofState ++ Vector(trace.input(North), trace.input(East))
+
+  /** How many numbers are kept. */
+  val kept: Int = keeps.size
+
+  /** How many numbers tell a time. */
+  val times: Int = ofTime.size
+
+  /** What is kept, of the state and the command. */
+  val begin: BoundFunction = keeping(keeps)
+
+  /** What is kept of the next step, of what is kept of this one, its time and a new command. */
+  val act: BoundFunction = next(State)
+
+  /** The same under the same command. */
+  val goOn: BoundFunction = next(North)
+
+  /** @param first of the inputs that come of what was kept
+    */
+  private def next(first: Int) = keeping(Trace.replaced(keeps, trace)(node =>
+    Option.when(node.op == Op.Input && node.index >= first):
+      if node.index >= State then late(node.index - State)
+      else trace.input(Kept + ofState.size + node.index - North)
+  ))
+
+  private def keeping(of: Vector[Node]) = BoundFunction.of(of, rowOf, areRows = true)
+
+  /** Position, of what is kept, the time and the start. */
+  val position: BoundFunction = BoundFunction.of(late.slice(count, count + 2), rowOf)
+
+  /** Position and velocity, of the same. */
+  val look: BoundFunction = BoundFunction.of(late.drop(count), rowOf)
+
+  /** The functions' parameters, but for the time. */
+  def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
+    (speedMps +: ownOf(plant)).map(_.toFloat) ++ Array.ofDim[Float](times)
+
+  /** Where the time's begin. */
+  def firstOfTime: Int = firstTime
+
+  /** Tells times by the numbers that come of them. */
+  def tell(plant: Plant[?]): Double => Array[Double] =
+    val own = 0.0 +: ownOf(plant)
+    dtS => timesOf(Array(dtS), own)
+
+  private def ownOf(plant: Plant[?]) =
+    Evaluation(stepOwn.derived)(Array.emptyDoubleArray, stepping.parametersOf(plant)) ++
+      Evaluation(readOwn.derived)(Array.emptyDoubleArray, reading.parametersOf(plant))
+
+private[lanes] object PlantStages:
+  /** What the expressions' inputs are: the time, the command over the speed, where it starts, the state's
+    * numbers, what is kept.
+    */
+  val Time: Int   = 0
+  val StartX: Int = 1
+  val StartY: Int = 2
+  val North: Int  = 3
+  val East: Int   = 4
+  val State: Int  = 5
+  val Kept: Int   = 1 << 16
+
+  /** The state's numbers stand in one array, and so does what is kept. */
+  private val rowOf: PartialFunction[Int, Int] =
+    case kept if kept >= Kept    => kept - Kept
+    case state if state >= State => state - State
