@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.Arrays
-import skein.formula.{Formula, Untraceable}
+import skein.formula.Untraceable
 import skein.forward.{Duelist, CameraTracker}
 import skein.fusion.{SensorFormulas, SensorModel}
 
@@ -146,9 +146,9 @@ private[lanes] object CameraTrackerLanes:
     */
   def of(model: SensorModel): Either[String, Forms] =
     val formulas                        = SensorFormulas(model)
-    def form(name: String, inputs: Int) = Formula.of(formulas, name).map: formula =>
+    def form(name: String, inputs: Int) = FixedFormula.of(formulas, name, alike = 0).map: formula =>
       require(formula.inputs.size == inputs, s"$name of ${formula.inputs.mkString(", ")}")
-      FixedFormula(formula, formulas)
+      formula
     if model.bearingSdRad < LeastSd || model.rangeSd < LeastSd then
       Left(s"the lanes know sensors with deviations of $LeastSd rad, and $LeastSd of the range, at least")
     else

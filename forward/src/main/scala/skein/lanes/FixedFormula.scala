@@ -1,38 +1,34 @@
 package skein.lanes
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
+import skein.formula.{Angles, Evaluation, Formula, Node, Trace, Untraceable}
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
   *
   * @param alike so many of the method's last inputs are the same in all worlds too
   * @param extra inputs behind the method's own
-  * @param changed what is computed in the place of the method's outputs
+  * @param bound what is computed of the inputs and of [[parameters]]
+  * @param evaluation how the object's own numbers make those
   */
-private[skein] final class FixedFormula(
+private[skein] final class FixedFormula private (
     formula: Formula,
     of: AnyRef,
-    val alike: Int = 0,
-    extra: Int = 0,
-    changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs
+    val alike: Int,
+    extra: Int,
+    private[lanes] val bound: BoundFunction,
+    evaluation: Evaluation
 ):
   private val own = formula.inputs.size - alike
 
-  /** What is computed of the inputs and of [[parameters]]; and how the object's own numbers make those. */
-  private[lanes] val (bound, evaluation) =
-    val trace  = Trace()
-    val angles = Angles(
-      formula.trace,
-      trace,
-      input => if input < own then trace.input(input) else trace.param(input - own),
-      _ => None,
-      number => trace.param(alike + number)
-    )
-    val outputs = changed(trace, formula.outputs.map((_, node) => angles.convert(node)))
-    (BoundFunction.of(outputs), Evaluation(angles.derived))
+  /** The names of the method's inputs. */
+  def inputs: Vector[String] = formula.inputs
 
   /** Whether another object's method is this formula, with numbers of its own. */
   def fits(other: AnyRef): Boolean = formula.fits(other)
+
+  /** That of another object that [[fits]]. */
+  def of(other: AnyRef): FixedFormula =
+    if other eq of then this else new FixedFormula(formula, other, alike, extra, bound, evaluation)
 
   /** Behind the inputs that are alike: what an object that [[fits]] is computed with. */
   private[lanes] def parametersOf(other: AnyRef): Array[Double] =
@@ -53,11 +49,32 @@ private[skein] final class FixedFormula(
 private[skein] object FixedFormula:
   private val known = ConcurrentHashMap[(Class[?], String, Int), Forms[AnyRef, FixedFormula]]()
 
-  /** The formula that an object's method is, which may have been compiled for another object.
+  /** @param changed what is computed in the place of the method's outputs
+    */
+  def apply(
+      formula: Formula,
+      of: AnyRef,
+      alike: Int = 0,
+      extra: Int = 0,
+      changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs
+  ): FixedFormula =
+    val own    = formula.inputs.size - alike
+    val trace  = Trace()
+    val angles = Angles(
+      formula.trace,
+      trace,
+      input => if input < own then trace.input(input) else trace.param(input - own),
+      _ => None,
+      number => trace.param(alike + number)
+    )
+    val outputs = changed(trace, formula.outputs.map((_, node) => angles.convert(node)))
+    new FixedFormula(formula, of, alike, extra, BoundFunction.of(outputs), Evaluation(angles.derived))
+
+  /** An object's method, which is compiled once for all objects of a form.
     *
     * @param alike so many of the method's last inputs are the same in all worlds
     */
-  def of(target: AnyRef, method: String, alike: Int): FixedFormula =
+  def of(target: AnyRef, method: String, alike: Int): Either[Untraceable, FixedFormula] =
     known
       .computeIfAbsent(
         (target.getClass, method, alike),
@@ -65,7 +82,7 @@ private[skein] object FixedFormula:
           Forms[AnyRef, FixedFormula](_.fits(_)): one =>
             Formula.of(one, method).map(FixedFormula(_, one, alike))
       )(target)
-      .fold(throw _, identity)
+      .map(_.of(target))
 
   /** Mutable. */
   final class Call(formula: FixedFormula, parameters: Array[Float], own: Int, inputs: Int):

@@ -1,26 +1,24 @@
 package skein.lanes
 
 import java.util.Arrays
+import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
 import skein.vehicle.{PlaneReading, Plant}
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
-private[skein] final class PlantLanes private (val plant: Plant[?], stepping: Formula, reading: Formula):
+private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
   import PlantLanes.*
 
   /** How many numbers its state is. */
-  val count: Int = stepping.outputs.size
+  def count: Int = form.count
 
   /** What it begins with. */
   val initial: Array[Float] = numbersOf(plant.initial).map(_.toFloat).toArray
-  if initial.length != count || reading.inputs.size != count then
-    throw Untraceable(s"a state of $count doubles was expected")
+  if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
+  /** What is read of it at rest, from where it starts. */
   val resting: PlaneReading                 = readingOf(plant)
   private def readingOf[S](plant: Plant[S]) = plant.read(plant.initial)
-
-  /** Its step in parts. */
-  lazy val stages: PlantStages = PlantStages(stepping, reading)
 
   /** Fills in the numbers of a state at rest, of all worlds. */
   def rest(array: Array[Float], from: Int): Unit =
@@ -29,9 +27,22 @@ private[skein] final class PlantLanes private (val plant: Plant[?], stepping: Fo
       Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
 
   /** The next state: of the state's numbers, then the commanded velocity and the time. */
-  val step: FixedFormula = FixedFormula(stepping, plant)
+  def step: FixedFormula = form.step.of(plant)
 
   /** Position and velocity: of the state's numbers, then where it starts. */
+  def read: FixedFormula = form.read.of(plant)
+
+  /** Its step in parts. */
+  def stages: PlantStages = form.stages
+
+/** What plants of one form are compiled to. */
+private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formula):
+  val count: Int = stepping.outputs.size
+  if reading.inputs.size != count then throw Untraceable(s"a state of $count doubles was expected")
+
+  def fits(other: Plant[?]): Boolean = stepping.fits(other) && reading.fits(other)
+
+  val step: FixedFormula = FixedFormula(stepping, plant)
   val read: FixedFormula = FixedFormula(
     reading,
     plant,
@@ -39,16 +50,26 @@ private[skein] final class PlantLanes private (val plant: Plant[?], stepping: Fo
     changed = (trace, outputs) =>
       outputs.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(count + i)) else node)
   )
+  val stages: PlantStages = PlantStages(stepping, reading)
 
 private[skein] object PlantLanes:
+  private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()
+
+  /** Plants of one form share what is compiled. */
   def of(plant: Plant[?]): Either[String, PlantLanes] =
+    val forms = known.computeIfAbsent(plant.getClass, _ => Forms[Plant[?], PlantForm](_.fits(_))(traced))
+    forms(plant)
+      .flatMap: form =>
+        try Right(PlantLanes(plant, form))
+        catch case untraceable: Untraceable => Left(untraceable)
+      .left
+      .map(refused)
+
+  private def traced(plant: Plant[?]) =
     for
-      step <- Formula.of(plant, "step").left.map(refused)
-      read <- Formula.of(plant, "read").left.map(refused)
-      made <-
-        try Right(PlantLanes(plant, step, read))
-        catch case untraceable: Untraceable => Left(refused(untraceable))
-    yield made
+      step <- Formula.of(plant, "step")
+      read <- Formula.of(plant, "read")
+    yield PlantForm(plant, step, read)
 
   private def refused(why: Untraceable) = s"the vehicle is no formula: ${why.getMessage}"
 

@@ -20,12 +20,13 @@ private[lanes] final class StagedFlight(
   /** That it [[begin]]s with, number by number. */
   val state: Array[Float] = Array.ofDim[Float](lanes.count * WORLDS)
 
-  private val still               = Array.ofDim[Float](WORLDS)
-  private val begun, next, atRest = Array.ofDim[Float](stages.kept * WORLDS)
-  private val (north, east)       = (stages.act.place(North), stages.act.place(East))
-  private val beginning           = bound(stages.begin, state, begun)
-  private var moving              = Moving(begun, next)
-  private var other               = Moving(next, begun)
+  private val still                   = Array.ofDim[Float](WORLDS)
+  private val begun, next, atRest     = Array.ofDim[Float](stages.kept * WORLDS)
+  private val (north, east)           = (stages.act.place(North), stages.act.place(East))
+  private val (firstNorth, firstEast) = (stages.begin.place(North), stages.begin.place(East))
+  private val beginning               = bound(stages.begin, state, begun)
+  private var moving                  = Moving(begun, next)
+  private var other                   = Moving(next, begun)
   lanes.rest(state, 0)
   bound(stages.begin, state, atRest)()
 
@@ -56,8 +57,8 @@ private[lanes] final class StagedFlight(
     */
   def begin(commanded: Directions, from: Int): Unit =
     if moving.kept ne begun then turnOver()
-    beginning.input(stages.begin.place(North), commanded.cos, from)
-    beginning.input(stages.begin.place(East), commanded.sin, from)
+    beginning.input(firstNorth, commanded.cos, from)
+    beginning.input(firstEast, commanded.sin, from)
     beginning()
 
   /** The next step begins at the moment flown to, under a command. */

@@ -13,7 +13,6 @@ private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
   private val flight      = StagedFlight(lanes, duelist.speed, startX, startY)
   private val resting     = lanes.resting
   private var isCommanded = false
-  lanes.rest(flight.state, 0)
 
   def start(worlds: Int): Unit = isCommanded = false
 

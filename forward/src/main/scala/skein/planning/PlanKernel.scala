@@ -161,7 +161,7 @@ private object PlanKernel:
         known match
           case Some((formula, call)) if formula.fits(target) => call.take(target)
           case _                                             =>
-            val formula = FixedFormula.of(target, method, alike)
+            val formula = FixedFormula.of(target, method, alike).fold(throw _, identity)
             val call    = formula.call(target)
             bind(call)
             known = Some((formula, call))

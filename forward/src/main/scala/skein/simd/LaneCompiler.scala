@@ -33,7 +33,7 @@ object LaneCompiler:
       parameters: Int = 0,
       places: Vector[(Int, Int)] = Vector.empty
   ): LaneFunction =
-    val passes  = Passes.of(outputs)
+    val passes  = Passes.of(outputs, ofRows = places.distinctBy(_._1).size < places.size)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
     val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.getOrElse(0)
     val bytes   = ClassFile

@@ -23,14 +23,22 @@ private object Passes:
   // round.
 
   /** Vector operations that one pass takes at most. */
-  private val Most = Integer.getInteger("most", 60)
+  private val Most = 50
 
   /** Constants that one pass takes at most, of 32 registers. */
-  private val MostConstants = Integer.getInteger("consts", 20)
+  private val MostConstants = 20
 
-  def of(outputs: Vector[Node]): Vector[Pass] =
-    val order = Trace.needed(outputs)
-    val fused = order.iterator
+  // The same where inputs and outputs are rows of few arrays, whose addresses leave registers: a step with
+  // drag and two lags in one pass takes 210 ns, in two 250 to 300.
+  private val MostOfRows          = 90
+  private val MostConstantsOfRows = 24
+
+  /** @param ofRows whether its inputs and outputs are rows of few arrays
+    */
+  def of(outputs: Vector[Node], ofRows: Boolean): Vector[Pass] =
+    val (most, mostConstants) = if ofRows then (MostOfRows, MostConstantsOfRows) else (Most, MostConstants)
+    val order                 = Trace.needed(outputs)
+    val fused                 = order.iterator
       .filter(_.op == Op.Add)
       .flatMap(sum => Passes.factor(sum))
       .toSet
@@ -44,7 +52,7 @@ private object Passes:
     var constants = Set.empty[Any]
     for node <- computed do
       val more = constants ++ LaneCosts.constantsOf(node)
-      if size > 0 && (size + LaneCosts.of(node) > Most || more.size > MostConstants) then
+      if size > 0 && (size + LaneCosts.of(node) > most || more.size > mostConstants) then
         number += 1
         size = 0
         constants = LaneCosts.constantsOf(node)
