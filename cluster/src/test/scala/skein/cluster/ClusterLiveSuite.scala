@@ -58,7 +58,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       news.add(one): Unit
 
     def close(): Unit =
-      Await.result(node.close(), 30.seconds)
+      // The phases of Pekko's coordinated shutdown may take a minute together where peers do not answer.
+      Await.result(node.close(), 90.seconds)
       ledger.close()
 
   private def coordinating(body: Coordinating => Unit): Unit =
