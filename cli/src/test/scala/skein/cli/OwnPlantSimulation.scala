@@ -1,41 +1,18 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
+import skein.flight.Tilting
 import skein.forecast.Structure
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
-import skein.vehicle.{ObservedPlant, PlaneReading}
-
-/** How fast a vehicle gains speed, which no reading tells. */
-final case class Leaning(seen: PlaneReading, northMps2: Double, eastMps2: Double)
-
-/** Leans before it gains speed. */
-final case class Leaner(gain: Double, lagS: Double, leanLagS: Double) extends ObservedPlant[Leaning]:
-  def initial: Leaning                                       = Leaning(PlaneReading(0, 0, 0, 0), 0, 0)
-  def stepS: Double                                          = 0.05
-  def read(state: Leaning): PlaneReading                     = state.seen
-  def corrected(state: Leaning, seen: PlaneReading): Leaning = state.copy(seen = seen)
-
-  def step(state: Leaning, northMps: Double, eastMps: Double, dtS: Double): Leaning =
-    import state.seen
-    val share = 1 - StrictMath.exp(-dtS / leanLagS)
-    val north = state.northMps2 + share * ((gain * northMps - seen.northMps) / lagS - state.northMps2)
-    val east  = state.eastMps2 + share * ((gain * eastMps - seen.eastMps) / lagS - state.eastMps2)
-    val next  = PlaneReading(
-      seen.northM + seen.northMps * dtS,
-      seen.eastM + seen.eastMps * dtS,
-      seen.northMps + north * dtS,
-      seen.eastMps + east * dtS
-    )
-    Leaning(next, north, east)
 
 /** A program with a structure of its own, as a user writes it. */
 object Leaners extends SkeinApp(Scenarios.ours.kinds*):
   override def structures: Seq[Structure] = Seq(Structure(
     "leaning",
     SearchSpace(Vector(Axis("gain", 0.1, 2, 1), Axis("lag-s", 0.2, 10, 2), Axis("lean-lag-s", 0.02, 1, 0.1))),
-    values => Leaner(values(0), values(1), values(2))
+    values => Tilting(values(0), values(1), values(2))
   ))
 
 class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:

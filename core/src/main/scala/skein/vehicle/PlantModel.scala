@@ -65,7 +65,7 @@ object PlantModel:
 
   private val Still = Vector3.Zero
 
-  private def readingOf(seen: Kinematics): PlaneReading =
+  private[skein] def readingOf(seen: Kinematics): PlaneReading =
     PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
   private def velocityOf(setpoint: Setpoint): Vector3 =

@@ -2,7 +2,6 @@ package skein.loop
 
 import skein.planning.{Planner, PredictedVehicle}
 import skein.policy.Agent
-import skein.signal.Kinematics
 import skein.vehicle.*
 import scala.util.Try
 
@@ -15,14 +14,11 @@ private final class ForeseenVehicle(val plant: ObservedPlant[?], carriesS: Doubl
   /** The vehicle as a view has it. */
   def at(view: TeamView, vehicle: Int): PredictedVehicle[?] =
     val state = view.estimates.fold(Vector.empty)(_(vehicle).state)
-    PredictedVehicle.of(plant, ForeseenVehicle.motion(view.kinematics(vehicle)), carriesS, state)
+    PredictedVehicle.of(plant, PlantModel.readingOf(view.kinematics(vehicle)), carriesS, state)
 
 private object ForeseenVehicle:
   /** For speeds of 0, m/s. */
   private val LeastMps = 0.1
-
-  def motion(seen: Kinematics): PlaneReading =
-    PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
   /** @param model by which its readings are carried forward. Of one without a plant of velocities, plans take
     *   AirSim's quadrotor at the vehicle's altitude

@@ -3,6 +3,7 @@ package skein.loop
 import skein.planning.*
 import skein.policy.Fleet
 import skein.units.*
+import skein.vehicle.PlantModel
 
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the
   * end of the horizon, and to capture it.
@@ -20,7 +21,6 @@ private final class PursuitPlanning(
     settings: PlanSettings,
     seed: Long
 ) extends Planning(fleet, self, settings, vehicles(self)):
-  import ForeseenVehicle.motion
   import Planning.straight
   private val speed  = settings.speedMps(agent.speed.value)
   private val leastM =
@@ -55,7 +55,7 @@ private final class PursuitPlanning(
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
       Behaviours.around(target(opponent, view), settings.behaviours, stream),
-      others.map(other => straight(motion(view.kinematics(other)), planner))
+      others.map(other => straight(PlantModel.readingOf(view.kinematics(other)), planner))
     )
     Part(objective, situation, stream)
 
@@ -65,7 +65,7 @@ private final class PursuitPlanning(
         val speed = fleet.agents(opponent).speed.value
         val now   = vehicles(opponent).at(view, opponent)
         Target.Opponent(now, speed, view.headingRad(opponent, fleet), policy)
-      case Left(_) => Target.Along(straight(motion(view.kinematics(opponent)), planner))
+      case Left(_) => Target.Along(straight(PlantModel.readingOf(view.kinematics(opponent)), planner))
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1 || speed < agent.speed.value
 

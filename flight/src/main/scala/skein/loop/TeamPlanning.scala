@@ -3,6 +3,7 @@ package skein.loop
 import skein.planning.*
 import skein.policy.{Fleet, GoalPolicy, TeamObservation}
 import skein.units.*
+import skein.vehicle.PlantModel
 
 /** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from
   * all others. Those that plan fly by their plans, the rest are taken to fly straight on.
@@ -17,7 +18,6 @@ private final class TeamPlanning(
     settings: PlanSettings,
     seed: Long
 ) extends Planning(fleet, self, settings, foreseen):
-  import ForeseenVehicle.motion
   import Planning.straight
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
@@ -44,7 +44,7 @@ private final class TeamPlanning(
       if minimumM == 0 then Vector.empty
       else
         Planning.unplanned(fleet, but = self).map(other =>
-          straight(motion(view.kinematics(other)), planner)
+          straight(PlantModel.readingOf(view.kinematics(other)), planner)
         )
     val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))
     val alone = Situation(

@@ -10,7 +10,7 @@ import skein.vehicle.{ObservedPlant, PlaneReading}
 final case class Tilted(seen: PlaneReading, northMps2: Double, eastMps2: Double)
 
 /** Tilts before it accelerates: a plant of a user's own. */
-final case class Tilting(lagS: Double, tiltLagS: Double) extends ObservedPlant[Tilted]:
+final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double) extends ObservedPlant[Tilted]:
   def initial: Tilted                                      = Tilted(PlaneReading(0, 0, 0, 0), 0, 0)
   def stepS: Double                                        = 0.05
   def read(state: Tilted): PlaneReading                    = state.seen
@@ -19,8 +19,8 @@ final case class Tilting(lagS: Double, tiltLagS: Double) extends ObservedPlant[T
   def step(state: Tilted, northMps: Double, eastMps: Double, dtS: Double): Tilted =
     import state.seen
     val share = 1 - StrictMath.exp(-dtS / tiltLagS)
-    val north = state.northMps2 + share * ((northMps - seen.northMps) / lagS - state.northMps2)
-    val east  = state.eastMps2 + share * ((eastMps - seen.eastMps) / lagS - state.eastMps2)
+    val north = state.northMps2 + share * ((gain * northMps - seen.northMps) / lagS - state.northMps2)
+    val east  = state.eastMps2 + share * ((gain * eastMps - seen.eastMps) / lagS - state.eastMps2)
     val moved = PlaneReading(
       seen.northM + seen.northMps * dtS,
       seen.eastM + seen.eastMps * dtS,
@@ -33,7 +33,7 @@ object Tilting:
   val structure: Structure = Structure(
     "tilting",
     SearchSpace(Vector(Axis("lag-s", 0.1, 10), Axis("tilt-lag-s", 0.02, 2))),
-    values => Tilting(values(0), values(1))
+    values => Tilting(1, values(0), values(1))
   )
 
   val predictor: PredictionModel = PredictionModel.Own(structure, Vector(2.9, 0.15))

@@ -161,18 +161,23 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
-  def clock(): EventClock                           = PieceClock(lanes)
+  def clock(): EventClock                           = PieceClock(lanes, lanes.stages.tell(lanes.plant))
 
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     PlantFlights(duelist, lanes, timing)
 
-/** How many steps end until then, and the numbers of the time since the last ([[PlantStages]]). A step begins
-  * with a command, or with the end of another.
+/** How many steps end until then, and the numbers of the time since the last. A step begins with a command,
+  * or with the end of another.
+  *
+  * @param told [[PlantStages.tell]] of the plant
+  * @param pieceS when the first begins, s
   */
-private final class PieceClock(lanes: PlantLanes) extends EventClock:
+private[lanes] final class PieceClock(
+    lanes: PlantLanes,
+    told: Double => Array[Double],
+    private var pieceS: Double = 0
+) extends EventClock:
   private val lengthS = lanes.plant.stepS
-  private val told    = lanes.stages.tell(lanes.plant)
-  private var pieceS  = 0.0
 
   def numbers: Int                                                        = 1 + lanes.stages.times
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =

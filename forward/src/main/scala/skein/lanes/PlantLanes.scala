@@ -3,17 +3,15 @@ package skein.lanes
 import java.util.Arrays
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
-import skein.vehicle.{PlaneReading, Plant}
+import skein.vehicle.{PlaneReading, Plant, PlantState}
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
 private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
-  import PlantLanes.*
-
   /** How many numbers its state is. */
   def count: Int = form.count
 
   /** What it begins with. */
-  val initial: Array[Float] = numbersOf(plant.initial).map(_.toFloat).toArray
+  val initial: Array[Float] = PlantState.numbers(plant.initial).map(_.toFloat).toArray
   if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
   /** What is read of it at rest, from where it starts. */
@@ -72,9 +70,3 @@ private[skein] object PlantLanes:
     yield PlantForm(plant, step, read)
 
   private def refused(why: Untraceable) = s"the vehicle is no formula: ${why.getMessage}"
-
-  /** A state's numbers in their order. */
-  def numbersOf(state: Any): Vector[Double] = state match
-    case number: Double   => Vector(number)
-    case several: Product => several.productIterator.flatMap(numbersOf).toVector
-    case _                => Vector.empty

@@ -132,16 +132,7 @@ private final class Common private (val nodes: Vector[Node]):
 
   /** The expressions with inputs in the place of what they have in common. */
   def without(trace: Trace, outputs: Vector[Node], input: Int => Node): Vector[Node] =
-    val made                    = mutable.HashMap.empty[Node, Node]
-    def again(node: Node): Node = made.getOrElseUpdate(
-      node,
-      numbers.get(node) match
-        case Some(number)              => input(number)
-        case None if node.args.isEmpty => node
-        case None                      => trace.again(node, node.args.map(again))
-    )
-    for node <- outputs; each <- Trace.landings(node) do again(each): Unit
-    outputs.map(again)
+    Trace.replaced(outputs, trace)(numbers.get(_).map(input))
 
 private object Common:
   /** Fewer operations are done again sooner than fetched. */

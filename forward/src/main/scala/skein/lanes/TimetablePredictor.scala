@@ -88,12 +88,10 @@ private final class DragPredictor(lanes: PlantLanes) extends TimetablePredictor:
     ReducedPropagator(lanes.plant.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))
 
   private def pieces(part: ReducedPropagator.Flown): Propagation.Part =
-    var pieceS = part.fromS
-    var pieces = 0
-    while part.untilS > pieceS + lanes.plant.stepS do
-      pieceS += lanes.plant.stepS
-      pieces += 1
-    Propagation.Part(part.decision, (pieces.toDouble +: tell(part.untilS - pieceS)).map(_.toFloat))
+    val clock   = PieceClock(lanes, tell, part.fromS)
+    val numbers = Array.ofDim[Float](clock.numbers)
+    clock.tell(part.untilS, acts = false, numbers, 0)
+    Propagation.Part(part.decision, numbers)
 
 /** Which command acts when, as [[PlantModel]] takes it: each a dead time after it has come. A command that
   * repeats the one before is a new one here, and nothing there: with drag a piece more begins.

@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.lanes.PolicyLanes
+import skein.lanes.{PlantLanes, PolicyLanes}
 import skein.policy.Policy
 import skein.simd.WorldRandom
 import skein.vehicle.Plant
@@ -237,4 +237,4 @@ object Planner:
 
   /** The same of vehicles that move by this plant. */
   def refusal(plant: Plant[?]): Option[String] =
-    if isFast then VehicleLanes.compiled(plant).left.toOption else None
+    if isFast then PlantLanes.of(plant).left.toOption else None

@@ -1,10 +1,9 @@
 package skein.planning
 
 import java.util.Arrays
-import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.lanes.PlantLanes
-import skein.vehicle.{PlaneReading, Plant, ReducedModel}
+import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 
 /** One vehicle in each candidate's world: positions, m, and velocities, m/s, north and east, at the start and
   * at the end of each step; by row, then by candidate. The start is row 0. Mutable.
@@ -73,7 +72,7 @@ private[planning] final class VehicleLanes(steps: Int):
 
   /** The state's numbers have a row for each piece of a step. */
   private final class PlantFlight(plant: Plant[?], pieces: Int, pieceS: Double) extends Flight:
-    private val lanes  = compiled(plant).fold(why => throw IllegalArgumentException(why), identity)
+    private val lanes  = PlantLanes.of(plant).fold(why => throw IllegalArgumentException(why), identity)
     private val step   = lanes.step.call
     private val read   = lanes.read.call
     private val count  = lanes.count
@@ -91,7 +90,7 @@ private[planning] final class VehicleLanes(steps: Int):
     read.input(count + 1, startY, 0)
 
     def begin(state: Any): Unit =
-      for (number, i) <- PlantLanes.numbersOf(state).zipWithIndex do
+      for (number, i) <- PlantState.numbers(state).zipWithIndex do
         Arrays.fill(states(i), 0, Size, number.toFloat)
       step.rewind()
       read.rewind()
@@ -105,18 +104,11 @@ private[planning] final class VehicleLanes(steps: Int):
       for _ <- 1 to pieces do step.next()
       read.next()
 
-private[planning] object VehicleLanes:
+private object VehicleLanes:
   private final val Size = CandidateBlock.Size
 
   /** Kept; of more, all are compiled anew. */
   private val MostPlants = 64
-
-  private val compiledPlants = ConcurrentHashMap[Plant[?], Either[String, PlantLanes]]()
-
-  /** A plant compiled, once for all threads that plan; or why it cannot be. */
-  def compiled(plant: Plant[?]): Either[String, PlantLanes] =
-    if compiledPlants.size >= MostPlants then compiledPlants.clear()
-    compiledPlants.computeIfAbsent(plant, PlantLanes.of(_))
 
   /** How a plant is flown step by step. */
   private sealed trait Flight:
