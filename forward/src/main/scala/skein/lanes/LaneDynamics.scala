@@ -46,17 +46,6 @@ private[skein] trait LaneDynamics:
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None
 
-/** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
-private[skein] trait EventClock:
-  /** How many numbers tell a time. */
-  def numbers: Int
-
-  /** The [[numbers]] that tell this time, s; never earlier than the time before.
-    *
-    * @param acts whether a command begins to act
-    */
-  def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
-
 private[skein] object LaneDynamics:
   /** @return or why this model does not fly by lanes
     */
@@ -165,29 +154,6 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
 
   private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     PlantFlights(duelist, lanes, timing)
-
-/** How many steps end until then, and the numbers of the time since the last. A step begins with a command,
-  * or with the end of another.
-  *
-  * @param told [[PlantStages.tell]] of the plant
-  * @param pieceS when the first begins, s
-  */
-private[lanes] final class PieceClock(
-    lanes: PlantLanes,
-    told: Double => Array[Double],
-    private var pieceS: Double = 0
-) extends EventClock:
-  private val lengthS = lanes.plant.stepS
-
-  def numbers: Int                                                        = 1 + lanes.stages.times
-  def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
-    var pieces = 0
-    while atS > pieceS + lengthS do
-      pieceS += lengthS
-      pieces += 1
-    into(at) = pieces.toFloat
-    for (number, i) <- told(atS - pieceS).zipWithIndex do into(at + 1 + i) = number.toFloat
-    if acts then pieceS = atS
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
 private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDynamics:

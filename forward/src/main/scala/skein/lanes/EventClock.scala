@@ -1,0 +1,35 @@
+package skein.lanes
+
+/** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
+private[skein] trait EventClock:
+  /** How many numbers tell a time. */
+  def numbers: Int
+
+  /** The [[numbers]] that tell this time, s; never earlier than the time before.
+    *
+    * @param acts whether a command begins to act
+    */
+  def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
+
+/** How many steps end until then, and the numbers of the time since the last. A step begins with a command,
+  * or with the end of another.
+  *
+  * @param told [[PlantStages.tell]] of the plant
+  * @param pieceS when the first begins, s
+  */
+private[lanes] final class PieceClock(
+    lanes: PlantLanes,
+    told: Double => Array[Double],
+    private var pieceS: Double = 0
+) extends EventClock:
+  private val lengthS = lanes.plant.stepS
+
+  def numbers: Int                                                        = 1 + lanes.stages.times
+  def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
+    var pieces = 0
+    while atS > pieceS + lengthS do
+      pieceS += lengthS
+      pieces += 1
+    into(at) = pieces.toFloat
+    for (number, i) <- told(atS - pieceS).zipWithIndex do into(at + 1 + i) = number.toFloat
+    if acts then pieceS = atS
