@@ -7,6 +7,7 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
+import scala.util.Using
 import skein.blocks.Ledger
 import skein.cluster.jars.{Acceptance, Fetched, JarStore, Sha256, Shipment}
 import skein.testing.{TemporaryFolders, Unhurried}
@@ -45,7 +46,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       port: Int = 0,
       tls: Option[Tls] = None,
       shipment: Option[Shipment] = None
-  ):
+  ) extends AutoCloseable:
     val news   = ConcurrentLinkedQueue[WorkerEvent]()
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
@@ -62,10 +63,11 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       Await.result(node.close(), 90.seconds)
       ledger.close()
 
-  private def coordinating(body: Coordinating => Unit): Unit =
-    val coordinator = Coordinating(temporaryFolder())
-    try body(coordinator)
-    finally coordinator.close()
+  /** A failure of the body is told even if closing fails, too. */
+  private def coordinating(tls: Option[Tls])(body: Coordinating => Unit): Unit =
+    Using.resource(Coordinating(temporaryFolder(), tls = tls))(body)
+
+  private def coordinating(body: Coordinating => Unit): Unit = coordinating(None)(body)
 
   private def worker(
       to: Endpoint,
@@ -193,11 +195,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     coordinating(assertUnharmed(_, None)(garbage))
 
   test("nor does it where certificates are asked for"):
-    val own         = tls(lab.head)
-    val coordinator = Coordinating(temporaryFolder(), tls = Some(own))
-    try
-      assertUnharmed(coordinator, Some(own))(garbage)
-    finally coordinator.close()
+    val own = Some(tls(lab.head))
+    coordinating(own)(assertUnharmed(_, own)(garbage))
 
   test("what a worker had that leaves is computed by another"):
     coordinating: coordinator =>
@@ -263,8 +262,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   ):
     val Vector(own, elsewhere) = lab.map(tls): @unchecked
     val strangers              = tls(Await.result(makingOthers, 60.seconds).head)
-    val coordinator            = Coordinating(temporaryFolder(), tls = Some(own))
-    try
+    coordinating(Some(own)): coordinator =>
       val to      = coordinator.node.address
       val solvers = Reversing()
       val refused =
@@ -277,7 +275,6 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         assert(clue(told).left.exists(_.startsWith("no coordinator at")))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
       anna.stop()
-    finally coordinator.close()
 
   test("a set's folders are for their owner alone, and a certificate is not made twice"):
     val folder = lab.head.getParent
