@@ -2,6 +2,7 @@ package skein.cluster
 
 import java.security.SecureRandom
 import java.util.concurrent.atomic.AtomicReference
+import java.util.concurrent.{CompletableFuture, TimeUnit}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
@@ -15,7 +16,8 @@ import org.apache.pekko.cluster.ClusterEvent.{
 import org.apache.pekko.cluster.typed.{Cluster, Down, Join, Subscribe}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
-import scala.concurrent.{Await, Future, Promise}
+import scala.concurrent.ExecutionContext.parasitic
+import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.blocks.Ledger
 import skein.cluster.jars.Shipment
@@ -26,6 +28,8 @@ final class CoordinatorNode private (
     coordinator: ActorRef[CoordinatorBehavior.Command],
     latest: AtomicReference[ClusterProgress]
 ):
+  import CoordinatorNode.MostClosing
+
   /** Where workers join. */
   val address: Endpoint =
     val own = CoordinatorNode.addressOf(system)
@@ -58,10 +62,13 @@ final class CoordinatorNode private (
   /** A worker's process is known to have ended. */
   def ended(worker: String): Unit = coordinator ! CoordinatorBehavior.Ended(worker)
 
-  /** Bids the workers goodbye and ends; the ledger is not closed. */
+  /** Bids the workers goodbye and ends, waiting no longer than [[MostClosing]]; the ledger is not closed.
+    */
   def close(): Future[Unit] =
     coordinator ! CoordinatorBehavior.Farewell
-    system.terminate().map(_ => ())(using scala.concurrent.ExecutionContext.parasitic)
+    val late    = CompletableFuture.delayedExecutor(MostClosing.toSeconds, TimeUnit.SECONDS)
+    val waiting = Future.unit.map(identity)(using ExecutionContext.fromExecutor(late))
+    Future.firstCompletedOf(Seq(system.terminate(), waiting))(using parasitic).map(_ => ())(using parasitic)
 
   /** Ends and says nothing, for tests. */
   private[cluster] def kill(): Unit =
@@ -69,6 +76,9 @@ final class CoordinatorNode private (
 
 object CoordinatorNode:
   private[cluster] val Name = "coordinator"
+
+  /** Pekko's remoting waits without a limit for the streams of its peers to end (apache/pekko#3247). */
+  private val MostClosing = 20.seconds
 
   /** Of [[CoordinatorNode.metrics]], in HTTP's words. */
   val MetricsType: String = Metrics.ContentType

@@ -59,8 +59,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       news.add(one): Unit
 
     def close(): Unit =
-      // The phases of Pekko's coordinated shutdown may take a minute together where peers do not answer.
-      Await.result(node.close(), 90.seconds)
+      Await.result(node.close(), 30.seconds)
       ledger.close()
 
   /** A failure of the body is told even if closing fails, too. */
