@@ -34,8 +34,8 @@ final class LagFlights extends LaneFlights {
 
   private final float speedMps, lagS;
 
-  LagFlights(Duelist duelist, Reduced model, FlightTiming timing) {
-    super(duelist, NUMBERS, MOST_PIECE_S, timing);
+  LagFlights(Duelist duelist, Reduced model, LoopLanes loop) {
+    super(duelist, NUMBERS, MOST_PIECE_S, loop);
     speedMps = (float) (duelist.speed() * model.gain());
     lagS = (float) Math.max(model.lagS(), LEAST_LAG_S);
   }

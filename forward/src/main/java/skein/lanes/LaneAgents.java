@@ -1,7 +1,6 @@
 package skein.lanes;
 
 import static jdk.incubator.vector.VectorOperators.ASHR;
-import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LSHL;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
@@ -16,17 +15,16 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
 import skein.forward.Delays;
-import skein.forward.Duelist;
 import skein.forward.Steering;
 import skein.simd.WorldRandom;
 
 /**
- * The vehicles of one role in many worlds, and their controllers, as {@code skein.flow.Pace} and
- * {@code skein.flow.Steer} let them: when each decides upon what it was offered, and when its command
- * acts. Times are told in grains of 4 ns from the period's begin, and kept from the episode's begin,
+ * One vehicle in many worlds, and its controllers, as {@code skein.flow.Pace} and {@code
+ * skein.flow.Steer} let them: when each decides upon what it was offered, and when its command acts. A
+ * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept from the episode's begin,
  * modulo 2³²: what is long past is drawn near again before it would be taken for the future.
  */
-final class LaneAgents {
+abstract class LaneAgents {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
 
   /** A second or so, in grains: 2 to a power. */
@@ -37,85 +35,93 @@ final class LaneAgents {
   /** In the place of how long ago it decided: never. */
   private static final int NEVER = 1 << 20;
 
+  /** The vehicle's number. */
+  final int self;
+
   final LaneVehicles vehicles;
-  final LanePolicy policy;
-  private final int self, line, periodGrains, intervalGrains, handoverGrains, deadGrains;
-  private final float startHeading;
-  private final boolean decidesFirst, together;
+  private final int line, periodGrains, intervalGrains, handoverGrains, deadGrains;
+  private final boolean decidesFirst;
 
-  // When it may be commanded again, when the last command reaches it, and when that was sent.
-  private final int[] ready = new int[WORLDS], reaches = new int[WORLDS], sentAt = new int[WORLDS];
+  /** Whether all are offered the same at the same time: then all that was sent was sent before. */
+  final boolean together;
 
-  // When it decides, and when it sends; NONE where it does not. When the command acts.
-  private final int[] decides = new int[WORLDS], sends = new int[WORLDS], acts = new int[WORLDS];
+  // When it may be commanded again, and when the last command reaches it.
+  private final int[] ready = new int[WORLDS], reaches = new int[WORLDS];
+
+  /** When the last command was sent; not kept where all are offered the same {@link #together}. */
+  final int[] sentAt = new int[WORLDS];
+
+  /** When it decides, from the period's begin; {@link LaneOffers#NONE} where it does not. */
+  final int[] decides = new int[WORLDS];
+
+  // When it sends, or NONE, and when the command acts.
+  private final int[] sends = new int[WORLDS], acts = new int[WORLDS];
+
+  /** From the own last decision to this one, s. */
+  final float[] elapsedS = new float[WORLDS];
 
   /** When it decided last; and how often {@link #LONG} passed besides, or {@link #NEVER}. */
   private final int[] decidedAt = new int[WORLDS], decidedLong = new int[WORLDS];
 
   /** When the period began. */
-  private int now;
+  int now;
 
   private final int[] drawn = new int[2 * LANES];
-  private final LaneObservation observation = new LaneObservation();
 
-  /** What was sent last and before that, what was decided last, and what is now. */
+  /** Directions commanded, or velocities over the vehicles' speed: what was sent last, and before that. */
   final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
 
-  private final Directions known = new Directions(WORLDS), decidedNow = new Directions(WORLDS);
-
-  /** That which is sent, unless what waits is the decision. */
-  private final Directions decided;
-
-  /** The sum of the decided headings' changes. */
-  private final float[] effort;
+  /** What was decided last: that which is sent, unless what waits is the decision; and what is now. */
+  final Directions decided, decidedNow = new Directions(WORLDS);
 
   /**
-   * @param self 0 for the evader, 1 for the pursuer
-   * @param intervalS between two decisions, or between two commands if it decides first
-   * @param decidesFirst whether it decides at every offer, and what waits is the decision
-   * @param together whether the opponent is offered the same at the same time: then all that it has sent
-   *     was sent before
    * @param deadTimeS from a command's arrival until the vehicle follows it
-   * @param effort where the sums of the decided headings' changes go, rad
    */
-  LaneAgents(
-      int self,
-      Duelist duelist,
-      double periodS,
-      Steering steering,
-      double intervalS,
-      boolean decidesFirst,
-      boolean together,
-      double deadTimeS,
-      LaneVehicles vehicles,
-      LanePolicy policy,
-      float[] effort) {
+  LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
     this.self = self;
     this.vehicles = vehicles;
-    this.policy = policy;
-    this.effort = effort;
-    this.decidesFirst = decidesFirst;
-    this.together = together;
+    decidesFirst = loop.decidesFirst();
+    together = loop.offers().together;
     decided = decidesFirst ? new Directions(WORLDS) : sent;
     line = Delays.command(self);
-    startHeading = (float) duelist.startHeadingRad();
-    periodGrains = LaneViews.grains(periodS);
-    intervalGrains = LaneViews.grains(Math.max(intervalS, steering.minIntervalS()));
+    Steering steering = loop.steering();
+    periodGrains = LaneViews.grains(loop.periodS());
+    intervalGrains = LaneViews.grains(Math.max(loop.intervalS(), steering.minIntervalS()));
     handoverGrains = LaneViews.grains(steering.handoverS());
     deadGrains = LaneViews.grains(deadTimeS);
   }
 
+  /** Back to the start of an episode; what was sent and decided before it, the kind of agents fills in. */
   void start() {
     now = 0;
     for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
     Arrays.fill(sentAt, -1);
     Arrays.fill(decidedLong, NEVER);
-    Arrays.fill(effort, 0f);
-    for (Directions each : new Directions[] {sent, sentBefore, decided})
-      each.fill(0, WORLDS, startHeading);
-    policy.start(startHeading);
     vehicles.start();
   }
+
+  /** Whether decisions look at velocities. */
+  abstract boolean needsVelocity();
+
+  /** Whether decisions ask how old readings are. */
+  boolean needsAges() {
+    return false;
+  }
+
+  /**
+   * Decides, in all worlds: {@link #decidedNow}.
+   *
+   * @param all by the vehicle's number, with what is read of their vehicles
+   * @param readAt by vehicle, when the readings held were taken; for those that {@link #needsAges ask}
+   */
+  abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
+
+  /**
+   * What was chosen is remembered where {@link #decides} is a time.
+   *
+   * @param endGrains of the episode
+   */
+  abstract void remember(LaneVectors vectors, int endGrains);
 
   /** To a period; they are taken in turn. */
   void startRow(int row) {
@@ -136,47 +142,10 @@ final class LaneAgents {
     }
   }
 
-  /**
-   * Decide where it is their turn.
-   *
-   * @param readAt by vehicle, when the readings held were taken; for policies that ask for ages
-   */
-  void decide(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
+  /** Decide where it is their turn, as {@link #choose}. */
+  final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(vectors, offers.joinedAt, offers.nextAt);
-    see(LaneObservation.X, opponents, LaneVehicles.SEEN_X);
-    see(LaneObservation.Y, opponents, LaneVehicles.SEEN_Y);
-    if (policy.needsVelocity()) {
-      see(LaneObservation.VX, opponents, LaneVehicles.SEEN_VX);
-      see(LaneObservation.VY, opponents, LaneVehicles.SEEN_VY);
-    }
-    if (policy.needsAges()) {
-      age(readAt[self], observation.ownAge);
-      age(readAt[1 - self], observation.opponentAge);
-    }
-    if (!together) know(opponents, vectors, offers.joinedAt);
-    policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
-  }
-
-  /** What the opponent sends after the offer was made is not known in it. */
-  private void know(LaneAgents opponents, LaneVectors vectors, int[] joinedAt) {
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      VectorMask<Float> isKnown =
-          IntVector.fromArray(INTS, opponents.sentAt, i)
-              .sub(now)
-              .compare(LE, IntVector.fromArray(INTS, joinedAt, i))
-              .cast(SPECIES);
-      FloatVector.fromArray(SPECIES, opponents.sentBefore.cos, i)
-          .blend(FloatVector.fromArray(SPECIES, opponents.sent.cos, i), isKnown)
-          .intoArray(known.cos, i);
-      FloatVector.fromArray(SPECIES, opponents.sentBefore.sin, i)
-          .blend(FloatVector.fromArray(SPECIES, opponents.sent.sin, i), isKnown)
-          .intoArray(known.sin, i);
-    }
-  }
-
-  private void see(int what, LaneAgents opponents, int from) {
-    observation.see(what, opponents.vehicles.state, from, vehicles.state, from);
+    choose(all, offers, vectors, readAt);
   }
 
   /** When each decides and sends. */
@@ -206,18 +175,8 @@ final class LaneAgents {
       zero.blend(
               ((FloatVector) many.convertShape(VectorOperators.I2F, SPECIES, 0)).fma(longS, rest),
               many.compare(LT, never).cast(SPECIES))
-          .intoArray(observation.elapsed, i);
+          .intoArray(elapsedS, i);
     }
-  }
-
-  private void age(int[] readAt, float[] into) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      ((FloatVector)
-              IntVector.fromArray(INTS, decides, i)
-                  .sub(IntVector.fromArray(INTS, readAt, i))
-                  .convertShape(VectorOperators.I2F, SPECIES, 0))
-          .mul(LaneViews.GRAIN_S)
-          .intoArray(into, i);
   }
 
   /**
@@ -225,16 +184,17 @@ final class LaneAgents {
    *
    * @param endGrains of the episode
    */
-  void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
-    send(LaneDelays.placeOf(row) + line * WorldRandom.STRIDE, offers.delays, offers.place[self], vectors, endGrains);
+  final void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
+    int place = LaneDelays.placeOf(row) + LaneDelays.placeOfLine(line);
+    send(place, offers.delays, offers.place[self], vectors);
     if (vectors.count * LANES < WORLDS) forget(vectors);
-    policy.rememberBefore(decides, 0, NONE);
+    remember(vectors, endGrains);
     vehicles.act(row, vectors, acts, sent);
   }
 
   /** Draws its delays in the same pass: a look into a table takes as long as a dozen other operations. */
-  private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors, int endGrains) {
-    int[] keys = delays.keys, tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
+  private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors) {
+    int[] keys = delays.keysOf(line), tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
     IntVector here = IntVector.broadcast(INTS, place),
         next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
         multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
@@ -245,8 +205,7 @@ final class LaneAgents {
         dead = IntVector.broadcast(INTS, deadGrains),
         begin = IntVector.broadcast(INTS, now),
         never = IntVector.broadcast(INTS, NEVER / 2),
-        zero = IntVector.broadcast(INTS, 0),
-        end = IntVector.broadcast(INTS, endGrains);
+        zero = IntVector.broadcast(INTS, 0);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
@@ -289,14 +248,8 @@ final class LaneAgents {
         FloatVector.fromArray(SPECIES, decided.cos, i).blend(newCos, deciding).intoArray(decided.cos, i);
         FloatVector.fromArray(SPECIES, decided.sin, i).blend(newSin, deciding).intoArray(decided.sin, i);
       }
-      FloatVector.fromArray(SPECIES, policy.heading, i)
-          .blend(FloatVector.fromArray(SPECIES, policy.newHeading, i), deciding)
-          .intoArray(policy.heading, i);
       before.blend(zero, does).intoArray(decidedLong, i);
       IntVector.fromArray(INTS, decidedAt, i).blend(time.add(begin), does).intoArray(decidedAt, i);
-      FloatVector.fromArray(SPECIES, effort, i)
-          .add(FloatVector.fromArray(SPECIES, policy.turned, i), time.compare(LT, end).cast(SPECIES))
-          .intoArray(effort, i);
     }
   }
 

@@ -22,7 +22,13 @@ final class LaneDelays {
   static final int DROP = DelayTable.Drop();
 
   /** {@link WorldRandom#key} of each world. */
-  int[] keys;
+  private int[] keys;
+
+  /** By {@link Delays#Lines}, and for which start they hold: the keys of further pairs of vehicles. */
+  private int[][] pairKeys = new int[1][];
+
+  private int[] madeAt = new int[1];
+  private int starts = 0;
 
   /** The delays of all links, one table after the other; and where each world's begins. */
   int[] delays = new int[DelayTable.Size()];
@@ -33,6 +39,7 @@ final class LaneDelays {
 
   void start(int[] worldKeys, DelayTable[] links) {
     keys = worldKeys;
+    starts++;
     int count = 0;
     for (int i = 0; i < WORLDS; i++) {
       int table = i > 0 && links[i] == links[i - 1] ? tableOf[i - 1] / DelayTable.Size() : count;
@@ -50,6 +57,27 @@ final class LaneDelays {
     tableCount = Math.max(tableCount, count);
   }
 
+  /** By world, the key of the sequence that a line's delays come from, as {@link Delays#keyOf}. */
+  int[] keysOf(int line) {
+    int pair = line / Delays.Lines();
+    if (pair == 0) return keys;
+    if (pair >= pairKeys.length) {
+      pairKeys = Arrays.copyOf(pairKeys, 2 * pair);
+      madeAt = Arrays.copyOf(madeAt, 2 * pair);
+    }
+    if (madeAt[pair] != starts) {
+      if (pairKeys[pair] == null) pairKeys[pair] = new int[WORLDS];
+      for (int i = 0; i < WORLDS; i++) pairKeys[pair][i] = Delays.keyOf(keys[i], line);
+      madeAt[pair] = starts;
+    }
+    return pairKeys[pair];
+  }
+
+  /** Where a line's random numbers are in those of a step. */
+  static int placeOfLine(int line) {
+    return line % Delays.Lines() * WorldRandom.STRIDE;
+  }
+
   /** Where the random numbers of a step begin. */
   static int placeOf(int step) {
     return step * Delays.Lines() * WorldRandom.STRIDE;
@@ -59,7 +87,8 @@ final class LaneDelays {
 
   /** The delays of a line at places of each world's own. */
   void draw(LaneVectors vectors, int[] places, int line, int[] into) {
-    IntVector there = IntVector.broadcast(INTS, line * WorldRandom.STRIDE);
+    int[] keys = keysOf(line);
+    IntVector there = IntVector.broadcast(INTS, placeOfLine(line));
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector.fromArray(INTS, keys, i)
@@ -72,7 +101,8 @@ final class LaneDelays {
 
   /** The delays of a line at one place of all worlds. */
   void draw(int place, int line, int[] into) {
-    IntVector there = IntVector.broadcast(INTS, place + line * WorldRandom.STRIDE);
+    int[] keys = keysOf(line);
+    IntVector there = IntVector.broadcast(INTS, place + placeOfLine(line));
     for (int i = 0; i < WORLDS; i += LANES)
       IntVector.fromArray(INTS, keys, i).add(there).intoArray(into, i);
     look(ALL, into);

@@ -66,11 +66,11 @@ abstract class LaneFlights extends LaneVehicles {
    * @param own numbers of a piece that the kind of vehicle has from {@link #PIECE_OWN} on
    * @param pieceS how long a piece lasts at most, no longer than {@link #MOST_PIECE_S}
    */
-  LaneFlights(Duelist duelist, int own, double pieceS, FlightTiming timing) {
+  LaneFlights(Duelist duelist, int own, double pieceS, LoopLanes loop) {
     super(duelist, 0);
     size = PIECE_OWN + own * WORLDS;
-    keptRows = timing.keptRows();
-    periodGrains = LaneViews.grains(timing.loop().periodS());
+    keptRows = loop.keptRows();
+    periodGrains = LaneViews.grains(loop.periodS());
     pieceGrains = LaneViews.grains(pieceS);
     begins = new int[slots * WORLDS];
     rowOf = new int[slots];

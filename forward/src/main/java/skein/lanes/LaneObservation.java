@@ -31,12 +31,20 @@ final class LaneObservation {
   final int[] opponentAt = new int[READ], ownAt = new int[READ];
 
   /** Since the own last decision, s. */
-  final float[] elapsed = new float[WORLDS];
+  final float[] elapsed;
 
   /** How old the readings are, s; kept only for policies that ask for it. */
   final float[] ownAge = new float[WORLDS], opponentAge = new float[WORLDS];
 
   LaneObservation() {
+    this(new float[WORLDS]);
+  }
+
+  /**
+   * @param elapsed kept by who observes
+   */
+  LaneObservation(float[] elapsed) {
+    this.elapsed = elapsed;
     Arrays.fill(opponent, ZEROS);
     Arrays.fill(own, ZEROS);
   }

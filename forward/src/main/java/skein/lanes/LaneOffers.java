@@ -8,7 +8,7 @@ import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 
 /**
- * What the controllers of two vehicles are offered to decide upon, in many worlds: under each loop
+ * What the controllers of vehicles are offered to decide upon, in many worlds: under each loop
  * another order of the same messages. Nothing of it depends on what is decided, so it is told ahead.
  * The reference are the loops of {@code Rollout}.
  *
@@ -20,36 +20,42 @@ import skein.forward.DelayTable;
 abstract class LaneOffers {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Who is offered something in a beat. */
-  static final int EVADER = 0, PURSUER = 1, BOTH = 2;
+  /** In the place of a vehicle: everyone. */
+  static final int ALL = -1;
 
   /** In the place of a time: none. */
   static final int NONE = LaneViews.NONE;
 
   final LaneDelays delays;
 
-  /** Whether every offer is made to both. */
+  final int vehicles;
+
+  /** Whether every offer is made to all. */
   final boolean together;
 
   /** So many periods behind the present one, a beat may have offers of. */
   final int rowsAhead;
 
   /** Whose beat it is. */
-  int whose = BOTH;
+  int whose = ALL;
 
   /** The beat's offers: when each is made ({@link #NONE} in worlds without), and when the next one is. */
   int[] joinedAt, nextAt;
 
   /** By vehicle: when it was read. */
-  final int[][] sampledAt = new int[2][];
+  final int[][] sampledAt;
 
   /** By vehicle: 1 where the reading is another than before; null where they all are. */
-  final int[][] fresh = new int[2][];
+  final int[][] fresh;
 
   /** By agent: the step that its command belongs to, in places of the random sequence from the period's. */
-  final int[][] place = new int[2][];
+  final int[][] place;
 
-  LaneOffers(LaneDelays delays, boolean together, int rowsAhead) {
+  LaneOffers(int vehicles, LaneDelays delays, boolean together, int rowsAhead) {
+    this.vehicles = vehicles;
+    sampledAt = new int[vehicles][];
+    fresh = new int[vehicles][];
+    place = new int[vehicles][];
     this.together = together;
     this.rowsAhead = rowsAhead;
     this.delays = delays;
@@ -62,6 +68,11 @@ abstract class LaneOffers {
 
   /** To the next beat of the period, if it has one. */
   abstract boolean nextBeat();
+
+  /** Whether the beat's offers are made to a vehicle's controller. */
+  final boolean isFor(int vehicle) {
+    return whose == ALL || whose == vehicle;
+  }
 
   /** Whether some world's time comes before another. */
   static boolean isBefore(int[] times, int time) {

@@ -9,14 +9,16 @@ import static skein.simd.LaneMath.LANES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
 import skein.forward.DelayTable;
+import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.Nanos;
 import skein.simd.WorldRandom;
 
 /**
  * The views of many worlds under the {@code stream} loop, row by row: row m has the view of
- * questions m. Nearly always both are answered before anything of the next row, which is looked
+ * questions m. Nearly always all are answered before anything of the next row, which is looked
  * after here by lanes; where it is not so, the world's views come one by one from a {@link
  * ViewSource} until it is so again. Then a row may have no view of a world, or several: so a
  * row has one or more beats, with at most one view each.
@@ -26,7 +28,7 @@ import skein.simd.WorldRandom;
  */
 final class LaneViews {
   static final int WORLDS = LanePolicy.WORLDS;
-  private static final int VEHICLES = 2;
+  final int vehicles;
 
   private static final int GRAIN_NS = DelayTable.GrainNs();
 
@@ -64,12 +66,12 @@ final class LaneViews {
 
   final LaneDelays delays = new LaneDelays();
 
-  // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and both
+  // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and all
   // are back; the same of the next row's answers.
-  private final int[][][] reached = new int[ROWS][VEHICLES][WORLDS];
+  private final int[][][] reached;
   private final int[][] first = new int[ROWS][WORLDS],
-      both = new int[ROWS][WORLDS],
-      nextBoth = new int[ROWS][WORLDS];
+      last = new int[ROWS][WORLDS],
+      nextLast = new int[ROWS][WORLDS];
 
   private final int[] drawn = new int[4 * LANES];
 
@@ -87,8 +89,8 @@ final class LaneViews {
   // The beat's views: when each is joined, when the world's next one is; what its readings were
   // asked as, in places from the row's; when they were taken.
   int[] joinedAt, nextAt;
-  final int[][] place = new int[VEHICLES][WORLDS];
-  int[][] sampledAt = new int[VEHICLES][];
+  final int[][] place;
+  int[][] sampledAt;
 
   /** Whether a world has no view in this beat, or one with an old reading. */
   boolean hasOld;
@@ -97,7 +99,7 @@ final class LaneViews {
   private boolean hasOther;
 
   /** 1 where the beat's view has a reading of the vehicle that the view before had not. */
-  final int[][] isFresh = new int[VEHICLES][WORLDS];
+  final int[][] isFresh;
 
   private int row;
 
@@ -106,14 +108,18 @@ final class LaneViews {
 
   private boolean more;
 
-  LaneViews(LoopTiming.Stream timing, double durationS, boolean shortCut) {
+  LaneViews(LoopTiming.Stream timing, int vehicles, double durationS, boolean shortCut) {
+    this.vehicles = vehicles;
+    reached = new int[ROWS][vehicles][WORLDS];
+    place = new int[vehicles][WORLDS];
+    isFresh = new int[vehicles][WORLDS];
     this.mayCut = shortCut;
     periodNs = Nanos.of(timing.periodS());
     ahead = Math.min(MOST_AHEAD, timing.asking().window());
     periodGrains = grains(timing.periodS());
     patienceGrains = grains(timing.patienceS());
     latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
-    for (int i = 0; i < WORLDS; i++) sources[i] = new ViewSource(timing, durationS, ahead);
+    for (int i = 0; i < WORLDS; i++) sources[i] = new ViewSource(timing, vehicles, durationS, ahead);
   }
 
   static int grains(double seconds) {
@@ -148,7 +154,8 @@ final class LaneViews {
    * now.
    */
   private void ask(int step) {
-    answer(LaneDelays.placeOf(step), step % ROWS, (step + ROWS - 1) % ROWS);
+    for (int vehicle = 0; vehicle < vehicles; vehicle += 2)
+      answer(vehicle, LaneDelays.placeOf(step), step % ROWS, (step + ROWS - 1) % ROWS);
     if (step > 0) {
       lookedAt = step;
       for (int i = 0; i < irregularLanes.length; i++)
@@ -159,9 +166,15 @@ final class LaneViews {
     }
   }
 
-  private void answer(int place, int slot, int slotBefore) {
+  /**
+   * The same of a vehicle and the next one, if there is one: delays of a pair come from one sequence, and a
+   * look into a table takes as long as a dozen other operations, which go on meanwhile.
+   */
+  private void answer(int vehicle, int place, int slot, int slotBefore) {
+    boolean isFirst = vehicle == 0, isLast = vehicle + 2 >= vehicles, isAlone = vehicle + 1 == vehicles;
+    int other = isAlone ? vehicle : vehicle + 1;
     int[][] to = reached[slot], toBefore = reached[slotBefore];
-    int[] keys = delays.keys, tableOf = delays.tableOf, table = delays.delays;
+    int[] keys = delays.keysOf(Delays.question(0, vehicle)), tableOf = delays.tableOf, table = delays.delays;
     IntVector place0 = IntVector.broadcast(INTS, place),
         place1 = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
         place2 = IntVector.broadcast(INTS, place + 2 * WorldRandom.STRIDE),
@@ -187,24 +200,34 @@ final class LaneViews {
       b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
       c.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 2 * LANES);
       d.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 3 * LANES);
-      IntVector toEvader = IntVector.fromArray(INTS, table, 0, drawn, 0),
-          evader = IntVector.fromArray(INTS, table, 0, drawn, LANES).add(toEvader),
-          toPursuer = IntVector.fromArray(INTS, table, 0, drawn, 2 * LANES),
-          pursuer = IntVector.fromArray(INTS, table, 0, drawn, 3 * LANES).add(toPursuer);
-      toEvader.intoArray(to[0], i);
-      toPursuer.intoArray(to[1], i);
-      IntVector soonest = evader.min(pursuer), last = evader.max(pursuer);
+      IntVector toOne = IntVector.fromArray(INTS, table, 0, drawn, 0),
+          one = IntVector.fromArray(INTS, table, 0, drawn, LANES).add(toOne),
+          toTwo = isAlone ? toOne : IntVector.fromArray(INTS, table, 0, drawn, 2 * LANES),
+          two = isAlone ? one : IntVector.fromArray(INTS, table, 0, drawn, 3 * LANES).add(toTwo);
+      toOne.intoArray(to[vehicle], i);
+      toTwo.intoArray(to[other], i);
+      IntVector soonest = one.min(two), slowest = one.max(two);
+      VectorMask<Integer> overtakes =
+          IntVector.fromArray(INTS, toBefore[vehicle], i)
+              .compare(GE, toOne.add(period))
+              .or(IntVector.fromArray(INTS, toBefore[other], i).compare(GE, toTwo.add(period)));
+      if (!isFirst) {
+        soonest = soonest.min(IntVector.fromArray(INTS, first[slot], i));
+        slowest = slowest.max(IntVector.fromArray(INTS, last[slot], i));
+      }
       soonest.intoArray(first[slot], i);
-      last.intoArray(both[slot], i);
-      last.add(period).intoArray(nextBoth[slotBefore], i);
-      IntVector end = IntVector.fromArray(INTS, both[slotBefore], i);
-      irregularLanes[i / LANES] =
-          end.compare(GE, soonest.add(period))
-              .or(end.sub(IntVector.fromArray(INTS, first[slotBefore], i)).compare(GE, patience))
-              .or(latest.compare(LT, end))
-              .or(IntVector.fromArray(INTS, toBefore[0], i).compare(GE, toEvader.add(period)))
-              .or(IntVector.fromArray(INTS, toBefore[1], i).compare(GE, toPursuer.add(period)))
-              .toLong();
+      slowest.intoArray(last[slot], i);
+      long irregular = isFirst ? 0 : irregularLanes[i / LANES];
+      if (isLast) {
+        slowest.add(period).intoArray(nextLast[slotBefore], i);
+        IntVector end = IntVector.fromArray(INTS, last[slotBefore], i);
+        overtakes =
+            end.compare(GE, soonest.add(period))
+                .or(end.sub(IntVector.fromArray(INTS, first[slotBefore], i)).compare(GE, patience))
+                .or(latest.compare(LT, end))
+                .or(overtakes);
+      }
+      irregularLanes[i / LANES] = irregular | overtakes.toLong();
     }
   }
 
@@ -240,12 +263,12 @@ final class LaneViews {
   /** Whether {@link #ask} found nothing irregular, in one world. */
   private boolean isRegular(int world, int step) {
     int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
-    int end = both[step % ROWS][world];
+    int end = last[step % ROWS][world];
+    for (int v = 0; v < vehicles; v++)
+      if (to[v][world] >= nextTo[v][world] + periodGrains) return false;
     return end < first[(step + 1) % ROWS][world] + periodGrains
         && end - first[step % ROWS][world] < patienceGrains
-        && end <= latestGrains
-        && to[0][world] < nextTo[0][world] + periodGrains
-        && to[1][world] < nextTo[1][world] + periodGrains;
+        && end <= latestGrains;
   }
 
   /** To the first beat of a row; rows are taken in turn, from 0. */
@@ -253,17 +276,15 @@ final class LaneViews {
     row = number;
     ask(row + ahead);
     int slot = row % ROWS;
-    joinedAt = both[slot];
-    nextAt = nextBoth[slot];
-    sampledAt[0] = reached[slot][0];
-    sampledAt[1] = reached[slot][1];
+    joinedAt = last[slot];
+    nextAt = nextLast[slot];
+    sampledAt = reached[slot];
     if (hasOther) for (int[] places : place) Arrays.fill(places, 0);
     hasOther = false;
     hasOld = false;
     more = irregularCount > 0;
     if (more) {
-      Arrays.fill(isFresh[0], 1);
-      Arrays.fill(isFresh[1], 1);
+      for (int[] each : isFresh) Arrays.fill(each, 1);
       irregularBeat(true);
     }
   }
@@ -272,8 +293,7 @@ final class LaneViews {
   boolean nextBeat() {
     if (!more) return false;
     Arrays.fill(joinedAt, NONE);
-    Arrays.fill(isFresh[0], 0);
-    Arrays.fill(isFresh[1], 0);
+    for (int[] each : isFresh) Arrays.fill(each, 0);
     hasOld = true;
     return irregularBeat(false);
   }
@@ -301,8 +321,7 @@ final class LaneViews {
         }
       } else if (isFirst && irregularFrom[world] <= row) {
         joinedAt[world] = NONE;
-        isFresh[0][world] = 0;
-        isFresh[1][world] = 0;
+        for (int[] each : isFresh) each[world] = 0;
         hasOld = true;
       } else if (isFirst) nextAt[world] = fromTick(source.joinedAt);
       if (hasNext[world]) irregular[kept++] = world;
@@ -313,7 +332,7 @@ final class LaneViews {
 
   private void put(int world, ViewSource source) {
     joinedAt[world] = fromTick(source.joinedAt);
-    for (int v = 0; v < VEHICLES; v++) {
+    for (int v = 0; v < vehicles; v++) {
       int at = fromTick(source.sampledAt[v]);
       sampledAt[v][world] = at;
       place[v][world] = LaneDelays.placeOf(source.question[v]) - LaneDelays.placeOf(row);

@@ -32,8 +32,8 @@ final class PlantFlights extends LaneFlights {
   /** Of velocities that nobody asks for. */
   private final float[] unread = new float[2 * WORLDS];
 
-  PlantFlights(Duelist duelist, PlantLanes lanes, FlightTiming timing) {
-    super(duelist, lanes.count(), lanes.plant().stepS(), timing);
+  PlantFlights(Duelist duelist, PlantLanes lanes, LoopLanes loop) {
+    super(duelist, lanes.count(), lanes.plant().stepS(), loop);
     this.lanes = lanes;
     speedMps = (float) duelist.speed();
     stepS = (float) lanes.plant().stepS();

@@ -16,7 +16,7 @@ import skein.forward.LoopTiming;
 import skein.simd.WorldRandom;
 
 /**
- * The rounds of the {@code sequential} loop: one vehicle is asked after the other, both are offered
+ * The rounds of the {@code sequential} loop: one vehicle is asked after the other, all are offered
  * what was read at the last answer. A round whose question failed offers nothing.
  */
 final class SequentialOffers extends LaneOffers {
@@ -35,25 +35,29 @@ final class SequentialOffers extends LaneOffers {
 
   // The next two rounds that succeed, by world: when they end, when the vehicles are read, places.
   private final int[] end = new int[WORLDS], laterEnd = new int[WORLDS];
-  private final int[][] read = new int[2][WORLDS], laterRead = new int[2][WORLDS];
+  private final int[][] read, laterRead;
   private final int[] places = new int[WORLDS], laterPlaces = new int[WORLDS];
 
-  private final int[][] drawn = new int[4][WORLDS];
-  private final int[][] beatRead = new int[2][WORLDS];
+  /** By vehicle: the delays of its question and of the answer, in turn. */
+  private final int[][] drawn;
+
   private final int[] beatPlaces = new int[WORLDS];
   private int rowPlace;
 
   /** In which some world looks for its next round. */
   private final LaneVectors searching = new LaneVectors();
 
-  SequentialOffers(LoopTiming.Sequential timing) {
-    super(new LaneDelays(), true, (int) (AHEAD_S / timing.periodS()));
+  SequentialOffers(LoopTiming.Sequential timing, int vehicles) {
+    super(vehicles, new LaneDelays(), true, (int) (AHEAD_S / timing.periodS()));
+    read = new int[vehicles][WORLDS];
+    laterRead = new int[vehicles][WORLDS];
+    drawn = new int[2 * vehicles][WORLDS];
     periodGrains = LaneViews.grains(timing.periodS());
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     joinedAt = new int[WORLDS];
     nextAt = new int[WORLDS];
-    for (int v = 0; v < 2; v++) {
-      sampledAt[v] = beatRead[v];
+    for (int v = 0; v < vehicles; v++) {
+      sampledAt[v] = new int[WORLDS];
       place[v] = beatPlaces;
     }
   }
@@ -79,8 +83,8 @@ final class SequentialOffers extends LaneOffers {
           IntVector time = IntVector.fromArray(INTS, each, i);
           time.sub(period, time.compare(NE, none)).intoArray(each, i);
         }
-        for (int[] each : new int[][] {read[0], read[1], laterRead[0], laterRead[1]})
-          IntVector.fromArray(INTS, each, i).sub(period).intoArray(each, i);
+        for (int[][] reads : new int[][][] {read, laterRead})
+          for (int[] each : reads) IntVector.fromArray(INTS, each, i).sub(period).intoArray(each, i);
       }
       find();
     }
@@ -97,8 +101,7 @@ final class SequentialOffers extends LaneOffers {
       VectorMask<Integer> due = ends.compare(LT, horizon);
       none.blend(ends, due).intoArray(joinedAt, i);
       IntVector.fromArray(INTS, laterEnd, i).intoArray(nextAt, i);
-      IntVector.fromArray(INTS, read[0], i).intoArray(beatRead[0], i);
-      IntVector.fromArray(INTS, read[1], i).intoArray(beatRead[1], i);
+      for (int v = 0; v < vehicles; v++) IntVector.fromArray(INTS, read[v], i).intoArray(sampledAt[v], i);
       IntVector.fromArray(INTS, places, i).sub(here).intoArray(beatPlaces, i);
       ends.blend(none, due).intoArray(end, i);
     }
@@ -109,7 +112,10 @@ final class SequentialOffers extends LaneOffers {
   /** Fills up what each world knows of its next two rounds. */
   private void find() {
     while (shift()) {
-      for (int line = 0; line < 4; line++) delays.draw(searching, tickPlace, line, drawn[line]);
+      for (int v = 0; v < vehicles; v++) {
+        delays.draw(searching, tickPlace, Delays.question(0, v), drawn[2 * v]);
+        delays.draw(searching, tickPlace, Delays.answer(0, v), drawn[2 * v + 1]);
+      }
       flyRound();
     }
   }
@@ -126,7 +132,7 @@ final class SequentialOffers extends LaneOffers {
         ends.blend(later, over).intoArray(end, i);
         later = later.blend(NONE, over);
         later.intoArray(laterEnd, i);
-        for (int v = 0; v < 2; v++)
+        for (int v = 0; v < vehicles; v++)
           IntVector.fromArray(INTS, read[v], i)
               .blend(IntVector.fromArray(INTS, laterRead[v], i), over)
               .intoArray(read[v], i);
@@ -153,19 +159,17 @@ final class SequentialOffers extends LaneOffers {
           begin = IntVector.fromArray(INTS, tick, i),
           at = IntVector.fromArray(INTS, tickPlace, i);
       VectorMask<Integer> searches = later.compare(EQ, none).and(begin.compare(LT, horizon));
-      IntVector there = IntVector.fromArray(INTS, drawn[0], i),
-          first = IntVector.fromArray(INTS, drawn[1], i).add(there),
-          thereToo = IntVector.fromArray(INTS, drawn[2], i),
-          second = IntVector.fromArray(INTS, drawn[3], i).add(thereToo);
-      VectorMask<Integer> fails = first.compare(GT, timeout), failsToo = second.compare(GT, timeout);
-      IntVector middle = begin.add(first.min(timeout));
-      IntVector over = middle.add(second.min(timeout)).blend(middle, fails);
-      VectorMask<Integer> found = searches.andNot(fails.or(failsToo));
+      IntVector over = begin;
+      VectorMask<Integer> found = searches;
+      for (int v = 0; v < vehicles; v++) {
+        IntVector there = IntVector.fromArray(INTS, drawn[2 * v], i),
+            back = IntVector.fromArray(INTS, drawn[2 * v + 1], i).add(there);
+        // Once a question has failed, its round is over; what it read is written over by a later one.
+        IntVector.fromArray(INTS, laterRead[v], i).blend(over.add(there), found).intoArray(laterRead[v], i);
+        over = over.add(back.min(timeout), found);
+        found = found.andNot(back.compare(GT, timeout));
+      }
       later.blend(over, found).intoArray(laterEnd, i);
-      IntVector.fromArray(INTS, laterRead[0], i).blend(begin.add(there), found).intoArray(laterRead[0], i);
-      IntVector.fromArray(INTS, laterRead[1], i)
-          .blend(middle.add(thereToo), found)
-          .intoArray(laterRead[1], i);
       IntVector.fromArray(INTS, laterPlaces, i).blend(at, found).intoArray(laterPlaces, i);
       begin.blend(over.add(period), searches).intoArray(tick, i);
       at.add(step, searches).intoArray(tickPlace, i);

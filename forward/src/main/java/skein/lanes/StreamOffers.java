@@ -3,17 +3,17 @@ package skein.lanes;
 import skein.forward.DelayTable;
 import skein.forward.LoopTiming;
 
-/** The views of the {@code stream} loop, offered to both vehicles at once. */
+/** The views of the {@code stream} loop, offered to all vehicles at once. */
 final class StreamOffers extends LaneOffers {
   private final LaneViews views;
   private boolean isFirst;
 
-  StreamOffers(LoopTiming.Stream timing, double durationS, boolean shortCut) {
-    this(new LaneViews(timing, durationS, shortCut));
+  StreamOffers(LoopTiming.Stream timing, int vehicles, double durationS, boolean shortCut) {
+    this(new LaneViews(timing, vehicles, durationS, shortCut));
   }
 
   private StreamOffers(LaneViews views) {
-    super(views.delays, true, 0);
+    super(views.vehicles, views.delays, true, 0);
     this.views = views;
   }
 
@@ -34,7 +34,7 @@ final class StreamOffers extends LaneOffers {
     isFirst = false;
     joinedAt = views.joinedAt;
     nextAt = views.nextAt;
-    for (int v = 0; v < 2; v++) {
+    for (int v = 0; v < vehicles; v++) {
       sampledAt[v] = views.sampledAt[v];
       fresh[v] = views.hasOld ? views.isFresh[v] : null;
       place[v] = views.place[v];

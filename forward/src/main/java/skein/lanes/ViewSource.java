@@ -7,7 +7,7 @@ import skein.forward.Nanos;
 import skein.signal.Stamped;
 
 /**
- * The views of one world of two vehicles under the {@code stream} loop, one after the other, with
+ * The views of one world under the {@code stream} loop, one after the other, with
  * all that can happen to questions: overtaken, late, failed, held back by a full window. No view
  * depends on what is decided, so they can be told ahead. {@code StreamRun} is the reference; of
  * things that happen in the same nanosecond answers come first here.
@@ -19,64 +19,72 @@ final class ViewSource {
   /** Questions of one vehicle that may be under way: more than any window allows. */
   private static final int RING = 32;
 
-  private static final int VEHICLES = 2;
   static final long NEVER = Long.MAX_VALUE;
 
   private final long periodNs, timeoutNs, patienceNs, endNs;
-  private final int window, ahead;
+  private final int vehicles, window, ahead;
   private int key;
   private DelayTable link;
 
   // Of each vehicle: the next tick, whether a question waits, how many were asked, how many of them
   // are under way, none older than which, the newest that was answered.
-  private final int[] tick = new int[VEHICLES],
-      asked = new int[VEHICLES],
-      oldest = new int[VEHICLES],
-      underWay = new int[VEHICLES],
-      newest = new int[VEHICLES],
-      told = new int[VEHICLES];
-  private final boolean[] waits = new boolean[VEHICLES];
+  private final int[] tick, asked, oldest, underWay, newest, told;
+  private final boolean[] waits;
 
   // Of each vehicle's questions: when they end (NEVER: they have), whether with an answer, the tick
   // that they belong to, when they were sent and when they reach the vehicle.
-  private final long[][] endsAt = new long[VEHICLES][RING],
-      sentAt = new long[VEHICLES][RING],
-      reachesAt = new long[VEHICLES][RING];
-  private final boolean[][] succeeds = new boolean[VEHICLES][RING];
-  private final int[][] tickOf = new int[VEHICLES][RING];
+  private final long[][] endsAt, sentAt, reachesAt;
+  private final boolean[][] succeeds;
+  private final int[][] tickOf;
 
   // Of each vehicle: the reading held.
-  private final boolean[] known = new boolean[VEHICLES], renewed = new boolean[VEHICLES];
-  private final long[] toldAt = new long[VEHICLES];
-  private final long[] validAt = new long[VEHICLES], receivedAt = new long[VEHICLES];
+  private final boolean[] known, renewed;
+  private final long[] toldAt, validAt, receivedAt;
   private long patienceEnds;
 
   // The view told last: when, of which questions, asked at which ticks, which reached the vehicles
   // when; ns.
   long joinedAt;
-  final int[] question = new int[VEHICLES], askedAtTick = new int[VEHICLES];
-  final long[] sampledAt = new long[VEHICLES];
+  final int[] question;
+  private final int[] askedAtTick;
+  final long[] sampledAt;
 
   /** Whether the view before had another reading of the vehicle. */
-  final boolean[] isFresh = new boolean[VEHICLES];
+  final boolean[] isFresh;
 
-  /**
-   * Whether the view told last is that of its row's questions, and nothing older is left behind
-   * it.
-   */
+  /** Whether the view told last is that of its row's questions, and nothing older is left behind it. */
   boolean isRegular;
 
-  /**
-   * The later of the ticks at which the view's questions were asked, or that of the view
-   * before.
-   */
+  /** The latest of the ticks at which the view's questions were asked, or that of the view before. */
   int row;
 
   /**
    * @param ahead rows within which the questions of a regular view are answered
    */
-  ViewSource(LoopTiming.Stream timing, double durationS, int ahead) {
+  ViewSource(LoopTiming.Stream timing, int vehicles, double durationS, int ahead) {
+    this.vehicles = vehicles;
     this.ahead = ahead;
+    tick = new int[vehicles];
+    asked = new int[vehicles];
+    oldest = new int[vehicles];
+    underWay = new int[vehicles];
+    newest = new int[vehicles];
+    told = new int[vehicles];
+    waits = new boolean[vehicles];
+    endsAt = new long[vehicles][RING];
+    sentAt = new long[vehicles][RING];
+    reachesAt = new long[vehicles][RING];
+    succeeds = new boolean[vehicles][RING];
+    tickOf = new int[vehicles][RING];
+    known = new boolean[vehicles];
+    renewed = new boolean[vehicles];
+    toldAt = new long[vehicles];
+    validAt = new long[vehicles];
+    receivedAt = new long[vehicles];
+    question = new int[vehicles];
+    askedAtTick = new int[vehicles];
+    sampledAt = new long[vehicles];
+    isFresh = new boolean[vehicles];
     periodNs = Nanos.of(timing.periodS());
     timeoutNs = Nanos.of(timing.asking().timeoutS());
     patienceNs = Nanos.of(timing.patienceS());
@@ -91,7 +99,7 @@ final class ViewSource {
     patienceEnds = NEVER;
     row = first - 1;
     isRegular = false;
-    for (int v = 0; v < VEHICLES; v++) {
+    for (int v = 0; v < vehicles; v++) {
       tick[v] = first;
       asked[v] = first;
       oldest[v] = first;
@@ -116,7 +124,7 @@ final class ViewSource {
     while (!joined) {
       int vehicle = -1, number = -1;
       long end = NEVER;
-      for (int v = 0; v < VEHICLES; v++)
+      for (int v = 0; v < vehicles; v++)
         if (underWay[v] > 0)
           for (int q = oldest[v]; q < asked[v]; q++)
             if (endsAt[v][q % RING] < end) {
@@ -124,7 +132,8 @@ final class ViewSource {
               vehicle = v;
               number = q;
             }
-      int ticking = tick[1] < tick[0] ? 1 : 0;
+      int ticking = 0;
+      for (int v = 1; v < vehicles; v++) if (tick[v] < tick[ticking]) ticking = v;
       long tickAt = tick[ticking] * periodNs;
       long now = Math.min(end, Math.min(patienceEnds, tickAt));
       if (now > endNs) {
@@ -196,18 +205,23 @@ final class ViewSource {
     receivedAt[vehicle] = now;
     question[vehicle] = number;
     askedAtTick[vehicle] = tickOf[vehicle][at];
-    if (!known[0] || !known[1]) return false;
-    if (renewed[0] && renewed[1]) return true;
+    if (!all(known)) return false;
+    if (all(renewed)) return true;
     if (patienceEnds == NEVER) patienceEnds = now + patienceNs;
     return false;
+  }
+
+  private static boolean all(boolean[] each) {
+    for (boolean one : each) if (!one) return false;
+    return true;
   }
 
   private void join(long now) {
     patienceEnds = NEVER;
     joinedAt = now;
-    row = Math.max(row, Math.max(askedAtTick[0], askedAtTick[1]));
+    for (int at : askedAtTick) row = Math.max(row, at);
     isRegular = now < (row + ahead) * periodNs;
-    for (int v = 0; v < VEHICLES; v++) {
+    for (int v = 0; v < vehicles; v++) {
       isFresh[v] = renewed[v];
       renewed[v] = false;
       sampledAt[v] = validAt[v];

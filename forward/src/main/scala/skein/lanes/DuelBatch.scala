@@ -105,7 +105,7 @@ final class DuelBatch(
 
   /** Why worlds with delays of their own do not fly by lanes over a link this slow. */
   private def refusal(maxDelayS: Double): Option[String] =
-    plant.fold(Some(_), kind => Option(LoopDuelKernel.refusal(timing, maxDelayS, kind)))
+    plant.fold(Some(_), LoopLanes.refusal(timing, 2, maxDelayS, _))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =

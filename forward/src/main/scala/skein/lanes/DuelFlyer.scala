@@ -130,7 +130,7 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
     extends LaneFlyer(other):
 
   protected def canFly(link: Delays): Boolean = link match
-    case table: DelayTable => LoopDuelKernel.refusal(timing, table.maxS, model) == null
+    case table: DelayTable => LoopLanes.refusal(timing, 2, table.maxS, model).isEmpty
     case _                 => false
 
   protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
@@ -147,7 +147,14 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
       protected def kernel: LoopDuelKernel =
         kernels.getOrElseUpdate(
           slowestS,
-          LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders, asked)
+          LoopDuelKernel(
+            duel,
+            LoopLanes(timing, 2, duel.durationS, slowestS),
+            model,
+            pursuers,
+            evaders,
+            asked
+          )
         )
 
       protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =

@@ -41,7 +41,7 @@ private[skein] trait LaneDynamics:
   def fliesAlone: Boolean = true
 
   /** All worlds' vehicles of one role, whose commands act at times of their own. */
-  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles
+  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles
 
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None
@@ -120,14 +120,14 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
 
-  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
-    timing.loop match
+  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
+    loop.timing match
       // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
       case stream: LoopTiming.Stream
-          if stream.periodS >= LagDynamics.LeastPeriodS && LagVehicles.canFly(model, timing.longestS) =>
+          if stream.periodS >= LagDynamics.LeastPeriodS && LagVehicles.canFly(model, loop.longestS) =>
         val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
-        LagVehicles(duelist, model, stream.periodS, timing.longestS, earliestS)
-      case _ => LagFlights(duelist, model, timing)
+        LagVehicles(duelist, model, stream.periodS, loop.longestS, earliestS)
+      case _ => LagFlights(duelist, model, loop)
 
   def clock(): EventClock = new EventClock:
     private var actedS                                                      = 0.0
@@ -152,8 +152,8 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
   def clock(): EventClock                           = PieceClock(lanes, lanes.stages.tell(lanes.plant))
 
-  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
-    PlantFlights(duelist, lanes, timing)
+  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
+    PlantFlights(duelist, lanes, loop)
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
 private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDynamics:
@@ -165,7 +165,7 @@ private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDyna
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
 
   override def fliesAlone: Boolean                                                 = false
-  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
+  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
     throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
 
   def clock(): EventClock = new EventClock:

@@ -218,8 +218,15 @@ private[skein] object DuelAgreement:
     val links    = worlds.map(link)
     val slowestS = links.map(_.maxS).max
     val vehicles = LaneDynamics.of(model, duel).fold(munit.Assertions.fail(_), identity)
-    munit.Assertions.assertEquals(LoopDuelKernel.refusal(timing, slowestS, vehicles), null)
-    val kernel = LoopDuelKernel(duel, timing, vehicles, slowestS, lanes(1), lanes(0), DuelNumber.all)
+    munit.Assertions.assertEquals(LoopLanes.refusal(timing, 2, slowestS, vehicles), None)
+    val kernel = LoopDuelKernel(
+      duel,
+      LoopLanes(timing, 2, duel.durationS, slowestS),
+      vehicles,
+      lanes(1),
+      lanes(0),
+      DuelNumber.all
+    )
     kernel.fly(worlds.map(key), links, captureM)
     DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
 

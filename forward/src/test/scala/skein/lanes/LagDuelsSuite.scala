@@ -39,13 +39,11 @@ class LagDuelsSuite extends munit.FunSuite:
     val duel = Duel.paper.copy(durationS = durationS)
     LoopDuelKernel(
       duel,
-      LoopTiming.Stream(),
+      LoopLanes(LoopTiming.Stream(), 2, durationS, MaxDelayS, shortCut),
       vehicles(lag),
-      MaxDelayS,
       pursuers,
       evaders,
-      DuelNumber.all,
-      shortCut
+      DuelNumber.all
     )
 
   private val some = 0 until worlds by 3
@@ -117,8 +115,8 @@ class LagDuelsSuite extends munit.FunSuite:
 
     test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
       assertEquals(
-        LoopDuelKernel.refusal(LoopTiming.stream(0.1), link.maxS, vehicles(lag)),
-        null,
+        LoopLanes.refusal(LoopTiming.stream(0.1), 2, link.maxS, vehicles(lag)),
+        None,
         s"up to ${link.maxS} s"
       )
       agreement(link, 10).check(s"$meanMs ms and $jitterMs ms of jitter", some)

@@ -1,0 +1,121 @@
+package skein.lanes;
+
+import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import jdk.incubator.vector.VectorOperators;
+import skein.forward.Duelist;
+
+/** One side of a duel in many worlds with delays of their own: 0 is the evader, 1 the pursuer. */
+final class LoopDuelAgents extends LaneAgents {
+  private static final int WORLDS = LanePolicy.WORLDS;
+
+  private final LanePolicy policy;
+  private final float startHeading;
+
+  /** The sum of the decided headings' changes, rad. */
+  private final float[] effort;
+
+  private final LaneObservation observation = new LaneObservation(elapsedS);
+  private final Directions known = new Directions(WORLDS);
+
+  /**
+   * @param effort where the sums of the decided headings' changes go, rad
+   */
+  LoopDuelAgents(
+      int self, Duelist duelist, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
+    super(self, loop, model.deadTimeS(), model.flights(duelist, loop));
+    this.policy = policy;
+    this.effort = effort;
+    startHeading = (float) duelist.startHeadingRad();
+  }
+
+  @Override
+  void start() {
+    super.start();
+    Arrays.fill(effort, 0f);
+    for (Directions each : new Directions[] {sent, sentBefore, decided}) each.fill(0, WORLDS, startHeading);
+    policy.start(startHeading);
+  }
+
+  @Override
+  boolean needsVelocity() {
+    return policy.needsVelocity();
+  }
+
+  @Override
+  boolean needsAges() {
+    return policy.needsAges();
+  }
+
+  @Override
+  void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
+    LaneAgents opponents = all[1 - self];
+    see(LaneObservation.X, opponents, LaneVehicles.SEEN_X);
+    see(LaneObservation.Y, opponents, LaneVehicles.SEEN_Y);
+    if (policy.needsVelocity()) {
+      see(LaneObservation.VX, opponents, LaneVehicles.SEEN_VX);
+      see(LaneObservation.VY, opponents, LaneVehicles.SEEN_VY);
+    }
+    if (policy.needsAges()) {
+      age(readAt[self], observation.ownAge);
+      age(readAt[1 - self], observation.opponentAge);
+    }
+    if (!together) know(opponents, vectors, offers.joinedAt);
+    policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
+  }
+
+  private void see(int what, LaneAgents opponents, int from) {
+    observation.see(what, opponents.vehicles.state, from, vehicles.state, from);
+  }
+
+  /** What the opponent sends after the offer was made is not known in it. */
+  private void know(LaneAgents opponents, LaneVectors vectors, int[] joinedAt) {
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> isKnown =
+          IntVector.fromArray(INTS, opponents.sentAt, i)
+              .sub(now)
+              .compare(LE, IntVector.fromArray(INTS, joinedAt, i))
+              .cast(SPECIES);
+      FloatVector.fromArray(SPECIES, opponents.sentBefore.cos, i)
+          .blend(FloatVector.fromArray(SPECIES, opponents.sent.cos, i), isKnown)
+          .intoArray(known.cos, i);
+      FloatVector.fromArray(SPECIES, opponents.sentBefore.sin, i)
+          .blend(FloatVector.fromArray(SPECIES, opponents.sent.sin, i), isKnown)
+          .intoArray(known.sin, i);
+    }
+  }
+
+  private void age(int[] readAt, float[] into) {
+    for (int i = 0; i < WORLDS; i += INTS.length())
+      ((FloatVector)
+              IntVector.fromArray(INTS, decides, i)
+                  .sub(IntVector.fromArray(INTS, readAt, i))
+                  .convertShape(VectorOperators.I2F, SPECIES, 0))
+          .mul(LaneViews.GRAIN_S)
+          .intoArray(into, i);
+  }
+
+  @Override
+  void remember(LaneVectors vectors, int endGrains) {
+    policy.rememberBefore(decides, 0, LaneOffers.NONE);
+    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE), end = IntVector.broadcast(INTS, endGrains);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector time = IntVector.fromArray(INTS, decides, i);
+      FloatVector.fromArray(SPECIES, policy.heading, i)
+          .blend(FloatVector.fromArray(SPECIES, policy.newHeading, i), time.compare(LT, none).cast(SPECIES))
+          .intoArray(policy.heading, i);
+      FloatVector.fromArray(SPECIES, effort, i)
+          .add(FloatVector.fromArray(SPECIES, policy.turned, i), time.compare(LT, end).cast(SPECIES))
+          .intoArray(effort, i);
+    }
+  }
+}
