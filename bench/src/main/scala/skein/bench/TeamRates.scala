@@ -72,6 +72,7 @@ object TeamRates:
 
   private final class Worlds(candidates: Vector[TeamCandidate], episodes: Int, from: Int) extends TeamWorlds:
     def size: Int                            = candidates.size * episodes
+    override def shareEpisodes: Boolean      = true
     def key(world: Int): Int                 = TeamRates.key(from + world / candidates.size)
     def link(world: Int): Delays             = DelayTable.vpn
     def candidate(world: Int): TeamCandidate = candidates(world % candidates.size)

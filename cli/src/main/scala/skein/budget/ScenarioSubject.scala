@@ -3,9 +3,9 @@ package skein.budget
 import java.util.concurrent.atomic.AtomicLong
 import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
-import skein.lanes.{TeamBatch, TeamCandidate}
+import skein.lanes.{TeamBatch, TeamCandidate, TeamOutcomes, TeamWorlds}
 import skein.loop.LoopKind
-import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective}
+import skein.optimise.{RunningStats, TeamObjective}
 import skein.scenario.{Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
@@ -63,26 +63,42 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
   private val candidate =
     TeamCandidate(plane, TeamObjective.judged(question.objective.measures, durationS, periodMs * 1e-3))
 
-  private def fly(timing: LoopTiming, link: DelayTable, episodes: Int, isCancelled: () => Boolean) =
-    TeamEvaluator(batch(timing), _ => candidate, link, question.objective.terms.map(_._1), question.seed)
-      .talliesUnless(isCancelled)(Vector(Vector.empty), 0 until episodes)
-      .map(_.head)
-      .toRight(BudgetSubject.Stopped)
+  private def batch(timing: LoopTiming, threads: Int) = TeamBatch(timing, flown.vehicle.response, threads)
+
+  private val cells = batch(flown.timing, question.threads)
 
   def truth: Either[String, Double] =
-    fly(flown.paused.timing, DelayTable.none, 1, () => false).map(_.mean)
+    val paused = batch(flown.paused.timing, 1).fly(Worlds(Vector(DelayTable.none), 1))
+    Right(value(paused, 0))
 
-  private def batch(timing: LoopTiming) =
-    TeamBatch(timing, flown.vehicle.response, question.threads, areShared = false)
+  def engine(links: Vector[LatencyDistribution]): String =
+    cells.engine(candidate, shareEpisodes = false, links.map(DelayTable.of))
 
-  def engine(links: Vector[LatencyDistribution]): String = batch(flown.timing).engine(candidate)
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int =
+    if cells.fliesByLanes(candidate, shareEpisodes = false, links.map(DelayTable.of)) then 300 else 10
 
-  def cellEpisodes(links: Vector[LatencyDistribution]): Int = 10
+  def tallies(asked: BudgetCells): Either[String, Vector[RunningStats]] =
+    import asked.{episodes, links}
+    val worlds   = Worlds(links.map(DelayTable.of), episodes)
+    val outcomes = cells.fly(worlds, asked.onProgress(_), asked.isCancelled)
+    Either.cond(
+      outcomes.flown == worlds.size,
+      Vector.tabulate(links.size)(link =>
+        RunningStats.of(episodes)(episode => value(outcomes, link * episodes + episode))
+      ),
+      BudgetSubject.Stopped
+    )
 
-  def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
-    Expect.each(cells.links.zipWithIndex): (link, number) =>
-      cells.onProgress(number.toLong * cells.episodes)
-      fly(flown.timing, DelayTable.of(link), cells.episodes, cells.isCancelled)
+  private def value(outcomes: TeamOutcomes, world: Int) =
+    question.objective.terms.zip(outcomes.values).map((term, values) => term._1 * values(world)).sum
+
+  private final class Worlds(links: Vector[DelayTable], each: Int) extends TeamWorlds:
+    private val tables                       = links.toArray
+    private val keys                         = Array.tabulate(each)(WorldRandom.key(question.seed, 0, _))
+    def size: Int                            = tables.length * each
+    def key(world: Int): Int                 = keys(world % each)
+    def link(world: Int): DelayTable         = tables(world / each)
+    def candidate(world: Int): TeamCandidate = TeamSubject.this.candidate
 
 /** Whatever its measures are: each is taken of a whole flight.
   *

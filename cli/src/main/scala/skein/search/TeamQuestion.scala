@@ -213,13 +213,19 @@ final case class TeamSetup(
   private def batch(of: Conditions.Resolved, threads: Int) =
     TeamBatch(of.timing, of.vehicle.response, threads)
 
-  def judges(threads: Int): Judge => ValueEvaluator =
-    val same = flownBy match
-      case TeamEngine.Reduced(conditions, delays) =>
-        val weights = objective.terms.map(_._1)
-        TeamEvaluator(batch(conditions, threads), candidate, delays, weights, question.seed)
-      case TeamEngine.Whole(flights, _) => WholeFlightEvaluator(flights, scenario, objective, threads)
-    _ => same
+  def judges(threads: Int): Judge => ValueEvaluator = flownBy match
+    case TeamEngine.Reduced(conditions, delays) =>
+      val weights               = objective.terms.map(_._1)
+      val flown                 = batch(conditions, threads)
+      def judge(share: Boolean) = TeamEvaluator(flown, candidate, delays, weights, question.seed, share)
+      val (shared, own)         = (judge(true), judge(false))
+      judge => if share(judge) then shared else own
+    case TeamEngine.Whole(flights, _) =>
+      val same = WholeFlightEvaluator(flights, scenario, objective, threads)
+      _ => same
+
+  /** Whether candidates meet the same episodes: of few, each world flies faster by itself. */
+  private def share(judge: Judge) = judge == Judge.Candidates
 
   def measured(
       by: Judge => Evaluator,
@@ -236,20 +242,16 @@ final case class TeamSetup(
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
   def engine(candidate: Vector[Double], judge: Judge): String = flownBy match
-    case _: TeamEngine.Reduced =>
-      val team = this.candidate(candidate)
-      val told = asked.engine(team)
-      if judge == Judge.Candidates || !asked.fliesByLanes(team) then told
-      else s"$told, after a scalar flight of each episode, which makes its timetable"
-    case TeamEngine.Whole(flights, _) => flights.engine
+    case TeamEngine.Reduced(_, delays) => asked.engine(this.candidate(candidate), share(judge), Seq(delays))
+    case TeamEngine.Whole(flights, _)  => flights.engine
 
   override def rate(threads: Int): Option[String] = flownBy match
     case _: TeamEngine.Reduced        => None
     case TeamEngine.Whole(flights, _) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
   def byLanes: Boolean = flownBy match
-    case _: TeamEngine.Reduced => asked.fliesByLanes(candidate(space.defaults))
-    case _: TeamEngine.Whole   => false
+    case TeamEngine.Reduced(_, delays) => asked.fliesByLanes(candidate(space.defaults), true, Seq(delays))
+    case _: TeamEngine.Whole           => false
 
   /** Is asked what flies, of every candidate, and flies nothing; where teams fly by measures of quantities.
     */

@@ -158,7 +158,14 @@ final case class LearnSetup(
     case team: LearnGame.OfTeam =>
       val batch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
       def evaluator(of: Vector[Double] => Fleet) =
-        TeamEvaluator(batch, candidate(team, of), delays, team.objective.terms.map(_._1), question.seed)
+        TeamEvaluator(
+          batch,
+          candidate(team, of),
+          delays,
+          team.objective.terms.map(_._1),
+          question.seed,
+          shareEpisodes = false
+        )
       val own     = evaluator(_ => team.scenario.fleet)
       val learned = evaluator(PolicyFile(role, family, _).flownIn(team.scenario.fleet))
       judge => if judge == Judge.Baseline then own else learned

@@ -36,6 +36,9 @@ abstract class LaneOffers {
   /** So many periods behind the present one, a beat may have offers of. */
   final int rowsAhead;
 
+  /** How many beats there were. */
+  int beat;
+
   /** Whose beat it is. */
   int whose = ALL;
 

@@ -35,22 +35,27 @@ abstract class LaneVehicles {
   final float[] state;
 
   private final float[] kept = new float[4 * WORLDS];
-  private final float startX, startY;
+  private final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
   /**
    * @param own numbers of each world that the kind of vehicle keeps from {@link #OWN} on
    */
   LaneVehicles(Duelist duelist, int own) {
     state = new float[OWN + own * WORLDS];
-    startX = (float) duelist.startX();
-    startY = (float) duelist.startY();
+    for (int world = 0; world < WORLDS; world++) place(world, duelist);
+  }
+
+  /** Takes where a world's vehicle starts from now on. */
+  final void place(int world, Duelist duelist) {
+    startX[world] = (float) duelist.startX();
+    startY[world] = (float) duelist.startY();
   }
 
   /** Back to the start of an episode, where they rest. */
   void start() {
     Arrays.fill(state, 0f);
-    for (int x : new int[] {X, SEEN_X}) Arrays.fill(state, x, x + WORLDS, startX);
-    for (int y : new int[] {Y, SEEN_Y}) Arrays.fill(state, y, y + WORLDS, startY);
+    for (int x : new int[] {X, SEEN_X}) System.arraycopy(startX, 0, state, x, WORLDS);
+    for (int y : new int[] {Y, SEEN_Y}) System.arraycopy(startY, 0, state, y, WORLDS);
   }
 
   /**

@@ -69,6 +69,7 @@ final class LoopKernel {
       offers.startRow(row);
       boolean isScored = row == 0;
       while (offers.nextBeat()) {
+        offers.beat++;
         vectors.take(offers.joinedAt, LaneOffers.NONE);
         for (LaneAgents each : agents) read(row, each);
         // Reading them has flown the vehicles to the row's begin, if that is their way.

@@ -1,11 +1,13 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.EQ;
 import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
 
+import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
@@ -14,7 +16,7 @@ import skein.vehicle.Plant;
 
 /**
  * Vehicles that move by a {@link Plant}, whose commands act at times of their own in each world. A
- * piece is a step: of it the state at its begin is kept, and the command, which is no direction until
+ * piece is a step: of it the state at its begin is kept, and the command, which is no number until
  * there was one; the vehicle rests then. The scalar reference is {@code skein.forward.PlantVehicle}.
  */
 final class PlantFlights extends LaneFlights {
@@ -54,6 +56,7 @@ final class PlantFlights extends LaneFlights {
   @Override
   void rest(float[] pieces) {
     lanes.rest(pieces, STATE);
+    Arrays.fill(pieces, ALONG_X, ALONG_X + WORLDS, Float.NaN);
   }
 
   @Override
@@ -83,9 +86,8 @@ final class PlantFlights extends LaneFlights {
   }
 
   private VectorMask<Float> flies(int i, FloatVector dt) {
-    FloatVector alongX = FloatVector.fromArray(SPECIES, chosen, ALONG_X + i),
-        alongY = FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i);
-    return dt.compare(GT, 0f).and(alongX.abs().add(alongY.abs()).compare(GT, 0f));
+    FloatVector along = FloatVector.fromArray(SPECIES, chosen, ALONG_X + i);
+    return dt.compare(GT, 0f).and(along.compare(EQ, along));
   }
 
   private void keepOthers() {

@@ -82,30 +82,19 @@ final class DuelBatch(
       case Left(_) if isStepped => "vehicles side by side; their loops by the scalar engine"
       case Left(reason)         => s"scalar: $reason"
       case Right(lanes)         =>
-        val refused = refusals(shares(shareEpisodes), links)
-        if refused.isEmpty then s"SIMD, $lanes"
-        else if refused.size == links.size then s"scalar: ${refused.head}"
-        else
-          s"SIMD, $lanes, over ${links.size - refused.size} of " +
-            s"${links.size} links; scalar over the others: ${refused.head}"
+        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _)))
 
   /** Whether all worlds of these policies fly by lanes, over any of the links. */
   def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
-    lanesOf(pursuer, evader, shares(shareEpisodes)).isRight && refusals(shares(shareEpisodes), links).isEmpty
+    lanesOf(pursuer, evader, shares(shareEpisodes)).isRight &&
+      links.forall(refusal(shares(shareEpisodes), _).isEmpty)
 
-  /** Why no lanes fly over links, for each link over which none do. */
-  private def refusals(shareEpisodes: Boolean, links: Seq[Delays]): Seq[String] = model match
-    case _ if sees && !shareEpisodes         => links.map(_ => SeesAlone)
-    case _: QuadrotorResponse                => Nil
-    case _ if shareEpisodes && lanes.isRight => Nil
-    case _                                   =>
-      links.flatMap:
-        case table: DelayTable => refusal(table.maxS)
-        case _ => Some("worlds of their own fly by lanes where a link's delays do not come in stretches")
-
-  /** Why worlds with delays of their own do not fly by lanes over a link this slow. */
-  private def refusal(maxDelayS: Double): Option[String] =
-    plant.fold(Some(_), LoopLanes.refusal(timing, 2, maxDelayS, _))
+  /** Why no lanes fly over a link. */
+  private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] = model match
+    case _ if sees && !shareEpisodes         => Some(SeesAlone)
+    case _: QuadrotorResponse                => None
+    case _ if shareEpisodes && lanes.isRight => None
+    case _                                   => plant.fold(Some(_), LoopLanes.refusal(timing, 2, link, _))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
@@ -122,7 +111,7 @@ final class DuelBatch(
         case _ if shareEpisodes && lanes.isLeft => Left(lanes.left.toOption.get)
         case _                                  =>
           // Refused over the fastest link, it is over any.
-          refusal(0).toLeft(s"$each worlds at a time")
+          refusal(shareEpisodes, DelayTable.none).toLeft(s"$each worlds at a time")
 
   /** Flies all worlds, unless it is cancelled.
     *

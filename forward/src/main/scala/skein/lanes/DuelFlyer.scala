@@ -129,43 +129,23 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
 private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamics, other: DuelFlyer)
     extends LaneFlyer(other):
 
-  protected def canFly(link: Delays): Boolean = link match
-    case table: DelayTable => LoopLanes.refusal(timing, 2, table.maxS, model).isEmpty
-    case _                 => false
+  protected def canFly(link: Delays): Boolean = LoopLanes.refusal(timing, 2, link, model).isEmpty
 
   protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
     new Lanes(pursuer, evader, asked):
       private val keys    = Array.ofDim[Int](batch)
       private val links   = Array.ofDim[DelayTable](batch)
-      private val kernels = collection.mutable.HashMap.empty[Double, LoopDuelKernel]
+      private val kernels = BySlowest: maxDelayS =>
+        val loop = LoopLanes(timing, 2, duel.durationS, maxDelayS)
+        LoopDuelKernel(duel, loop, model, pursuers, evaders, asked)
 
-      // One for links about as slow: how far a loop is looked ahead depends on it, and no result does.
-      private def slowestS: Double =
-        val slowest = links.iterator.map(_.maxS).max
-        Iterator.iterate(LoopFlyer.FastestS)(_ * 1.4).find(_ >= slowest).get
-
-      protected def kernel: LoopDuelKernel =
-        kernels.getOrElseUpdate(
-          slowestS,
-          LoopDuelKernel(
-            duel,
-            LoopLanes(timing, 2, duel.durationS, slowestS),
-            model,
-            pursuers,
-            evaders,
-            asked
-          )
-        )
+      protected def kernel: LoopDuelKernel = kernels(links)
 
       protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
         keys(lane) = worlds.key(world)
         links(lane) = worlds.link(world).asInstanceOf[DelayTable]
 
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
-
-private object LoopFlyer:
-  /** One-way, s. */
-  private val FastestS = 0.02
 
 /** By [[TimetableKernel]]. All worlds of a batch have one key and one link, or meet no delays. */
 private final class TimetableFlyer(

@@ -164,7 +164,7 @@ private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDyna
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
 
-  override def fliesAlone: Boolean                                                 = false
+  override def fliesAlone: Boolean                                            = false
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
     throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
 

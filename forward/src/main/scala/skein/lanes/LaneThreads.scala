@@ -11,6 +11,19 @@ private[skein] object LaneSupport:
   ):
     "the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
 
+  /** Which engine flies over links, in a line for the user.
+    *
+    * @param lanes what flies by lanes
+    * @param refusals by link, why no lanes fly over it
+    */
+  def told(lanes: String, refusals: Seq[Option[String]]): String =
+    val refused = refusals.flatten
+    if refused.isEmpty then s"SIMD, $lanes"
+    else if refused.size == refusals.size then s"scalar: ${refused.head}"
+    else
+      s"SIMD, $lanes, over ${refusals.size - refused.size} of ${refusals.size} links; " +
+        s"scalar over the others: ${refused.head}"
+
 /** Hands batches of worlds out to workers, each on a thread of its own: a worker keeps its arrays from batch
   * to batch, and is asked between them whether to go on.
   */

@@ -1,6 +1,7 @@
 package skein.lanes
 
-import skein.forward.{LoopTiming, Steering}
+import scala.collection.mutable
+import skein.forward.{DelayTable, Delays, LoopTiming, Steering}
 import skein.port.Moves
 import skein.units.Expect
 
@@ -41,8 +42,8 @@ private[lanes] final class LoopLanes(
   /** A command is under way for so long at most, s. */
   def longestS: Double = 2 * LoopLanes.MostS
 
-  /** Periods before, of which a reading may ask for the flight: those from a reading to its decision, and from
-    * the decision before that to when its command acts.
+  /** Periods before, of which a reading may ask for the flight: those from a reading to its decision, and
+    * from the decision before that to when its command acts.
     */
   val keptRows: Int =
     val kept = LoopLanes.readingS(timing, vehicles, maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5
@@ -52,8 +53,8 @@ private[lanes] object LoopLanes:
   /** Times stay within what integers of grains can hold. */
   private val MostS = 3.5
 
-  /** Of which tasks may be under way. */
-  private val MostTaskS = 3.5
+  /** Of all questions of a round or task, each taking as long as it may. */
+  private val MostInTurnS = 3.5
 
   /** From the first reading of a view to its decision. */
   private def readingS(timing: LoopTiming, vehicles: Int, maxDelayS: Double): Double =
@@ -62,11 +63,18 @@ private[lanes] object LoopLanes:
       case _                    => vehicles
     inTurn * LoopTiming.askingOf(timing).timeoutS.min(2 * maxDelayS)
 
-  /** Why this loop does not fly over a link by lanes, for a person.
-    *
-    * @param maxDelayS the longest one-way delay of the link
-    */
-  def refusal(timing: LoopTiming, vehicles: Int, maxDelayS: Double, model: LaneDynamics): Option[String] =
+  /** Why this loop does not fly over a link by lanes, for a person. */
+  def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
+    link match
+      case table: DelayTable => refusal(timing, vehicles, table.maxS, model)
+      case _ => Some("worlds of their own fly by lanes where a link's delays do not come in stretches")
+
+  private def refusal(
+      timing: LoopTiming,
+      vehicles: Int,
+      maxDelayS: Double,
+      model: LaneDynamics
+  ): Option[String] =
     val steering = LoopTiming.steeringOf(timing)
     val timeoutS = LoopTiming.askingOf(timing).timeoutS
     val ofLoop   = timing match
@@ -79,11 +87,10 @@ private[lanes] object LoopLanes:
           _ <- Expect.that(stream.patienceS > 0):
             "the lanes wait for the other vehicles' readings, and this loop does not"
         yield Vector(stream.patienceS, stream.toleranceS)
-      case _: LoopTiming.Sequential => Right(Vector.empty)
-      case _: LoopTiming.Futures    =>
+      case _: LoopTiming.Sequential | _: LoopTiming.Futures =>
         Expect
-          .that(vehicles * timeoutS <= MostTaskS):
-            s"tasks of $vehicles questions may take longer than the lanes can count"
+          .that(vehicles * timeoutS <= MostInTurnS):
+            s"$vehicles questions in turn may take longer than the lanes can count"
           .map(_ => Vector.empty)
       case _ => Left("worlds with delays of their own fly by lanes under sequential, futures and stream")
     val refused =
@@ -103,3 +110,19 @@ private[lanes] object LoopLanes:
           "the lanes count time in grains of 4 ns, and this loop's times are none"
       yield ()
     refused.left.toOption
+
+/** One of a kind for links about as slow: how far a loop is looked ahead depends on it, and no result does.
+  *
+  * @param make for a longest one-way delay, s
+  */
+private[lanes] final class BySlowest[K](make: Double => K):
+  private val made = mutable.HashMap.empty[Double, K]
+
+  /** That for the slowest of these. */
+  def apply(links: Array[DelayTable]): K =
+    val slowestS = links.iterator.map(_.maxS).max
+    val about    = Iterator.iterate(BySlowest.FastestS)(_ * 1.4).find(_ >= slowestS).get
+    made.getOrElseUpdate(about, make(about))
+
+private object BySlowest:
+  private val FastestS = 0.02

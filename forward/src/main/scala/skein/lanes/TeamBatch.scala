@@ -3,44 +3,59 @@ package skein.lanes
 import java.util.IdentityHashMap
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
+import skein.forward.{DelayTable, Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
 import skein.policy.TeamPolicy
 import skein.scenario.Positions
 import skein.simd.LaneMath
 import skein.units.Expect
 
 /** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
-  * quantities are formulas fly by lanes ([[TimetableKernel]]), all of an episode by one [[Timetable]], which
-  * is made once; others by the scalar reference ([[Rollout]]), which is told. Which engine flies a world
-  * depends on its candidate alone, so results do not depend on threads, on a call's other worlds or on their
-  * order. One call at a time.
-  *
-  * @param areShared whether several candidates meet the same episode. Where none do, the scalar reference
-  *   flies them: it is what makes a timetable, and that would be made for one world
+  * quantities are formulas fly by lanes: worlds that share episodes by [[TimetableKernel]], all of an episode
+  * by one [[Timetable]], which is made once; others by [[LoopKernel]]. All else flies by the scalar reference
+  * ([[Rollout]]), which is told. Which engine flies a world depends on its candidate, its link and
+  * `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
+  * One call at a time.
   */
 final class TeamBatch(
     timing: LoopTiming,
     model: VelocityResponse,
-    threads: Int = Runtime.getRuntime.availableProcessors,
-    areShared: Boolean = true
+    threads: Int = Runtime.getRuntime.availableProcessors
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
 
-  /** Which engine flies such a team, and why, in a line for the user. */
-  def engine(candidate: TeamCandidate): String = lanesOf(candidate) match
-    case Right(_)     => s"SIMD, ${LaneMath.LANES} candidates of an episode at a time"
-    case Left(reason) => s"scalar: $reason"
+  /** Which engine flies such a team, and why, in a line for the user.
+    *
+    * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]
+    * @param links that the worlds fly over
+    */
+  def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
+    lanesOf(candidate) match
+      case Left(reason) => s"scalar: $reason"
+      case Right(form)  =>
+        val worlds = if shares(shareEpisodes) then "candidates of an episode" else "worlds"
+        LaneSupport.told(
+          s"${LaneMath.LANES} $worlds at a time",
+          links.map(refusal(form, shares(shareEpisodes), _))
+        )
 
-  def fliesByLanes(candidate: TeamCandidate): Boolean = lanesOf(candidate).isRight
+  /** Whether all of its worlds fly by lanes, over any of the links. */
+  def fliesByLanes(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
+    lanesOf(candidate).exists(form => links.forall(refusal(form, shares(shareEpisodes), _).isEmpty))
+
+  /** A world that waits meets no delays: all worlds share their episode. */
+  private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
+
+  /** Why no lanes fly over a link. */
+  private def refusal(form: Form, share: Boolean, link: Delays): Option[String] =
+    if share then None else LoopLanes.refusal(timing, form.team.count, link, form.vehicles)
 
   private def lanesOf(candidate: TeamCandidate): Either[String, Form] =
     val engagement = candidate.engagement
     val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
-      _        <- Expect.that(areShared)("every world has delays of its own")
       _        <- LaneSupport.present
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
       _        <- Expect.that(policies.size == engagement.agents.size):
@@ -59,17 +74,25 @@ final class TeamBatch(
 
   /** Flies all worlds, unless it is cancelled.
     *
+    * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
     * @param isCancelled asked before each batch, from any thread; batches that fly already end
     * @throws InterruptedException if the caller is interrupted; the batches that fly already have ended then
     */
-  def fly(worlds: TeamWorlds, isCancelled: () => Boolean = () => false): TeamOutcomes =
+  def fly(
+      worlds: TeamWorlds,
+      onProgress: Int => Unit = _ => (),
+      isCancelled: () => Boolean = () => false
+  ): TeamOutcomes =
     val known    = IdentityHashMap[TeamCandidate, Prepared]()
     val prepared = Array.tabulate(worlds.size): world =>
       known.computeIfAbsent(worlds.candidate(world), Prepared(_))
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
-    val batches  = WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, TimetableKernel.WORLDS)
-    outcomes.flown = LaneThreads.run(workers, batches, isCancelled): (worker, numbers) =>
+    val batches  =
+      if shares(worlds.shareEpisodes) then
+        WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, TimetableKernel.WORLDS)
+      else WorldBatches.inOrder(worlds.size, LoopKernel.WORLDS)
+    outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
       worker.fly(worlds, prepared, numbers, outcomes)
     outcomes
 
@@ -86,54 +109,100 @@ final class TeamBatch(
 
   /** One per thread. Mutable. */
   private final class Worker:
-    private val byForm = mutable.HashMap.empty[Form, Flight]
+    private val byForm = mutable.HashMap.empty[(Form, Boolean), Flight]
     private val scalar = ScalarTeam(timing, model)
 
     def fly(worlds: TeamWorlds, prepared: Array[Prepared], numbers: Array[Int], into: TeamOutcomes): Unit =
       val filled = mutable.LinkedHashSet.empty[Flight]
+      val share  = shares(worlds.shareEpisodes)
       for world <- numbers do
         prepared(world).form match
-          case Some(form) =>
-            val flight = byForm.getOrElseUpdate(form, Flight(form, prepared(world).candidate))
+          case Some(form) if refusal(form, share, worlds.link(world)).isEmpty =>
+            val first  = prepared(world).candidate
+            val flight = byForm.getOrElseUpdate(
+              (form, share),
+              if share then EpisodeFlight(form, first) else LoopFlight(form, first)
+            )
             flight.add(world, prepared(world))
             filled += flight
-          case None =>
+          case _ =>
             val values = scalar.fly(prepared(world).candidate, worlds.link(world), worlds.key(world))
             for (value, number) <- values.zipWithIndex do into.values(number)(world) = value.toFloat
-      for flight <- filled do flight.fly(worlds.link(numbers(0)), worlds.key(numbers(0)), into)
+      for flight <- filled do flight.fly(worlds, into)
 
   /** Candidates of one form, by lanes. */
-  private final class Flight(form: Form, first: TeamCandidate):
-    private val count  = form.team.count
-    private val views  = TeamViews(form.team)
-    private val agents = Array.tabulate(count): self =>
-      TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
-    private val scores  = Scoreboard(form.scores)
-    private val kernel  = TimetableKernel(agents.map(identity[TimetableAgents]), scores)
-    private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
-    private var last    = Option.empty[Prepared]
-    private var filled  = 0
+  private abstract class Flight(form: Form):
+    protected val count: Int         = form.team.count
+    protected val scores: Scoreboard = Scoreboard(form.scores)
+    protected val views: TeamViews   = TeamViews(form.team)
+    private val worldOf              = Array.ofDim[Int](TimetableKernel.WORLDS)
+    private val held                 = Array.ofDim[Prepared](TimetableKernel.WORLDS)
+    private var filled               = 0
 
     def add(world: Int, prepared: Prepared): Unit =
       worldOf(filled) = world
-      last = Some(prepared)
-      put(filled, prepared)
+      held(filled) = prepared
       filled += 1
 
-    private def put(lane: Int, prepared: Prepared): Unit =
-      val vehicles = prepared.candidate.engagement.agents
-      for self <- 0 until count do agents(self).take(lane, vehicles(self), prepared.ofPolicies(self))
-      scores.take(lane, vehicles, prepared.ofQuantities)
-
-    def fly(link: Delays, key: Int, into: TeamOutcomes): Unit =
+    def fly(worlds: TeamWorlds, into: TeamOutcomes): Unit =
       // Lanes that no world needs fly the last one again.
-      for prepared <- last; lane <- filled until TimetableKernel.WORLDS do put(lane, prepared)
-      val timetable = timetables.getOrMake((link, key, count, form.durationS)):
-        Timetable.of(count, form.durationS, timing, link, key, form.vehicles)
-      kernel.fly(timetable, filled)
+      for lane <- filled until worldOf.length do
+        worldOf(lane) = worldOf(filled - 1)
+        held(lane) = held(filled - 1)
+      val team = members(worlds, worldOf)
+      for lane <- worldOf.indices do
+        val vehicles = held(lane).candidate.engagement.agents
+        for self <- 0 until count do team(self).take(lane, vehicles(self), held(lane).ofPolicies(self))
+        scores.take(lane, vehicles, held(lane).ofQuantities)
+      fly(filled)
       for lane <- 0 until filled; number <- into.values.indices do
         into.values(number)(worldOf(lane)) = scores.value(number, lane)
       filled = 0
+
+    /** Who flies next.
+      *
+      * @param worldOf by lane
+      */
+    protected def members(worlds: TeamWorlds, worldOf: Array[Int]): Array[? <: TeamMember]
+
+    /** They fly in so many worlds. */
+    protected def fly(filled: Int): Unit
+
+  /** Through one episode. */
+  private final class EpisodeFlight(form: Form, first: TeamCandidate) extends Flight(form):
+    private val agents = Array.tabulate(count): self =>
+      TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
+    private val kernel               = TimetableKernel(agents.map(identity[TimetableAgents]), scores)
+    private var timetable: Timetable = null
+
+    protected def members(worlds: TeamWorlds, worldOf: Array[Int]): Array[? <: TeamMember] =
+      val (link, key) = (worlds.link(worldOf(0)), worlds.key(worldOf(0)))
+      timetable = timetables.getOrMake((link, key, count, form.durationS)):
+        Timetable.of(count, form.durationS, timing, link, key, form.vehicles)
+      agents
+
+    protected def fly(filled: Int): Unit = kernel.fly(timetable, filled)
+
+  /** Each world with delays of its own. */
+  private final class LoopFlight(form: Form, first: TeamCandidate) extends Flight(form):
+    private final class Team(maxDelayS: Double):
+      private val loop = LoopLanes(timing, count, form.durationS, maxDelayS)
+      val agents       = LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, views)
+      val kernel       = LoopKernel(loop, agents.map(identity[LaneAgents]), scores)
+
+    private val teams      = BySlowest(Team(_))
+    private val keys       = Array.ofDim[Int](LoopKernel.WORLDS)
+    private val links      = Array.ofDim[DelayTable](LoopKernel.WORLDS)
+    private var team: Team = null
+
+    protected def members(worlds: TeamWorlds, worldOf: Array[Int]): Array[? <: TeamMember] =
+      for (world, lane) <- worldOf.zipWithIndex do
+        keys(lane) = worlds.key(world)
+        links(lane) = worlds.link(world).asInstanceOf[DelayTable]
+      team = teams(links)
+      team.agents
+
+    protected def fly(filled: Int): Unit = team.kernel.fly(keys, links)
 
   /** Candidates of one form fly side by side. */
   private final case class Form(

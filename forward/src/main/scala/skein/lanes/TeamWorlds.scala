@@ -9,6 +9,11 @@ import skein.scenario.{Quantity, Reduction}
 trait TeamWorlds:
   def size: Int
 
+  /** Whether several worlds have the same key and the same link, as candidates that meet the same episodes
+    * do.
+    */
+  def shareEpisodes: Boolean = false
+
   /** `skein.simd.WorldRandom.key` of the world: decides all delays. Worlds of one key and one link meet the
     * same.
     */

@@ -4,21 +4,24 @@ import skein.forward.Delays
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.simd.{LaneFunction, WorldRandom}
 
-/** Flies a team's candidates in [[TeamBatch]]: all meet the same episodes.
+/** Flies a team's candidates in [[TeamBatch]].
   *
   * @param candidate of its parameters; a pure function
   * @param weights of what is judged, in its order: their sum is the objective
   * @param seed of the delays
+  * @param shareEpisodes whether they meet the same episodes, each by one timetable: for many candidates; one
+  *   alone flies faster without
   */
 final class TeamEvaluator(
     batch: TeamBatch,
     candidate: Vector[Double] => TeamCandidate,
     link: Delays,
     weights: Vector[Double],
-    seed: Long
+    seed: Long,
+    shareEpisodes: Boolean = true
 ) extends ValueEvaluator:
 
-  override def sideBySide: Int = TeamEvaluator.SideBySide
+  override def sideBySide: Int = if shareEpisodes then TeamEvaluator.SideBySide else 1
 
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -27,7 +30,7 @@ final class TeamEvaluator(
     val teams    = candidates.map(candidate)
     val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
     val worlds   = Worlds(teams, keys)
-    val outcomes = batch.fly(worlds, isCancelled)
+    val outcomes = batch.fly(worlds, isCancelled = isCancelled)
     Option.when(outcomes.flown == worlds.size):
       Vector.tabulate(teams.size): number =>
         Array.tabulate(keys.length): episode =>
@@ -36,6 +39,7 @@ final class TeamEvaluator(
 
   private final class Worlds(teams: Vector[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
     def size: Int                            = teams.size * keys.length
+    override def shareEpisodes: Boolean      = TeamEvaluator.this.shareEpisodes
     def key(world: Int): Int                 = keys(world % keys.length)
     def link(world: Int): Delays             = TeamEvaluator.this.link
     def candidate(world: Int): TeamCandidate = teams(world / keys.length)

@@ -218,7 +218,10 @@ private[skein] object DuelAgreement:
     val links    = worlds.map(link)
     val slowestS = links.map(_.maxS).max
     val vehicles = LaneDynamics.of(model, duel).fold(munit.Assertions.fail(_), identity)
-    munit.Assertions.assertEquals(LoopLanes.refusal(timing, 2, slowestS, vehicles), None)
+    munit.Assertions.assertEquals(
+      links.distinct.flatMap(LoopLanes.refusal(timing, 2, _, vehicles)).toSeq,
+      Nil
+    )
     val kernel = LoopDuelKernel(
       duel,
       LoopLanes(timing, 2, duel.durationS, slowestS),

@@ -116,12 +116,15 @@ class FlownByLanesSuite extends munit.FunSuite:
           Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
         )
       val batch = TeamBatch(timing, model, threads = 1)
-      assertEquals(word(batch.engine(team)), table(("teams", nameOf(timing)))(plant), batch.engine(team))
+      for (worlds, shared) <- Seq("teams, shared delays" -> true, "teams, own delays" -> false) do
+        val engine = batch.engine(team, shared, Seq(DelayTable.vpn))
+        assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
   test("the table has a row for all that the engines fly, and no other"):
     val all =
       for
-        worlds <- Seq("duels, shared delays", "duels, own delays", "teams")
+        worlds <-
+          Seq("duels, shared delays", "duels, own delays", "teams, shared delays", "teams, own delays")
         timing <- loops(VelocityResponses.Ideal)
       yield (worlds, nameOf(timing))
     assertEquals(table.keySet, all.toSet)

@@ -89,6 +89,7 @@ object LaneDigests:
     val out = TeamBatch(timing, model, threads = 1).fly(
       new TeamWorlds:
         def size: Int                            = candidates.size
+        override def shareEpisodes: Boolean      = true
         def key(world: Int): Int                 = WorldRandom.key(5, 0, 1)
         def link(world: Int): Delays             = links(1)
         def candidate(world: Int): TeamCandidate = candidates(world)

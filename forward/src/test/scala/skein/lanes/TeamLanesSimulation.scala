@@ -2,6 +2,7 @@ package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
+import skein.optimise.LatencyBudget
 import skein.policy.*
 import skein.scenario.*
 import skein.signal.SplitMix64
@@ -122,6 +123,66 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
         math.hypot(x - truth(i)._1, y - truth(i)._2)
       assert(off.max < mostM, s"world $world: ${off.max} m at score ${off.indices.maxBy(off) / count}")
 
+  for
+    (name, draw)   <- scenarios
+    timing         <- loops.filterNot(_.isInstanceOf[LoopTiming.Predictive])
+    (linked, link) <-
+      links ++ Seq("110 ms and 60 ms of jitter" -> wild(110, 60), "150 ms of jitter" -> wild(150, 150))
+  do
+    test(
+      s"$name, $timing, own delays over $linked: every world flies as by the scalar reference, 6 s to 2 mm"
+    ):
+      agreeAlone(draw, timing, link, lag, 2e-3, 6)
+
+  for
+    (name, draw)   <- scenarios
+    (model, plant) <- Seq(
+      "drag"    -> ReducedResponse(ReducedModel.AirSim),
+      "bicycle" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
+    )
+    timing <- Seq(LoopTiming.Stream(), LoopTiming.Futures())
+  do
+    test(
+      s"$name, $model, $timing, own delays over vpn: every world flies as by the scalar reference, 3 s to 4 mm"
+    ):
+      agreeAlone(draw, timing, DelayTable.vpn, plant, 4e-3, 3)
+
+  private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+
+  private def agreeAlone(
+      draw: SplitMix64 => Scenario,
+      timing: LoopTiming,
+      over: DelayTable,
+      plant: VelocityResponse,
+      mostM: Double,
+      durationS: Double
+  ): Unit =
+    val random = SplitMix64(7)
+    val all    = new TeamWorlds:
+      // More than fly together, and not as many again; every fifth has no delays.
+      private val teams = Vector.fill(worlds + 40):
+        val team   = engagement(draw(random), durationS)
+        val judged =
+          for
+            vehicle   <- team.agents.indices.toVector
+            along     <- Seq(North(vehicle), East(vehicle))
+            reduction <- Seq(OfMoment.Newest, Reduction.Mean)
+          yield Judged(along, reduction, 0)
+        TeamCandidate(team, judged)
+      def size: Int                            = teams.size
+      def key(world: Int): Int                 = WorldRandom.key(3, 1, world)
+      def link(world: Int): Delays             = if world % 5 == 4 then DelayTable.none else over
+      def candidate(world: Int): TeamCandidate = teams(world)
+    val batch  = TeamBatch(timing, plant, threads = 2)
+    val engine = batch.engine(all.candidate(0), shareEpisodes = false, Seq(over))
+    assert(engine.startsWith("SIMD"), engine)
+    val flown  = batch.fly(all)
+    val scalar = ScalarTeam(timing, plant)
+    for world <- 0 until all.size by 13 do
+      val truth = scalar.fly(all.candidate(world), all.link(world), all.key(world))
+      val off   = truth.indices.map(number => (flown.values(number)(world) - truth(number)).abs)
+      assert(off.max < mostM, s"world $world: ${off.max} m, judged ${off.indices.maxBy(off)}")
+
   private val quantities: Seq[(String, SplitMix64 => Scenario, Int => Vector[Quantity])] =
     val circuit = Racetrack(50, 20)
     Seq(
@@ -147,11 +208,12 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
         TeamCandidate(engagement(draw(random), 10), judging(i).map(Judged(_, reduction, 2)))
       val all = new TeamWorlds:
         def size: Int                            = 2 * candidates.size
+        override def shareEpisodes: Boolean      = true
         def key(world: Int): Int                 = WorldRandom.key(5, 0, world % 2)
         def link(world: Int): Delays             = DelayTable.vpn
         def candidate(world: Int): TeamCandidate = candidates(world / 2)
       val batch = TeamBatch(LoopTiming.Stream(), lag, 2)
-      assert(batch.fliesByLanes(candidates.head), batch.engine(candidates.head))
+      assertFliesByLanes(batch, candidates.head)
       val outcomes = batch.fly(all)
       assertEquals(outcomes.flown, all.size)
       val scalar = ScalarTeam(LoopTiming.Stream(), lag)
@@ -181,10 +243,11 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       val candidates = teams.map(TeamCandidate(_, by))
       val all        = new TeamWorlds:
         def size: Int                            = candidates.size
+        override def shareEpisodes: Boolean      = true
         def key(world: Int): Int                 = 4
         def link(world: Int): Delays             = DelayTable.vpn
         def candidate(world: Int): TeamCandidate = candidates(world)
-      assert(batch.fliesByLanes(candidates.head), batch.engine(candidates.head))
+      assertFliesByLanes(batch, candidates.head)
       batch.fly(all).values.map(_.toSeq.map(java.lang.Float.floatToIntBits))
     val together = fly(judged)
     assertEquals(together, judged.flatMap(each => fly(Vector(each))))
@@ -203,10 +266,11 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   test("twenty, more than there are rounds, avoid one another by lanes as by the scalar reference"):
     val crossing = avoiding(Crossing(20, entryM = 8, spacingM = 4), 1.5)
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
-    val engine   = batch.engine(crossing)
+    val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn))
     assert(engine.startsWith("SIMD"), engine)
     val one = new TeamWorlds:
       def size: Int                            = 1
+      override def shareEpisodes: Boolean      = true
       def key(world: Int): Int                 = 4
       def link(world: Int): Delays             = DelayTable.direct
       def candidate(world: Int): TeamCandidate = crossing
@@ -218,10 +282,11 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val team     = surround.copy(agents = surround.agents.map(_.copy(policy = Zigzag)))
     val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
-    val engine   = batch.engine(crossing)
+    val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn))
     assert(engine.startsWith("scalar: a policy is no formula: skein.lanes.Zigzag"), engine)
     val one = new TeamWorlds:
       def size: Int                            = 1
+      override def shareEpisodes: Boolean      = true
       def key(world: Int): Int                 = 4
       def link(world: Int): Delays             = DelayTable.vpn
       def candidate(world: Int): TeamCandidate = crossing
@@ -229,6 +294,10 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       batch.fly(one).values(0)(0),
       ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.vpn, 4)(0).toFloat
     )
+
+  private def assertFliesByLanes(batch: TeamBatch, team: TeamCandidate): Unit =
+    val engine = batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn))
+    assert(batch.fliesByLanes(team, shareEpisodes = true, Seq(DelayTable.vpn)), engine)
 
   private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
 
@@ -241,6 +310,12 @@ object Zigzag extends TeamPolicy:
       north /= 2
       turns += 1
     Course(turns * 0.5, 3)
+
+final case class North(vehicle: Int) extends Quantity:
+  def of(places: Positions): Double = places.northM(vehicle)
+
+final case class East(vehicle: Int) extends Quantity:
+  def of(places: Positions): Double = places.eastM(vehicle)
 
 // As docs/guides/search.md has it.
 /** How far the vehicles are from their middle, on average, m. */

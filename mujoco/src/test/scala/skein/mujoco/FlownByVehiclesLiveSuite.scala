@@ -51,6 +51,6 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
     val surround = Surround(6)
     val judged   = Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
     val team     = TeamCandidate(Engagement.of(surround.fleet, 3), judged)
-    for timing <- loops do
-      val engine = TeamBatch(timing, model, threads = 1).engine(team)
+    for timing <- loops; shared <- Seq(true, false) do
+      val engine = TeamBatch(timing, model, threads = 1).engine(team, shared, Seq(DelayTable.vpn))
       assert(engine.startsWith("scalar: "), s"${timing.productPrefix}: $engine")
