@@ -7,9 +7,9 @@ import skein.lanes.{Judged, ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.scenario.*
 import skein.simd.WorldRandom
 
-/** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of each episode, `stream`
-  * over `vpn`, 60 s, the reduced model, one thread; an agent-step is 0.1 s of one vehicle. The timetables are
-  * made before; what making them costs stands beside. Run:
+/** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of one episode, and 256
+  * with delays of their own, `stream` over `vpn`, 60 s, the reduced model, one thread; an agent-step is 0.1 s
+  * of one vehicle. Timetables are made before; what making them costs stands beside. Run:
   * `./sbtw "bench/runMain skein.bench.TeamRates 6 20"`.
   */
 object TeamRates:
@@ -21,23 +21,24 @@ object TeamRates:
 
   def main(args: Array[String]): Unit =
     println(
-      "| team | by lanes, M agent-steps per processor second | scalar | " +
+      "| team | delays | by lanes, M agent-steps per processor second | scalar | " +
         "ratio | first flight of an episode, ms | witness | scalar's |"
     )
-    println("|---|---|---|---|---|---|---|")
+    println("|---|---|---|---|---|---|---|---|")
     for
       vehicles     <- if args.isEmpty then Seq(6, 20, 64) else args.toSeq.map(_.toInt)
       (name, draw) <-
         Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles)) ++
           // More are more operations than a formula may have.
           Option.when(vehicles <= 32)("crossing" -> crossing(vehicles))
+      shared <- Seq(true, false)
     do
       val candidates    = Vector.tabulate(Candidates)(draw)
       val batch         = TeamBatch(LoopTiming.Stream(), Works.model, 1)
       val steps         = vehicles * DurationS * 10
       val scalar        = ScalarTeam(LoopTiming.Stream(), Works.model)
-      def fly(key: Int) = batch.fly(Worlds(candidates, 1, key))
-      def alone(i: Int) = scalar.fly(candidates(i), DelayTable.vpn, key(0))(0)
+      def fly(key: Int) = batch.fly(Worlds(candidates, shared, key))
+      def alone(i: Int) = scalar.fly(candidates(i), DelayTable.vpn, key(if shared then 0 else i))(0)
       val first         = Vector.tabulate(8)(episode => cpuS(1)(fly(episode): Unit)).min
       for _ <- 1 to WarmUp do fly(0): Unit
       val again            = Vector.fill(5)(cpuS(5)(fly(0): Unit)).min
@@ -46,7 +47,7 @@ object TeamRates:
       val (witness, truth) =
         ((0 until 4).map(outcomes.values(0)(_).toDouble).sum / 4, (0 until 4).map(alone).sum / 4)
       println(
-        f"| $name of $vehicles | ${Candidates * steps / again * 1e-6}%.1f | ${steps / one * 1e-6}%.3f | " +
+        f"| $name of $vehicles | ${if shared then "shared" else "own"} | ${Candidates * steps / again * 1e-6}%.1f | ${steps / one * 1e-6}%.3f | " +
           f"${Candidates * one / again}%.0f | ${(first - again) * 1e3}%.0f | $witness%.4f | $truth%.4f |"
       )
 
@@ -70,12 +71,13 @@ object TeamRates:
 
   private def key(episode: Int) = WorldRandom.key(1, 0, episode)
 
-  private final class Worlds(candidates: Vector[TeamCandidate], episodes: Int, from: Int) extends TeamWorlds:
-    def size: Int                            = candidates.size * episodes
-    override def shareEpisodes: Boolean      = true
-    def key(world: Int): Int                 = TeamRates.key(from + world / candidates.size)
+  /** @param from the first one's number of an episode */
+  private final class Worlds(candidates: Vector[TeamCandidate], shared: Boolean, from: Int) extends TeamWorlds:
+    def size: Int                            = candidates.size
+    override def shareEpisodes: Boolean      = shared
+    def key(world: Int): Int                 = TeamRates.key(if shared then from else from + world)
     def link(world: Int): Delays             = DelayTable.vpn
-    def candidate(world: Int): TeamCandidate = candidates(world % candidates.size)
+    def candidate(world: Int): TeamCandidate = candidates(world)
 
   private val system =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
