@@ -72,7 +72,8 @@ object TeamRates:
   private def key(episode: Int) = WorldRandom.key(1, 0, episode)
 
   /** @param from the first one's number of an episode */
-  private final class Worlds(candidates: Vector[TeamCandidate], shared: Boolean, from: Int) extends TeamWorlds:
+  private final class Worlds(candidates: Vector[TeamCandidate], shared: Boolean, from: Int)
+      extends TeamWorlds:
     def size: Int                            = candidates.size
     override def shareEpisodes: Boolean      = shared
     def key(world: Int): Int                 = TeamRates.key(if shared then from else from + world)

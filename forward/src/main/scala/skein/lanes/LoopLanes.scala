@@ -119,8 +119,8 @@ private[lanes] final class BySlowest[K](make: Double => K):
   private val made = mutable.HashMap.empty[Double, K]
 
   /** That for the slowest of these. */
-  def apply(links: Array[DelayTable]): K =
-    val slowestS = links.iterator.map(_.maxS).max
+  def apply(links: Array[? <: Delays]): K =
+    val slowestS = links.iterator.collect { case table: DelayTable => table.maxS }.max
     val about    = Iterator.iterate(BySlowest.FastestS)(_ * 1.4).find(_ >= slowestS).get
     made.getOrElseUpdate(about, make(about))
 

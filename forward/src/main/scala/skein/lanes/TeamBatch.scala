@@ -121,7 +121,10 @@ final class TeamBatch(
             val first  = prepared(world).candidate
             val flight = byForm.getOrElseUpdate(
               (form, share),
-              if share then EpisodeFlight(form, first) else LoopFlight(form, first)
+              if share then
+                val team = EpisodeTeam(form, first)
+                Flight(_ => team)
+              else Flight(BySlowest(LoopTeam(form, first, _))(_))
             )
             flight.add(world, prepared(world))
             filled += flight
@@ -130,14 +133,14 @@ final class TeamBatch(
             for (value, number) <- values.zipWithIndex do into.values(number)(world) = value.toFloat
       for flight <- filled do flight.fly(worlds, into)
 
-  /** Candidates of one form, by lanes. */
-  private abstract class Flight(form: Form):
-    protected val count: Int         = form.team.count
-    protected val scores: Scoreboard = Scoreboard(form.scores)
-    protected val views: TeamViews   = TeamViews(form.team)
-    private val worldOf              = Array.ofDim[Int](TimetableKernel.WORLDS)
-    private val held                 = Array.ofDim[Prepared](TimetableKernel.WORLDS)
-    private var filled               = 0
+  /** Candidates of one form, by lanes.
+    *
+    * @param team that flies over these links, by lane
+    */
+  private final class Flight(team: Array[Delays] => Team):
+    private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
+    private val held    = Array.ofDim[Prepared](TimetableKernel.WORLDS)
+    private var filled  = 0
 
     def add(world: Int, prepared: Prepared): Unit =
       worldOf(filled) = world
@@ -149,60 +152,49 @@ final class TeamBatch(
       for lane <- filled until worldOf.length do
         worldOf(lane) = worldOf(filled - 1)
         held(lane) = held(filled - 1)
-      val team = members(worlds, worldOf)
+      val links  = worldOf.map(worlds.link)
+      val flying = team(links)
       for lane <- worldOf.indices do
         val vehicles = held(lane).candidate.engagement.agents
-        for self <- 0 until count do team(self).take(lane, vehicles(self), held(lane).ofPolicies(self))
-        scores.take(lane, vehicles, held(lane).ofQuantities)
-      fly(filled)
+        for (member, self) <- flying.members.zipWithIndex do
+          member.take(lane, vehicles(self), held(lane).ofPolicies(self))
+        flying.scores.take(lane, vehicles, held(lane).ofQuantities)
+      flying.fly(links, worldOf.map(worlds.key), filled)
       for lane <- 0 until filled; number <- into.values.indices do
-        into.values(number)(worldOf(lane)) = scores.value(number, lane)
+        into.values(number)(worldOf(lane)) = flying.scores.value(number, lane)
       filled = 0
 
-    /** Who flies next.
-      *
-      * @param worldOf by lane
-      */
-    protected def members(worlds: TeamWorlds, worldOf: Array[Int]): Array[? <: TeamMember]
+  /** A team in many worlds, and what judges it. */
+  private abstract class Team(form: Form):
+    val scores: Scoreboard         = Scoreboard(form.scores)
+    protected val views: TeamViews = TeamViews(form.team)
+    def members: Array[? <: TeamMember]
 
-    /** They fly in so many worlds. */
-    protected def fly(filled: Int): Unit
+    /** @param filled so many worlds count */
+    def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit
 
-  /** Through one episode. */
-  private final class EpisodeFlight(form: Form, first: TeamCandidate) extends Flight(form):
-    private val agents = Array.tabulate(count): self =>
+  /** All worlds meet the same episode. */
+  private final class EpisodeTeam(form: Form, first: TeamCandidate) extends Team(form):
+    private val count              = form.team.count
+    val members: Array[TeamAgents] = Array.tabulate(count): self =>
       TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
-    private val kernel               = TimetableKernel(agents.map(identity[TimetableAgents]), scores)
-    private var timetable: Timetable = null
+    private val kernel = TimetableKernel(members.map(identity[TimetableAgents]), scores)
 
-    protected def members(worlds: TeamWorlds, worldOf: Array[Int]): Array[? <: TeamMember] =
-      val (link, key) = (worlds.link(worldOf(0)), worlds.key(worldOf(0)))
-      timetable = timetables.getOrMake((link, key, count, form.durationS)):
+    def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
+      val (link, key) = (links(0), keys(0))
+      val timetable   = timetables.getOrMake((link, key, count, form.durationS)):
         Timetable.of(count, form.durationS, timing, link, key, form.vehicles)
-      agents
+      kernel.fly(timetable, filled)
 
-    protected def fly(filled: Int): Unit = kernel.fly(timetable, filled)
+  /** Each world has delays of its own. */
+  private final class LoopTeam(form: Form, first: TeamCandidate, maxDelayS: Double) extends Team(form):
+    private val loop                   = LoopLanes(timing, form.team.count, form.durationS, maxDelayS)
+    val members: Array[LoopTeamAgents] =
+      LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, views)
+    private val kernel = LoopKernel(loop, members.map(identity[LaneAgents]), scores)
 
-  /** Each world with delays of its own. */
-  private final class LoopFlight(form: Form, first: TeamCandidate) extends Flight(form):
-    private final class Team(maxDelayS: Double):
-      private val loop = LoopLanes(timing, count, form.durationS, maxDelayS)
-      val agents       = LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, views)
-      val kernel       = LoopKernel(loop, agents.map(identity[LaneAgents]), scores)
-
-    private val teams      = BySlowest(Team(_))
-    private val keys       = Array.ofDim[Int](LoopKernel.WORLDS)
-    private val links      = Array.ofDim[DelayTable](LoopKernel.WORLDS)
-    private var team: Team = null
-
-    protected def members(worlds: TeamWorlds, worldOf: Array[Int]): Array[? <: TeamMember] =
-      for (world, lane) <- worldOf.zipWithIndex do
-        keys(lane) = worlds.key(world)
-        links(lane) = worlds.link(world).asInstanceOf[DelayTable]
-      team = teams(links)
-      team.agents
-
-    protected def fly(filled: Int): Unit = team.kernel.fly(keys, links)
+    def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
+      kernel.fly(keys, links.map(_.asInstanceOf[DelayTable]))
 
   /** Candidates of one form fly side by side. */
   private final case class Form(

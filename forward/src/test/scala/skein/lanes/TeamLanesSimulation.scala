@@ -147,6 +147,21 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     ):
       agreeAlone(draw, timing, DelayTable.vpn, plant, 4e-3, 3)
 
+  test("what a world with delays of its own comes to depends on no other, whatever flew before"):
+    val team  = TeamCandidate(engagement(Surround(4), 5), Vector(Judged(OffRing(8), Reduction.Rms, 0)))
+    val links = Vector(DelayTable.direct, DelayTable.vpn, wild(110, 60))
+    def all(from: Int, count: Int) = new TeamWorlds:
+      def size: Int                            = count
+      def key(world: Int): Int                 = WorldRandom.key(3, 1, from + world)
+      def link(world: Int): Delays             = links((from + world) / 150)
+      def candidate(world: Int): TeamCandidate = team
+    val batch               = TeamBatch(LoopTiming.Stream(), lag, threads = 2)
+    def fly(of: TeamWorlds) = batch.fly(of).values(0).toSeq
+    val together            = fly(all(0, 450))
+    assertEquals(fly(all(0, 450)), together)
+    assertEquals(Seq(0, 150, 300).flatMap(from => fly(all(from, 150))), together)
+    assert(together.grouped(150).map(_.sum).toSeq.distinct.size == 3, "links differ")
+
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
   private def agreeAlone(
