@@ -6,7 +6,6 @@ import skein.forward.{
   Duel,
   LoopTiming,
   QuadrotorResponse,
-  SteppedResponse,
   VelocityResponse
 }
 import skein.policy.Policy
@@ -17,7 +16,7 @@ import skein.simd.LaneMath
   *
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
   * [[TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar
-  * loops ([[SteppedBatch]]). All else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the
+  * loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the
   * table. Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do not
   * depend on threads, on a call's other worlds or on their order. One call at a time.
   *
@@ -30,6 +29,8 @@ final class DuelBatch(
     threads: Int = Runtime.getRuntime.availableProcessors
 ):
   require(threads > 0, s"threads must be positive, got $threads")
+
+  private val vehicles = Seq(duel.evader, duel.pursuer)
 
   private val plant: Either[String, LaneDynamics] =
     for
@@ -53,12 +54,11 @@ final class DuelBatch(
   /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
-    val alone: DuelFlyer  = (model, plant) match
-      case _ if sees                                => scalar
-      case (stepped: SteppedResponse, _)            => SteppedBatch.of(duel, timing, stepped)
-      case (quadrotor: QuadrotorResponse, Right(_)) => SteppedBatch.of(duel, timing, quadrotor)
-      case (_, Right(kind))                         => LoopFlyer(duel, timing, kind, scalar)
-      case (_, Left(_))                             => scalar
+    val alone: DuelFlyer  =
+      if sees then scalar
+      else
+        SteppedRollouts.of(model, vehicles).map(SteppedFlyer(duel, timing, _)).getOrElse:
+          plant.fold(_ => scalar, LoopFlyer(duel, timing, _, scalar))
     val together: DuelFlyer = (lanes, eyes) match
       case (Right(kind), Right(seen)) => TimetableFlyer(duel, timing, kind, seen, timetables, alone)
       case _                          => alone
@@ -66,7 +66,8 @@ final class DuelBatch(
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
 
-  private def isStepped = model.isInstanceOf[SteppedResponse] && !sees
+  /** What is told where vehicles are flown side by side. */
+  private val stepped: Option[String] = SteppedRollouts.told(model, vehicles).filterNot(_ => sees)
 
   /** A world that waits meets no delays: all worlds share their episode, but for what somebody sees. */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused] && !sees
@@ -79,39 +80,39 @@ final class DuelBatch(
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
-      case Left(_) if isStepped => "vehicles side by side; their loops by the scalar engine"
-      case Left(reason)         => s"scalar: $reason"
-      case Right(lanes)         =>
+      case Left(reason) => stepped.getOrElse(s"scalar: $reason")
+      case Right(lanes) =>
         LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _)))
 
-  /** Whether all worlds of these policies fly by lanes, over any of the links. */
+  /** Whether all worlds of these policies fly by lanes, or AirSim's quadrotors do at least, over any of the
+    * links.
+    */
   def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
-    lanesOf(pursuer, evader, shares(shareEpisodes)).isRight &&
+    model.isInstanceOf[QuadrotorResponse] && stepped.isDefined ||
+      lanesOf(pursuer, evader, shares(shareEpisodes)).isRight &&
       links.forall(refusal(shares(shareEpisodes), _).isEmpty)
 
   /** Why no lanes fly over a link. */
-  private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] = model match
-    case _ if sees && !shareEpisodes         => Some(SeesAlone)
-    case _: QuadrotorResponse                => None
-    case _ if shareEpisodes && lanes.isRight => None
-    case _                                   => plant.fold(Some(_), LoopLanes.refusal(timing, 2, link, _))
+  private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] =
+    if shareEpisodes && lanes.isRight then None
+    else if sees && !shareEpisodes then Some(SeesAlone)
+    else plant.fold(Some(_), LoopLanes.refusal(timing, 2, link, _))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
-    plant.flatMap: _ =>
-      val each    = LaneMath.LANES
-      val refused = Seq(pursuer, evader).flatMap(PolicyLanes.of(_).left.toOption).headOption
-      model match
-        case _ if sees && !shareEpisodes                            => Left(SeesAlone)
-        case _ if shareEpisodes && refused.isEmpty && lanes.isRight =>
-          Right(s"$each candidates of an episode at a time")
-        case _: QuadrotorResponse if !sees =>
-          Right(s"$each quadrotors at a time; their loops by the scalar engine")
-        case _ if refused.isDefined             => Left(s"a policy is no formula: ${refused.get.getMessage}")
-        case _ if shareEpisodes && lanes.isLeft => Left(lanes.left.toOption.get)
-        case _                                  =>
-          // Refused over the fastest link, it is over any.
-          refusal(shareEpisodes, DelayTable.none).toLeft(s"$each worlds at a time")
+    for
+      _ <- plant
+      _ <- Seq(pursuer, evader)
+        .flatMap(PolicyLanes.of(_).left.toOption)
+        .headOption
+        .map(refused => s"a policy is no formula: ${refused.getMessage}")
+        .toLeft(())
+      _ <- if shareEpisodes then lanes else Right(())
+      // Refused over the fastest link, it is over any.
+      _ <- refusal(shareEpisodes, DelayTable.none).toLeft(())
+    yield
+      val worlds = if shareEpisodes then "candidates of an episode" else "worlds"
+      s"${LaneMath.LANES} $worlds at a time"
 
   /** Flies all worlds, unless it is cancelled.
     *

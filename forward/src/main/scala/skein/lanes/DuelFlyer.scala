@@ -37,6 +37,19 @@ private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => Veloci
       rollout = Rollout(own, timing, link, model)
     rollout
 
+/** Vehicle by vehicle: their loops by the scalar reference. */
+private final class SteppedFlyer(duel: Duel, timing: LoopTiming, stepped: SteppedRollouts) extends DuelFlyer:
+  val batch: Int   = stepped.worlds
+  private val kept = Array.tabulate(batch)(lane => KeptRollout(duel, timing, stepped.vehiclesOf(lane)))
+
+  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
+    for some <- numbers.grouped(batch) do
+      val rollouts = some.indices.map(lane => kept(lane)(worlds, some(lane)))
+      stepped.fly(some.length): lane =>
+        rollouts(lane).start(worlds.key(some(lane)), captureRadiusM)
+        rollouts(lane)
+      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
+
 /** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know
   * are flown by another.
   */

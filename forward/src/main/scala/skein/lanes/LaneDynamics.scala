@@ -166,7 +166,9 @@ private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDyna
 
   override def fliesAlone: Boolean                                            = false
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
-    throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
+    throw UnsupportedOperationException(
+      "quadrotors of worlds with delays of their own fly by SteppedRollouts"
+    )
 
   def clock(): EventClock = new EventClock:
     private var steps                                                       = hoveredNs / stepNs

@@ -15,11 +15,12 @@ private[skein] object LaneSupport:
     *
     * @param lanes what flies by lanes
     * @param refusals by link, why no lanes fly over it
+    * @param otherwise what does then
     */
-  def told(lanes: String, refusals: Seq[Option[String]]): String =
+  def told(lanes: String, refusals: Seq[Option[String]], otherwise: Option[String] = None): String =
     val refused = refusals.flatten
     if refused.isEmpty then s"SIMD, $lanes"
-    else if refused.size == refusals.size then s"scalar: ${refused.head}"
+    else if refused.size == refusals.size then otherwise.getOrElse(s"scalar: ${refused.head}")
     else
       s"SIMD, $lanes, over ${refusals.size - refused.size} of ${refusals.size} links; " +
         s"scalar over the others: ${refused.head}"

@@ -2,19 +2,17 @@ package skein.lanes
 
 import java.util.IdentityHashMap
 import scala.collection.mutable
-import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
+import skein.forward.{DelayTable, Delays, LoopTiming, VelocityResponse}
 import skein.policy.TeamPolicy
-import skein.scenario.Positions
 import skein.simd.LaneMath
 import skein.units.Expect
 
 /** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
   * quantities are formulas fly by lanes: worlds that share episodes by [[TimetableKernel]], all of an episode
   * by one [[Timetable]], which is made once; others by [[LoopKernel]]. All else flies by the scalar reference
-  * ([[Rollout]]), which is told. Which engine flies a world depends on its candidate, its link and
-  * `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
-  * One call at a time.
+  * ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate, its link
+  * and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their
+  * order. One call at a time.
   */
 final class TeamBatch(
     timing: LoopTiming,
@@ -33,13 +31,16 @@ final class TeamBatch(
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(candidate) match
-      case Left(reason) => s"scalar: $reason"
+      case Left(reason) => steppedOf(candidate).getOrElse(s"scalar: $reason")
       case Right(form)  =>
         val worlds = if shares(shareEpisodes) then "candidates of an episode" else "worlds"
         LaneSupport.told(
           s"${LaneMath.LANES} $worlds at a time",
-          links.map(refusal(form, shares(shareEpisodes), _))
+          links.map(refusal(form, shares(shareEpisodes), _)),
+          steppedOf(candidate)
         )
+
+  private def steppedOf(candidate: TeamCandidate) = SteppedRollouts.told(model, candidate.engagement.agents)
 
   /** Whether all of its worlds fly by lanes, over any of the links. */
   def fliesByLanes(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
@@ -100,6 +101,7 @@ final class TeamBatch(
   private final class Prepared(val candidate: TeamCandidate):
     private val agents                    = candidate.engagement.agents
     val form: Option[Form]                = lanesOf(candidate).toOption
+    val isStepped: Boolean                = steppedOf(candidate).isDefined
     val ofPolicies: Vector[Array[Double]] = form.toVector.flatMap: form =>
       agents.zipWithIndex.map((agent, self) =>
         form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy])
@@ -109,12 +111,14 @@ final class TeamBatch(
 
   /** One per thread. Mutable. */
   private final class Worker:
-    private val byForm = mutable.HashMap.empty[(Form, Boolean), Flight]
-    private val scalar = ScalarTeam(timing, model)
+    private val byForm  = mutable.HashMap.empty[(Form, Boolean), Flight]
+    private val stepped = mutable.HashMap.empty[Int, SteppedTeams]
+    private val scalar  = ScalarTeam(timing, model)
 
     def fly(worlds: TeamWorlds, prepared: Array[Prepared], numbers: Array[Int], into: TeamOutcomes): Unit =
-      val filled = mutable.LinkedHashSet.empty[Flight]
-      val share  = shares(worlds.shareEpisodes)
+      val filled   = mutable.LinkedHashSet.empty[Flight]
+      val unfilled = Array.newBuilder[Int]
+      val share    = shares(worlds.shareEpisodes)
       for world <- numbers do
         prepared(world).form match
           case Some(form) if refusal(form, share, worlds.link(world)).isEmpty =>
@@ -128,10 +132,15 @@ final class TeamBatch(
             )
             flight.add(world, prepared(world))
             filled += flight
-          case _ =>
-            val values = scalar.fly(prepared(world).candidate, worlds.link(world), worlds.key(world))
-            for (value, number) <- values.zipWithIndex do into.values(number)(world) = value.toFloat
+          case _ if prepared(world).isStepped => unfilled += world
+          case _                              =>
+            into.set(world, scalar.fly(worlds.candidate(world), worlds.link(world), worlds.key(world)))
       for flight <- filled do flight.fly(worlds, into)
+      for (count, some) <- unfilled.result().groupBy(worlds.candidate(_).engagement.agents.size) do
+        stepped.getOrElseUpdate(count, steppedTeams(worlds.candidate(some(0)))).fly(worlds, some, into)
+
+    private def steppedTeams(first: TeamCandidate) =
+      SteppedTeams(timing, SteppedRollouts.of(model, first.engagement.agents).get)
 
   /** Candidates of one form, by lanes.
     *
@@ -206,28 +215,3 @@ final class TeamBatch(
 
   /** Of some 90 kB for each vehicle and minute; a search flies the same few episodes again and again. */
   private inline val MostBytes = 256L << 20
-
-/** The scalar reference for what a team is judged by. Mutable. */
-private[skein] final class ScalarTeam(timing: LoopTiming, model: VelocityResponse):
-  private var last: (TeamCandidate, Delays) = (null, null)
-  private var rollout: Rollout              = null
-
-  /** What one episode comes to, by what is judged. */
-  def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
-    val asked = (candidate, link)
-    if asked != last then
-      last = asked
-      rollout = Rollout(candidate.engagement, timing, link, model)
-    val downM    = IArray.from(candidate.engagement.agents.map(_.altitudeDownM))
-    val count    = downM.length
-    val values   = candidate.judged.map(_ => ArrayBuffer.empty[(Double, Double)])
-    val observer = new LoopObserver:
-      private val northM, eastM = Array.ofDim[Double](count)
-      override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
-        northM(vehicle) = x; eastM(vehicle) = y
-        if vehicle == count - 1 && candidate.judged.exists(_.counts(timeS)) then
-          val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
-          for (each, found) <- candidate.judged.zip(values) if each.counts(timeS) do
-            found += ((timeS, each.quantity.of(places)))
-    rollout.fly(key, observer = observer): Unit
-    candidate.judged.zip(values).map((each, found) => each.of(found.toVector))

@@ -71,3 +71,6 @@ final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
   def flown: Int = done
 
   private[lanes] def flown_=(worlds: Int): Unit = done = worlds
+
+  private[lanes] def set(world: Int, came: Vector[Double]): Unit =
+    for (value, number) <- came.zipWithIndex do values(number)(world) = value.toFloat

@@ -162,6 +162,13 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     assertEquals(Seq(0, 150, 300).flatMap(from => fly(all(from, 150))), together)
     assert(together.grouped(150).map(_.sum).toSeq.distinct.size == 3, "links differ")
 
+  for timing <-
+      Seq(LoopTiming.Futures(), LoopTiming.Predictive(predictor = VelocityResponses.quadrotor().predictor))
+  do
+    test(s"quadrotors, $timing, own delays over vpn: side by side as by the scalar reference, 2 s to 4 mm"):
+      val draw = scenarios(0)._2
+      agreeAlone(draw, timing, DelayTable.vpn, VelocityResponses.quadrotor(), 4e-3, 2)
+
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
   private def agreeAlone(

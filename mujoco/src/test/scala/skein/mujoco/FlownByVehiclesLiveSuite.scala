@@ -6,9 +6,8 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 
-/** What ARCHITECTURE.md says of MuJoCo's bodies beside its table of what flies by lanes: they fly as vehicles
-  * in duels, and by the scalar engine in teams. `FlownByLanesSuite` holds the plants that need nothing
-  * installed to that table.
+/** What ARCHITECTURE.md says of MuJoCo's bodies beside its table of what flies by lanes: they fly as
+  * vehicles. `FlownByLanesSuite` holds the plants that need nothing installed to that table.
   */
 class FlownByVehiclesLiveSuite extends MujocoHere:
   private lazy val model = MujocoResponse(MujocoRotorcraftLiveSuite.example("quadrotor"))
@@ -46,11 +45,27 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
         val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
         assertEquals(flown.meanDistanceM(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
 
-  test("teams fly by the scalar engine under every loop"):
+  test("teams fly vehicle by vehicle under every loop, and as the scalar engine flies them, to the bit"):
     assumeMujoco()
-    val surround = Surround(6)
+    val surround = Surround(4)
     val judged   = Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
-    val team     = TeamCandidate(Engagement.of(surround.fleet, 3), judged)
+    val team     = TeamCandidate(Engagement.of(surround.fleet, 1), judged)
     for timing <- loops; shared <- Seq(true, false) do
-      val engine = TeamBatch(timing, model, threads = 1).engine(team, shared, Seq(DelayTable.vpn))
-      assert(engine.startsWith("scalar: "), s"${timing.productPrefix}: $engine")
+      val told  = s"${timing.productPrefix}, shared delays: $shared"
+      val batch = TeamBatch(timing, model, threads = 1)
+      assertEquals(
+        batch.engine(team, shared, Seq(DelayTable.vpn)),
+        "vehicles side by side; their loops by the scalar engine",
+        told
+      )
+      val all = new TeamWorlds:
+        def size: Int                            = 18
+        override def shareEpisodes: Boolean      = shared
+        def key(world: Int): Int                 = WorldRandom.key(5, 0, world)
+        def link(world: Int): Delays             = DelayTable.vpn
+        def candidate(world: Int): TeamCandidate = team
+      val flown  = batch.fly(all).values(0)
+      val scalar = ScalarTeam(timing, model)
+      for world <- 0 until all.size by 17 do
+        val truth = scalar.fly(team, DelayTable.vpn, all.key(world))(0)
+        assertEquals(flown(world), truth.toFloat, s"$told, world $world")

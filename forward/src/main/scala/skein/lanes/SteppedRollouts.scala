@@ -2,6 +2,7 @@ package skein.lanes
 
 import skein.forward.*
 import skein.signal.Kinematics
+import skein.simd.LaneMath
 import skein.units.Vector3
 
 /** Many worlds' vehicles fly side by side ([[skein.forward.SteppedVehicles]]), each world by its own
@@ -9,56 +10,50 @@ import skein.units.Vector3
   * between the step before and this one. That is how one such vehicle meets them too, so that only the flight
   * itself is another's; loops, delays and policies, of any kind, are the scalar reference's. Mutable.
   *
-  * @param batch worlds flown together
-  * @param vehicles two for each
+  * @param worlds flown together at most
+  * @param each so many vehicles
   */
-private final class SteppedBatch(
-    duel: Duel,
-    timing: LoopTiming,
+private final class SteppedRollouts private (
     model: VelocityResponse,
     stepS: Double,
     hoveredS: Double,
-    val batch: Int,
+    val worlds: Int,
+    each: Int,
     vehicles: SteppedVehicles
-) extends DuelFlyer:
-  import SteppedBatch.*
-
+):
   private val stepNs    = Nanos.of(stepS)
   private val hoveredNs = Nanos.of(hoveredS)
-  private val kept      = Array.tabulate(batch)(lane => KeptRollout(duel, timing, Places(lane)))
-  private val rollouts  = Array.ofDim[Rollout](batch)
-  private val nextNs    = Array.ofDim[Long](batch)
+  private val nextNs    = Array.ofDim[Long](worlds)
 
   /** The end of the last step, since the flight's start, ns. */
   private var steppedTo = 0L
 
-  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
-    for some <- numbers.grouped(batch) do
-      steppedTo = Math.floorDiv(hoveredNs, stepNs) * stepNs - hoveredNs
-      for lane <- some.indices do
-        rollouts(lane) = kept(lane)(worlds, some(lane))
-        rollouts(lane).start(worlds.key(some(lane)), captureRadiusM)
-        nextNs(lane) = 0
-      vehicles.use(some.length * Vehicles)
-      flyAll(some.length)
-      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
+  /** The vehicles of one world, for one rollout. */
+  def vehiclesOf(world: Int): VelocityResponse = Places(world)
 
-  private def flyAll(count: Int): Unit =
+  /** Flies worlds to their end.
+    *
+    * @param start begins the rollout of a world, which flies [[vehiclesOf]] it
+    */
+  def fly(count: Int)(start: Int => Rollout): Unit =
+    steppedTo = Math.floorDiv(hoveredNs, stepNs) * stepNs - hoveredNs
+    val rollouts = Array.tabulate(count)(start)
+    java.util.Arrays.fill(nextNs, 0L)
+    vehicles.use(count * each)
     var flying = count
     while flying > 0 do
       val until = steppedTo + stepNs
       flying = 0
-      var lane = 0
-      while lane < count do
-        if nextNs(lane) < until then nextNs(lane) = rollouts(lane).flyUntil(until)
-        if nextNs(lane) != Rollout.Never then flying += 1
-        lane += 1
+      var world = 0
+      while world < count do
+        if nextNs(world) < until then nextNs(world) = rollouts(world).flyUntil(until)
+        if nextNs(world) != Rollout.Never then flying += 1
+        world += 1
       vehicles.step()
       steppedTo = until
 
-  /** Where the vehicles of one world are. */
-  private final class Places(lane: Int) extends VelocityResponse:
-    private var next                                      = lane * Vehicles
+  private final class Places(world: Int) extends VelocityResponse:
+    private var next                                      = world * each
     override def handoverS: Double                        = model.handoverS
     override def predictor: skein.vehicle.VehicleModel[?] = model.predictor
     def create(): Vehicle                                 =
@@ -104,24 +99,40 @@ private final class SteppedBatch(
     private def along(from: Double, speed: Double, acceleration: Double): Double =
       from + speed * sinceStep + acceleration * (sinceStep * sinceStep / 2)
 
-private object SteppedBatch:
-  private val Vehicles = 2
+private object SteppedRollouts:
+  /** For worlds of these vehicles; none where they are not stepped side by side. */
+  def of(model: VelocityResponse, vehicles: Seq[Duelist]): Option[SteppedRollouts] =
+    val each = vehicles.size
+    model match
+      case stepped: SteppedResponse =>
+        val worlds = (MostVehicles / each).max(1)
+        val flown  = stepped.together(worlds * each)
+        Some(new SteppedRollouts(stepped, stepped.stepS, stepped.hoveredS, worlds, each, flown))
+      case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
+        val worlds = QuadrotorKernel.VEHICLES / each
+        Some(
+          new SteppedRollouts(
+            quadrotor,
+            quadrotor.quadrotor.stepS,
+            quadrotor.hoveredS,
+            worlds,
+            each,
+            KernelVehicles()
+          )
+        )
+      case _ => None
 
-  /** AirSim's quadrotors, by lanes. */
-  def of(duel: Duel, timing: LoopTiming, model: QuadrotorResponse): SteppedBatch =
-    SteppedBatch(
-      duel,
-      timing,
-      model,
-      model.quadrotor.stepS,
-      model.hoveredS,
-      QuadrotorKernel.VEHICLES / Vehicles,
-      KernelVehicles()
-    )
+  /** What flies so, in a line for the user; none where nothing does. */
+  def told(model: VelocityResponse, vehicles: Seq[Duelist]): Option[String] =
+    (model match
+      case _: SteppedResponse                                                => Some("vehicles side by side")
+      case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
+        Some(s"SIMD, ${LaneMath.LANES} quadrotors at a time")
+      case _ => None
+    ).map(_ + "; their loops by the scalar engine")
 
-  /** Of any kind. */
-  def of(duel: Duel, timing: LoopTiming, model: SteppedResponse): SteppedBatch =
-    SteppedBatch(duel, timing, model, model.stepS, model.hoveredS, Worlds, model.together(Worlds * Vehicles))
+  private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[Duelist]) =
+    LaneSupport.present.isRight && LaneDynamics.of(model, vehicles).isRight
 
   /** Whose state fits the nearest memory. */
-  private val Worlds = 32
+  private val MostVehicles = 64

@@ -1,0 +1,55 @@
+package skein.lanes
+
+import scala.collection.mutable.ArrayBuffer
+import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
+import skein.scenario.Positions
+
+/** The scalar reference for what a team is judged by. Mutable.
+  *
+  * @param model of the vehicles of one rollout
+  */
+private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResponse):
+  private var last: (TeamCandidate, Delays)                = (null, null)
+  private var rollout: Rollout                             = null
+  private var found: Vector[ArrayBuffer[(Double, Double)]] = Vector.empty
+
+  /** What one episode comes to, by what is judged. */
+  def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
+    start(candidate, link, key).flyUntil(Rollout.Never): Unit
+    values
+
+  /** Begins an episode. */
+  private[lanes] def start(candidate: TeamCandidate, link: Delays, key: Int): Rollout =
+    val asked = (candidate, link)
+    if asked != last then
+      last = asked
+      rollout = Rollout(candidate.engagement, timing, link, model)
+    found = candidate.judged.map(_ => ArrayBuffer.empty)
+    rollout.start(key, 0, Judging(candidate))
+    rollout
+
+  /** What the episode came to that is over. */
+  private[lanes] def values: Vector[Double] =
+    last._1.judged.zip(found).map((each, at) => each.of(at.toVector))
+
+  private final class Judging(candidate: TeamCandidate) extends LoopObserver:
+    private val downM         = IArray.from(candidate.engagement.agents.map(_.altitudeDownM))
+    private val northM, eastM = Array.ofDim[Double](downM.length)
+
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+      northM(vehicle) = x; eastM(vehicle) = y
+      if vehicle == downM.length - 1 && candidate.judged.exists(_.counts(timeS)) then
+        val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
+        for (each, at) <- candidate.judged.zip(found) if each.counts(timeS) do
+          at += ((timeS, each.quantity.of(places)))
+
+/** Teams vehicle by vehicle: their loops by the scalar reference. Mutable. */
+private final class SteppedTeams(timing: LoopTiming, stepped: SteppedRollouts):
+  private val teams = Array.tabulate(stepped.worlds)(lane => ScalarTeam(timing, stepped.vehiclesOf(lane)))
+
+  def fly(worlds: TeamWorlds, numbers: Array[Int], into: TeamOutcomes): Unit =
+    for some <- numbers.grouped(stepped.worlds) do
+      stepped.fly(some.length): lane =>
+        val world = some(lane)
+        teams(lane).start(worlds.candidate(world), worlds.link(world), worlds.key(world))
+      for lane <- some.indices do into.set(some(lane), teams(lane).values)
