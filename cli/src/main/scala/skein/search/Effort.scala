@@ -39,7 +39,7 @@ object Effort:
     val (candidates, worlds) = (level(together), level(alone))
     Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
 
-  /** Fresh episodes of a team: each needs a timetable of its own, which is made by the scalar engine. */
+  /** Fresh episodes of a team: so few that the scalar engine, too, flies them in seconds. */
   val TeamsFresh = 256
 
   /** Of flights in virtual time, some a second. */

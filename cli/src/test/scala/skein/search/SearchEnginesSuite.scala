@@ -41,7 +41,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     val seeing = engines(eye = Some(file.toString))
     assert(seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor .*"), seeing)
 
-  test("a team's fresh episodes each need a scalar flight first"):
+  test("a team's fresh episodes fly world by world, side by side"):
     val team = TeamQuestion(
       scenario = "surround",
       set = Map("vehicles" -> "3"),
@@ -57,7 +57,9 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       fresh = 2
     ).setup.fold(fail(_), identity)
     assert(
-      team.engines.matches("SIMD, .*; fresh episodes: SIMD, .*, after a scalar flight of each episode.*"),
+      team.engines.matches(
+        "SIMD, .* candidates of an episode at a time; fresh episodes: SIMD, .* worlds at a time"
+      ),
       team.engines
     )
 

@@ -96,7 +96,7 @@ final class DuelBatch(
   private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] =
     if shareEpisodes && lanes.isRight then None
     else if sees && !shareEpisodes then Some(SeesAlone)
-    else plant.fold(Some(_), LoopLanes.refusal(timing, 2, link, _))
+    else plant.fold(Some(_), LoopSupport.refusal(timing, 2, link, _))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =

@@ -142,7 +142,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
 private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamics, other: DuelFlyer)
     extends LaneFlyer(other):
 
-  protected def canFly(link: Delays): Boolean = LoopLanes.refusal(timing, 2, link, model).isEmpty
+  protected def canFly(link: Delays): Boolean = LoopSupport.refusal(timing, 2, link, model).isEmpty
 
   protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
     new Lanes(pursuer, evader, asked):

@@ -51,7 +51,7 @@ final class TeamBatch(
 
   /** Why no lanes fly over a link. */
   private def refusal(form: Form, share: Boolean, link: Delays): Option[String] =
-    if share then None else LoopLanes.refusal(timing, form.team.count, link, form.vehicles)
+    if share then None else LoopSupport.refusal(timing, form.team.count, link, form.vehicles)
 
   private def lanesOf(candidate: TeamCandidate): Either[String, Form] =
     val engagement = candidate.engagement

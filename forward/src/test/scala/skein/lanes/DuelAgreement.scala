@@ -219,7 +219,7 @@ private[skein] object DuelAgreement:
     val slowestS = links.map(_.maxS).max
     val vehicles = LaneDynamics.of(model, duel).fold(munit.Assertions.fail(_), identity)
     munit.Assertions.assertEquals(
-      links.distinct.flatMap(LoopLanes.refusal(timing, 2, _, vehicles)).toSeq,
+      links.distinct.flatMap(LoopSupport.refusal(timing, 2, _, vehicles)).toSeq,
       Nil
     )
     val kernel = LoopDuelKernel(

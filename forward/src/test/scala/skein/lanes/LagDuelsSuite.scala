@@ -115,7 +115,7 @@ class LagDuelsSuite extends munit.FunSuite:
 
     test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
       assertEquals(
-        LoopLanes.refusal(LoopTiming.stream(0.1), 2, link, vehicles(lag)),
+        LoopSupport.refusal(LoopTiming.stream(0.1), 2, link, vehicles(lag)),
         None,
         s"up to ${link.maxS} s"
       )

@@ -48,7 +48,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       pursuers.take(world, PaperPursuer(0.6 + 0.008 * world))
       evaders.take(world, PaperEvader(7 + 0.02 * world))
     val vehicles = LaneDynamics.of(model, duel(0, durationS)).fold(fail(_), identity)
-    assertEquals(LoopLanes.refusal(timing, 2, link, vehicles), None)
+    assertEquals(LoopSupport.refusal(timing, 2, link, vehicles), None)
     val loop   = LoopLanes(timing, 2, durationS, link.maxS)
     val kernel = LoopDuelKernel(duel(0, durationS), loop, vehicles, pursuers, evaders, DuelNumber.all)
     kernel.fly(keys, Array.fill(worlds)(link), captureM)

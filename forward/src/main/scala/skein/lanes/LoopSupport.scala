@@ -1,0 +1,60 @@
+package skein.lanes
+
+import skein.forward.{DelayTable, Delays, LoopTiming}
+import skein.port.Moves
+import skein.units.Expect
+
+/** Which loops fly by lanes where worlds have delays of their own. */
+private[lanes] object LoopSupport:
+  import LoopLanes.{MostS, readingS}
+
+  /** Of all questions of a round or task, each taking as long as it may. */
+  private val MostInTurnS = 3.5
+
+  /** Why this loop does not fly over a link by lanes, for a person. */
+  def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
+    link match
+      case table: DelayTable => refusal(timing, vehicles, table.maxS, model)
+      case _ => Some("worlds of their own fly by lanes where a link's delays do not come in stretches")
+
+  private def refusal(
+      timing: LoopTiming,
+      vehicles: Int,
+      maxDelayS: Double,
+      model: LaneDynamics
+  ): Option[String] =
+    val steering = LoopTiming.steeringOf(timing)
+    val timeoutS = LoopTiming.askingOf(timing).timeoutS
+    val ofLoop   = timing match
+      case stream: LoopTiming.Stream =>
+        for
+          _ <- Expect.that(!stream.asking.inOrder):
+            "the lanes take answers as they come, and this loop in order"
+          _ <- Expect.that(stream.asking.spreadS == 0):
+            "the lanes ask all vehicles at once, and this loop spreads its questions"
+          _ <- Expect.that(stream.patienceS > 0):
+            "the lanes wait for the other vehicles' readings, and this loop does not"
+        yield Vector(stream.patienceS, stream.toleranceS)
+      case _: LoopTiming.Sequential | _: LoopTiming.Futures =>
+        Expect
+          .that(vehicles * timeoutS <= MostInTurnS):
+            s"$vehicles questions in turn may take longer than the lanes can count"
+          .map(_ => Vector.empty)
+      case _ => Left("worlds with delays of their own fly by lanes under sequential, futures and stream")
+    val refused =
+      for
+        _ <- Expect.that(model.fliesAlone):
+          "worlds with delays of their own fly vehicle by vehicle with the quadrotor"
+        _ <- Expect.that(steering.mostOutstanding == Moves.MostOutstanding):
+          s"the lanes know ${Moves.MostOutstanding} moves in flight, and this loop has ${steering.mostOutstanding}"
+        times <- ofLoop
+        _     <- Expect.that(model.stepS <= LaneFlights.MOST_PIECE_S):
+          s"the lanes fly steps of ${LaneFlights.MOST_PIECE_S} s at most, and the vehicle's last ${model.stepS} s"
+        underWayS = times.headOption.getOrElse(0.0) + readingS(timing, vehicles, maxDelayS) + 2 * maxDelayS
+        _ <- Expect.that(timing.periodS + underWayS + model.deadTimeS <= MostS):
+          "a command may act later than the lanes can count"
+        own = Vector(timing.periodS, timeoutS, steering.minIntervalS, steering.handoverS)
+        _ <- Expect.that((own ++ times).forall(LaneViews.isWhole)):
+          "the lanes count time in grains of 4 ns, and this loop's times are none"
+      yield ()
+    refused.left.toOption
