@@ -1,7 +1,7 @@
 package skein.bench
 
 import skein.forward.{DelayTable, LoopTiming}
-import skein.lanes.{DuelNumber, DuelWorlds, QuadrotorKernel}
+import skein.lanes.{DuelNumber, DuelWorlds, LaneQuadrotors}
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 
@@ -30,7 +30,7 @@ object Figures:
       5
     )(share.run(cores).witness)
 
-    val vehicleSteps = cores * 50_000.0 * QuadrotorKernel.VEHICLES
+    val vehicleSteps = cores * 50_000.0 * LaneQuadrotors.VEHICLES
     show("quadrotor with its controller, at least 80 M vehicle-steps/s", vehicleSteps, 5)(
       Works.quadrotor.run(cores).witness
     )

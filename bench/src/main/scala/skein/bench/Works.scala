@@ -1,7 +1,7 @@
 package skein.bench
 
 import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
-import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds, QuadrotorKernel}
+import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds, LaneQuadrotors}
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
@@ -45,13 +45,13 @@ object Works:
     (episodes * 1200.0, sum / episodes)
 
   val quadrotor: Work = Work("quadrotor, SIMD", VehicleStep): _ =>
-    val kernel = QuadrotorKernel()
+    val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(sys.error, identity)
     val steps  = 50_000
-    for i <- 0 until QuadrotorKernel.VEHICLES do
+    for i <- 0 until LaneQuadrotors.VEHICLES do
       kernel.hover(i, Vector3(0, 0, -20))
       kernel.command(i, 10, 0, -20)
     kernel.fly(steps)
-    (QuadrotorKernel.VEHICLES * steps.toDouble, kernel.velocityNed(0).x)
+    (LaneQuadrotors.VEHICLES * steps.toDouble, kernel.velocityNed(0).x)
 
   val quadrotorScalar: Work = Work("quadrotor, scalar", VehicleStep): _ =>
     val steps    = 1_000_000

@@ -47,7 +47,8 @@ object Formula:
     * @param method by name
     * @param sizes of arguments that are arrays, by name
     * @param arguments the types of its arguments, where a class has several methods of the name
-    * @param known arguments that are whole numbers, by name: which they are
+    * @param known arguments, or what they hold, by name, that are no doubles: which they are. What is
+    *   answered and still holds them tells the other fields alone
     * @return or why it cannot be traced
     */
   def of(
@@ -55,7 +56,7 @@ object Formula:
       method: String,
       sizes: Map[String, Int] = Map.empty,
       arguments: Option[Seq[Class[?]]] = None,
-      known: Map[String, Int] = Map.empty
+      known: Map[String, Any] = Map.empty
   ): Either[Untraceable, Formula] =
     val candidates = methodsOf(target.getClass).filter: each =>
       each.getName == method && !Modifier.isAbstract(each.getModifiers) && !each.isBridge &&
@@ -71,7 +72,7 @@ object Formula:
       target: AnyRef,
       method: Method,
       sizes: Map[String, Int],
-      known: Map[String, Int]
+      known: Map[String, Any]
   ): Either[Untraceable, Formula] =
     try
       val loader = Option(target.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
@@ -79,6 +80,7 @@ object Formula:
       val trace  = Trace()
       val lifter = Lifter(files, trace)
       val names  = Vector.newBuilder[String]
+      val told   = mutable.HashMap.empty[Value, Set[(String, Value)]].withDefaultValue(Set.empty)
       var count  = 0
 
       def input(name: String): Node =
@@ -88,7 +90,12 @@ object Formula:
 
       def argument(kind: Class[?], name: String): Value =
         if kind == classOf[Double] then Number(input(name))
-        else if kind == classOf[Int] && known.contains(name) then Whole(trace.const(known(name)))
+        else if known.contains(name) then
+          known(name) match
+            case null           => Null
+            case number: Int    => Whole(trace.const(number))
+            case truth: Boolean => Whole(trace.const(if truth then 1 else 0))
+            case other: AnyRef  => Known(other, None)
         else if kind == classOf[Object] then
           throw Untraceable(s"the type of the argument $name is not known; make it a case class of doubles")
         else if kind == classOf[Array[Double]] then
@@ -101,8 +108,10 @@ object Formula:
           )
         else
           val fields =
-            fieldsOf(kind).map(each => each.getName -> argument(each.getType, s"$name.${each.getName}"))
-          lifter.make(Thing.Record(kind.getName.replace('.', '/'), fields.toMap))
+            fieldsOf(kind).map(each => each.getName -> argument(each.getType, s"$name.${each.getName}")).toMap
+          val made = lifter.make(Thing.Record(kind.getName.replace('.', '/'), fields))
+          told(made) = fields.filter((field, _) => known.contains(s"$name.$field")).toSet
+          made
 
       val descriptor = java.lang.invoke.MethodType
         .methodType(method.getReturnType, method.getParameterTypes)
@@ -125,7 +134,8 @@ object Formula:
         case Boxed(Number(node)) => Vector(name -> node)
         case Made(id)            =>
           lifter.thing(id) match
-            case Thing.Record(className, fields) => ofFields(className, fields, name)
+            case Thing.Record(className, fields) =>
+              ofFields(className, fields.filterNot(told(value)), name)
             case Thing.Either(className, fields) => ofFields(className, fields, name)
             case Thing.Elements(values, _)       =>
               values.zipWithIndex.flatMap((each, i) => outputsOf(each, s"$name($i)"))

@@ -29,19 +29,32 @@ final class Quadrotor(
     * air; about 0.13 µs. `QuadrotorGolden` holds it to AirSim's own step responses.
     */
   def step(state: QuadrotorState, setpoint: Setpoint, environment: Environment = Environment.Calm): Unit =
-    val densityRatio = Atmosphere.densityRatio(environment.originAltitudeM - state.z)
-    val lift         =
-      (state.thrust0 + state.thrust1 + state.thrust2 + state.thrust3) * maxThrustN * densityRatio
     if state.grounded then
       // Its thrust moves it from the next step on, as in AirSim.
-      if lift >= massKg * Airframe.Gravity then state.grounded = false
+      if lift(state, environment) >= massKg * Airframe.Gravity then state.grounded = false
+      control(state, setpoint)
     else if state.z + (state.vz + halfStep * state.az) * stepS >= environment.groundDownM then
       val before = state.copy
-      move(state, environment, densityRatio, lift)
+      move(state, environment)
       if state.vz > 0 then touchGround(state, before, environment)
-    else move(state, environment, densityRatio, lift)
+      control(state, setpoint)
+    else stepInAir(state, setpoint, environment)
+
+  /** The same where nothing is near: arithmetic, which is compiled for many vehicles at once as it stands. */
+  private[skein] def stepInAir(state: QuadrotorState, setpoint: Setpoint, environment: Environment): Unit =
+    move(state, environment)
+    control(state, setpoint)
+
+  private def control(state: QuadrotorState, setpoint: Setpoint): Unit =
     spinRotors(state)
     controller.update(state, setpoint)
+
+  private def densityRatio(state: QuadrotorState, environment: Environment) =
+    Atmosphere.densityRatio(environment.originAltitudeM - state.z)
+
+  private def lift(state: QuadrotorState, environment: Environment) =
+    (state.thrust0 + state.thrust1 + state.thrust2 + state.thrust3) * maxThrustN *
+      densityRatio(state, environment)
 
   /** The same vehicle with these gains. A state that it is to fly on must
     * [[QuadrotorState.restartController]]; [[hovering]] goes on to mean the gains that it was made with.
@@ -109,19 +122,16 @@ final class Quadrotor(
     state.lagged3 = state.control3 + (state.lagged3 - state.control3) * rotorKeep
 
   /** Velocity Verlet as AirSim has it: forces at the mean velocity of the step. */
-  private def move(
-      state: QuadrotorState,
-      environment: Environment,
-      densityRatio: Double,
-      lift: Double
-  ): Unit =
+  private def move(state: QuadrotorState, environment: Environment): Unit =
     import state.{qw, qx, qy, qz}
-    val vx = state.vx + halfStep * state.ax
-    val vy = state.vy + halfStep * state.ay
-    val vz = state.vz + halfStep * state.az
-    val wx = state.wx + halfStep * state.wxDot
-    val wy = state.wy + halfStep * state.wyDot
-    val wz = state.wz + halfStep * state.wzDot
+    val densityRatio = this.densityRatio(state, environment)
+    val lift         = this.lift(state, environment)
+    val vx           = state.vx + halfStep * state.ax
+    val vy           = state.vy + halfStep * state.ay
+    val vz           = state.vz + halfStep * state.az
+    val wx           = state.wx + halfStep * state.wxDot
+    val wy           = state.wy + halfStep * state.wyDot
+    val wz           = state.wz + halfStep * state.wzDot
 
     val r00 = 1 - 2 * (qy * qy + qz * qz)
     val r10 = 2 * (qx * qy + qw * qz)

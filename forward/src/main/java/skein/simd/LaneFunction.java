@@ -29,6 +29,13 @@ public abstract class LaneFunction {
    * @param offsets where in its array each begins
    * @param parameters at their {@link #place places}; where all worlds have the same, one after the other
    * @param scratch of {@link #scratch()} numbers
+   * @param worlds those that count are the first
    */
-  public abstract void apply(float[][] arrays, int[] offsets, float[] parameters, float[] scratch);
+  public abstract void apply(
+      float[][] arrays, int[] offsets, float[] parameters, float[] scratch, int worlds);
+
+  /** The same for all worlds. */
+  public final void apply(float[][] arrays, int[] offsets, float[] parameters, float[] scratch) {
+    apply(arrays, offsets, parameters, scratch, COUNT);
+  }
 }

@@ -76,6 +76,9 @@ private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
 
   def apply(): Unit = bound.function.apply(arrays, offsets, parameters, scratch)
 
+  /** In the first worlds alone. */
+  def apply(worlds: Int): Unit = bound.function.apply(arrays, offsets, parameters, scratch, worlds)
+
   def rewind(): Unit = System.arraycopy(starts, 0, offsets, 0, offsets.length)
 
   /** Afterwards everything begins its stride further on, or, at the end of an array, at its start. */

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.formula.{Angles, Evaluation, Formula, Node, Trace, Untraceable}
+import skein.formula.{Angles, Evaluation, Formula, Fused, Node, Trace, Untraceable}
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
   *
@@ -50,13 +50,15 @@ private[skein] object FixedFormula:
   private val known = ConcurrentHashMap[(Class[?], String, Int), Forms[AnyRef, FixedFormula]]()
 
   /** @param changed what is computed in the place of the method's outputs
+    * @param rows so many of the first inputs stand in one array, row by row, and all outputs in another
     */
   def apply(
       formula: Formula,
       of: AnyRef,
       alike: Int = 0,
       extra: Int = 0,
-      changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs
+      changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs,
+      rows: Int = 0
   ): FixedFormula =
     val own    = formula.inputs.size - alike
     val trace  = Trace()
@@ -67,8 +69,10 @@ private[skein] object FixedFormula:
       _ => None,
       number => trace.param(alike + number)
     )
-    val outputs = changed(trace, formula.outputs.map((_, node) => angles.convert(node)))
-    new FixedFormula(formula, of, alike, extra, BoundFunction.of(outputs), Evaluation(angles.derived))
+    val fused   = Fused(formula.trace, formula.outputs.map(_._2)).nodes
+    val outputs = changed(trace, fused.map(angles.convert))
+    val bound   = BoundFunction.of(outputs, { case input if input < rows => input }, areRows = rows > 0)
+    new FixedFormula(formula, of, alike, extra, bound, Evaluation(angles.derived))
 
   /** An object's method, which is compiled once for all objects of a form.
     *

@@ -12,7 +12,6 @@ import skein.forward.{
   VelocityResponse
 }
 import skein.units.Expect
-import skein.vehicle.Quadrotor
 
 /** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
   * delays of its own.
@@ -68,11 +67,10 @@ private[skein] object LaneDynamics:
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
-        _ <- Expect.that(quadrotor.quadrotor eq Quadrotor.AirSim):
-          "the lanes fly AirSim's own quadrotor alone"
         _ <- Expect.that(lowest >= LeastAltitudeM):
           s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
-      yield QuadrotorDynamics(quadrotor)
+        lanes <- QuadrotorLanes.of(quadrotor.quadrotor)
+      yield QuadrotorDynamics(quadrotor, lanes)
     case PlantResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
     case _                    => Left("the lanes do not know the vehicle")
 
@@ -156,13 +154,13 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
     PlantFlights(duelist, lanes, loop)
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
-private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDynamics:
+private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: QuadrotorLanes) extends LaneDynamics:
   private val stepNs    = Nanos.of(model.quadrotor.stepS)
   private val hoveredNs = Nanos.of(model.hoveredS)
 
   def deadTimeS: Double                             = 0
   def handoverS: Double                             = model.handoverS
-  def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
+  def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist, LaneQuadrotors(lanes))
 
   override def fliesAlone: Boolean                                            = false
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =

@@ -109,7 +109,7 @@ private object SteppedRollouts:
         val flown  = stepped.together(worlds * each)
         Some(new SteppedRollouts(stepped, stepped.stepS, stepped.hoveredS, worlds, each, flown))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
-        val worlds = QuadrotorKernel.VEHICLES / each
+        val worlds = LaneQuadrotors.VEHICLES / each
         Some(
           new SteppedRollouts(
             quadrotor,
@@ -117,7 +117,7 @@ private object SteppedRollouts:
             quadrotor.hoveredS,
             worlds,
             each,
-            KernelVehicles()
+            LaneQuadrotors.of(quadrotor.quadrotor).fold(sys.error, identity)
           )
         )
       case _ => None

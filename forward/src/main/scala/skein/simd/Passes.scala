@@ -30,8 +30,12 @@ private object Passes:
 
   // The same where inputs and outputs are rows of few arrays, whose addresses leave registers: a step with
   // drag and two lags in one pass takes 210 ns, in two 250 to 300.
-  private val MostOfRows          = 90
-  private val MostConstantsOfRows = 24
+  private val MostOfRows          = 140
+  private val MostConstantsOfRows = 30
+
+  // In what laying a number by costs: a pass, and to fetch a number.
+  private val PassCost  = 8.0
+  private val FetchCost = 0.5
 
   /** @param ofRows whether its inputs and outputs are rows of few arrays
     */
@@ -45,25 +49,15 @@ private object Passes:
     val usedPlainly = order.iterator
       .flatMap(node => node.args.filterNot(arg => Passes.factor(node).contains(arg)))
       .toSet ++ outputs
-    val computed  = order.filterNot(node => node.op == Op.Mul && fused(node) && !usedPlainly(node))
-    val passOf    = mutable.HashMap.empty[Node, Int]
-    var number    = 0
-    var size      = 0
-    var constants = Set.empty[Any]
-    for node <- computed do
-      val more = constants ++ LaneCosts.constantsOf(node)
-      if size > 0 && (size + LaneCosts.of(node) > most || more.size > mostConstants) then
-        number += 1
-        size = 0
-        constants = LaneCosts.constantsOf(node)
-      else constants = more
-      size += LaneCosts.of(node)
-      passOf(node) = number
+    val computed = order.filterNot(node => node.op == Op.Mul && fused(node) && !usedPlainly(node))
     def argsOf(node: Node): Vector[Node] =
-      node.args.flatMap(arg => if passOf.contains(arg) then Vector(arg) else arg.args)
-    def isLeaf(node: Node) = node.op match
-      case Op.Const | Op.Input | Op.Param | Op.Always => true
-      case _                                          => false
+      node.args.flatMap(arg =>
+        if arg.op == Op.Mul && fused(arg) && !usedPlainly(arg) then arg.args else Vector(arg)
+      )
+    val ends   = cut(computed, argsOf, most, mostConstants)
+    val passOf = mutable.HashMap.empty[Node, Int]
+    for (node, at) <- computed.zipWithIndex do passOf(node) = ends.count(_ <= at)
+    val number = ends.size - 1
     val ofPass = computed.groupBy(passOf).withDefaultValue(Vector.empty)
     val needs  = Vector.tabulate(number + 1): pass =>
       ofPass(pass).flatMap(argsOf).distinct.filter(arg =>
@@ -89,6 +83,46 @@ private object Passes:
         outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
       )
 
+  /** Where passes end that lay by and fetch as few numbers as possible.
+    *
+    * @return places in the order, the last its end
+    */
+  private def cut(
+      order: Vector[Node],
+      argsOf: Node => Vector[Node],
+      most: Int,
+      mostConstants: Int
+  ): Vector[Int] =
+    val count   = order.size
+    val placeOf = order.zipWithIndex.toMap
+    val args    = order.map(argsOf(_).filterNot(arg => arg.isConst || arg.op == Op.Always))
+    val lastUse = Array.ofDim[Int](count)
+    for (of, at) <- args.zipWithIndex; arg <- of if !isLeaf(arg) do lastUse(placeOf(arg)) = at
+    val best = Array.fill(count + 1)(Double.PositiveInfinity)
+    val from = Array.ofDim[Int](count + 1)
+    best(0) = 0
+    for end <- 1 to count do
+      val fetched    = mutable.HashSet.empty[Node]
+      val constants  = mutable.HashSet.empty[Any]
+      var size, laid = 0
+      var first      = end
+      var fits       = true
+      while first > 0 && fits do
+        first -= 1
+        val node = order(first)
+        size += LaneCosts.of(node)
+        constants ++= LaneCosts.constantsOf(node)
+        fits = first == end - 1 || size <= most && constants.size <= mostConstants
+        if fits then
+          if !isLeaf(node) then fetched -= node
+          fetched ++= args(first)
+          if lastUse(first) >= end && !node.op.isCondition then laid += 1
+          val cost = best(first) + PassCost + fetched.size * FetchCost + laid
+          if cost < best(end) then
+            best(end) = cost
+            from(end) = first
+    Iterator.iterate(count)(from(_)).takeWhile(_ > 0).toVector.reverse
+
   /** Where numbers are laid by from their pass to their last use: a place is given again as soon as it is
     * free, so that all stay in a near cache. A pass loads before it stores.
     */
@@ -111,6 +145,10 @@ private object Passes:
             most += 1
             most - 1
     places.toMap
+
+  private def isLeaf(node: Node) = node.op match
+    case Op.Const | Op.Input | Op.Param | Op.Always => true
+    case _                                          => false
 
   /** The product that a sum is fused with. */
   def factor(sum: Node): Option[Node] =

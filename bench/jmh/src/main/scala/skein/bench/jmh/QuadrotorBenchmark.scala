@@ -1,21 +1,21 @@
 package skein.bench.jmh
 
 import org.openjdk.jmh.annotations.*
-import skein.lanes.QuadrotorKernel
+import skein.lanes.LaneQuadrotors
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 
 /** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? By
-  * lanes, `QuadrotorKernel.VEHICLES` of them side by side, and one alone by the scalar reference.
+  * lanes, `LaneQuadrotors.VEHICLES` of them side by side, and one alone by the scalar reference.
   */
 class QuadrotorBenchmark extends Rate:
-  private var kernel: QuadrotorKernel = null
-  private var witness                 = 0.0
+  private var kernel: LaneQuadrotors = null
+  private var witness                = 0.0
 
   @Setup
   def prepare(): Unit =
-    require(QuadrotorKernel.VEHICLES == 128, s"${QuadrotorKernel.VEHICLES} vehicles")
-    kernel = QuadrotorKernel()
+    require(LaneQuadrotors.VEHICLES == 128, s"${LaneQuadrotors.VEHICLES} vehicles")
+    kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(sys.error, identity)
 
   @TearDown
   def show(): Unit = println(f"witness, speed after 3 s: $witness%.4f m/s")
@@ -23,7 +23,7 @@ class QuadrotorBenchmark extends Rate:
   @Benchmark
   @OperationsPerInvocation(128 * 1000)
   def byLanes(): Double =
-    for i <- 0 until QuadrotorKernel.VEHICLES do
+    for i <- 0 until LaneQuadrotors.VEHICLES do
       kernel.hover(i, Vector3(0, 0, -20))
       kernel.command(i, 10, 0, -20)
     kernel.fly(1000)

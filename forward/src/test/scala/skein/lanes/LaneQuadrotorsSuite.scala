@@ -3,8 +3,8 @@ package skein.lanes
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 
-class QuadrotorKernelSuite extends munit.FunSuite:
-  private val vehicles = QuadrotorKernel.VEHICLES
+class LaneQuadrotorsSuite extends munit.FunSuite:
+  private val vehicles = LaneQuadrotors.VEHICLES
 
   private def downM(vehicle: Int) = -5.0 - vehicle * 0.2
 
@@ -15,7 +15,7 @@ class QuadrotorKernelSuite extends munit.FunSuite:
     ((speed * math.cos(angle)).toFloat, (speed * math.sin(angle)).toFloat)
 
   test("the kernel flies as the scalar quadrotor does: 10 s of turning, to 5 mm and 5 mm/s"):
-    val kernel = QuadrotorKernel()
+    val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity)
     val states = Array.tabulate(vehicles)(v => Quadrotor.AirSim.hovering(Vector3(v, -v, downM(v))))
     for v <- 0 until vehicles do kernel.hover(v, Vector3(v, -v, downM(v)))
     for turn <- 0 until 33 do
@@ -32,7 +32,7 @@ class QuadrotorKernelSuite extends munit.FunSuite:
       assert(speed < 5e-3, s"vehicle $v is $speed m/s off")
 
   test("hover holds its position to a millimetre over 30 s, in floats too"):
-    val kernel = QuadrotorKernel()
+    val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity)
     for v <- 0 until vehicles do kernel.hover(v, Vector3(0, 0, -20))
     val start = kernel.positionNed(0)
     kernel.fly(10000)

@@ -1,0 +1,65 @@
+package skein.lanes
+
+import skein.formula.{Formula, Untraceable}
+import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
+
+/** How quadrotors of one form fly many at a time: [[Quadrotor.stepInAir]] itself, compiled, for
+  * `moveByVelocityZ` with the yaw held, in calm air.
+  */
+private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, formula: FixedFormula):
+  import QuadrotorLanes.*
+
+  /** The numbers of a vehicle's state by their names, each of which is one row. */
+  val rows: Vector[String] = formula.inputs.map(_.stripPrefix(State)).take(formula.bound.outputs)
+
+  def row(name: String): Int = rows.indexOf(name)
+
+  /** Which numbers these are of a state. */
+  def numbersOf(state: QuadrotorState): Vector[Double] = fields.map(_.getDouble(state))
+
+  private val fields = rows.map: name =>
+    val field = classOf[QuadrotorState].getDeclaredField(name)
+    field.setAccessible(true)
+    field
+
+  /** One step.
+    *
+    * @param from rows of the states before it, and of those after it
+    * @param goal rows of what is commanded: velocity north and east, m/s, and down, m
+    */
+  def step(from: Array[Float], to: Array[Float], goal: Array[Float]): LaneCall =
+    val call = LaneCall(formula.bound, formula.parameters.map(_.toFloat))
+    for (input, place) <- formula.bound.inputs.zipWithIndex do
+      if input < rows.size then call.input(place, from, 0)
+      else call.input(place, goal, (input - rows.size) * TimetableVehicles.WORLDS)
+    call.output(0, to, 0)
+    call
+
+private[lanes] object QuadrotorLanes:
+  private val State = "state."
+
+  /** @return or why such quadrotors do not fly by lanes */
+  def of(quadrotor: Quadrotor): Either[String, QuadrotorLanes] =
+    val airborne = Airborne(quadrotor)
+    known(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)
+
+  private val known = Forms[Airborne, FixedFormula](_.fits(_))(compiled)
+
+  private def compiled(of: Airborne): Either[Untraceable, FixedFormula] = Formula
+    .of(
+      of,
+      "step",
+      known = Map(
+        "state.grounded"      -> false,
+        "state.contacts"      -> 0,
+        "state.verticalMode"  -> VerticalMode.Position,
+        "state.cascadeMemory" -> null
+      )
+    )
+    .map(formula => FixedFormula(formula, of, rows = formula.outputs.size))
+
+  /** What is compiled. */
+  private final class Airborne(quadrotor: Quadrotor):
+    def step(state: QuadrotorState, northMps: Double, eastMps: Double, downM: Double): QuadrotorState =
+      quadrotor.stepInAir(state, Setpoint.velocityZ(northMps, eastMps, downM), Environment.Calm)
+      state
