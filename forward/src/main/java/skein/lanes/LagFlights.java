@@ -27,10 +27,10 @@ final class LagFlights extends LaneFlights {
   private static final int NUMBERS = 2;
 
   /** Of powers of two that floats hold. */
-  private static final float LEAST_EXPONENT = -120f;
+  static final float LEAST_EXPONENT = -120f;
 
   /** In the place of none: no vehicle gets anywhere within. */
-  private static final double LEAST_LAG_S = 1e-6;
+  static final double LEAST_LAG_S = 1e-9;
 
   private final float speedMps, lagS;
 
