@@ -4,6 +4,7 @@ import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.NE;
 import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.LEAST_POWER;
 import static skein.simd.LaneMath.LOG2_E;
 import static skein.simd.LaneMath.POWER_1;
 import static skein.simd.LaneMath.POWER_2;
@@ -32,7 +33,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
    */
   ForecastLagVehicles(double speedMps, double lagS) {
     this.speedMps = (float) speedMps;
-    this.lagS = (float) Math.max(lagS, LagFlights.LEAST_LAG_S);
+    this.lagS = (float) Math.max(lagS, LaneVehicles.LEAST_LAG_S);
   }
 
   @Override
@@ -42,7 +43,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
     FloatVector halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
         lag = FloatVector.broadcast(SPECIES, lagS),
         speed = FloatVector.broadcast(SPECIES, speedMps),
-        least = FloatVector.broadcast(SPECIES, LagFlights.LEAST_EXPONENT),
+        least = FloatVector.broadcast(SPECIES, LEAST_POWER),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
         round = FloatVector.broadcast(SPECIES, ROUND),

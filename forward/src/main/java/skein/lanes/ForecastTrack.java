@@ -203,7 +203,7 @@ final class ForecastTrack {
    * @param delays the means of all vehicles' readings
    */
   void enter(
-      LaneVectors vectors, int[] whose, int vehicle, int[] asked, int[] made, int[] received, LaneForecast.Means delays) {
+      LaneVectors vectors, int[] whose, int vehicle, int[] asked, int[] made, int[] received, MeanDelays delays) {
     IntVector zero = IntVector.broadcast(INTS, 0), one = IntVector.broadcast(INTS, 1);
     entering.count = 0;
     for (int k = 0; k < vectors.count; k++) {
@@ -220,7 +220,7 @@ final class ForecastTrack {
   }
 
   /** Notes readings that enter: of each world the first, the second and so on together. */
-  private void note(int[] made, int[] received, LaneForecast.Means delays) {
+  private void note(int[] made, int[] received, MeanDelays delays) {
     for (int k = 0; k < entering.count; k++) {
       int i = entering.first[k];
       IntVector count = IntVector.fromArray(INTS, entered, i);
@@ -390,7 +390,7 @@ final class ForecastTrack {
    * @param when the moments, from there too; {@link LaneOffers#NONE} where no way is asked for
    * @param isFirst whether it is the first way since readings entered
    */
-  void lay(int row, LaneVectors vectors, int[] known, int[] when, LaneForecast.Means delays, boolean isFirst) {
+  void lay(int row, LaneVectors vectors, int[] known, int[] when, MeanDelays delays, boolean isFirst) {
     // But for what is taken for lost meanwhile, the ways to all moments are one.
     if (isFirst || mayLose) lay(row, vectors, known, when, delays.toS, delays.fromS);
     aim(row, vectors, known, when, delays.toS);
