@@ -76,7 +76,6 @@ final class ForecastTrack {
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
 
   /** At most, of any vector. */
-
   int turns;
 
   /** By vector, the row of the first command on the way laid. */

@@ -1,11 +1,13 @@
 package skein.lanes
 
 import skein.forward.{
+  Asking,
   DelayTable,
   Duel,
   LoopTiming,
   Reduced,
   ReducedResponse,
+  Steering,
   VelocityResponse,
   VelocityResponses
 }
@@ -127,6 +129,38 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
         5,
         lag
       ).check(s"${link.maxS} s", 0 until worlds by 16)
+
+  private val slow = Reduced(gain = 0.95, lagS = 0.8, deadTimeS = 0.3)
+
+  for (what, timing, link, model) <- Seq(
+      (
+        "that asks one question at a time",
+        LoopTiming.Predictive(0.1, lag.predictor, Asking(window = 1)),
+        wild(110, 60),
+        lag
+      ),
+      (
+        "most of whose questions fail",
+        LoopTiming.Predictive(0.1, lag.predictor, Asking(timeoutS = 0.3)),
+        wild(370, 115),
+        lag
+      ),
+      (
+        "that may command in the moment in which it is due",
+        LoopTiming.Predictive(0.04, lag.predictor, steering = Steering(minIntervalS = 0.05)),
+        wild(27, 14),
+        lag
+      ),
+      (
+        "of vehicles with a long dead time",
+        LoopTiming.Predictive(0.04, slow.predictor),
+        wild(45, 60),
+        slow
+      )
+    )
+  do
+    test(s"a predictive loop $what: the scalar reference's decisions and flight for 10 s"):
+      agreement(timing, link, 10, model).check(what, 0 until worlds by 3)
 
   test("predictive over a constant link whose answers come when it is decided"):
     for meanMs <- Seq(50, 100, 150, 350, 450) do
