@@ -4,7 +4,10 @@ import static skein.simd.LaneMath.SPECIES;
 
 import jdk.incubator.vector.FloatVector;
 
-/** Straight on as it was read, as {@code skein.vehicle.ConstantVelocity} does: of the way only its length counts. */
+/**
+ * Straight on as it was read, as {@code skein.vehicle.ConstantVelocity} does: of the way only its length
+ * counts.
+ */
 final class ForecastCoasting implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 

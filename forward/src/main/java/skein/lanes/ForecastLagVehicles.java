@@ -84,7 +84,8 @@ final class ForecastLagVehicles implements ForecastVehicles {
         VectorMask<Float> follows = at.compare(GT, zero);
         firstX = newX.blend(firstX, follows);
         firstY = newY.blend(firstY, follows);
-        VectorMask<Float> changes = newX.compare(NE, x).or(newY.compare(NE, y)).and(follows).and(at.compare(LT, end));
+        VectorMask<Float> changes =
+            newX.compare(NE, x).or(newY.compare(NE, y)).and(follows).and(at.compare(LT, end));
         if (changes.anyTrue()) {
           FloatVector time = end.sub(at).max(zero).min(end);
           exponent = time.mul(halvings).max(least);

@@ -24,7 +24,7 @@ final class ForecastPlants implements ForecastVehicles {
 
   private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
 
-  /** How far the ways are flown, s, until when the commands stand, and when the next step begins at the latest. */
+  /** How far the ways are flown, until when the commands stand, when the next step begins at the latest. */
   private final float[] flownS = new float[WORLDS], untilS = new float[WORLDS], stopS = new float[WORLDS];
 
   /** Where it is flown on. */
@@ -78,7 +78,8 @@ final class ForecastPlants implements ForecastVehicles {
     boolean any = false;
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i), until = FloatVector.fromArray(SPECIES, untilS, i);
+      FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
+          until = FloatVector.fromArray(SPECIES, untilS, i);
       for (int turn = way.held; turn < way.turnsOf[i / LANES]; turn++) {
         FloatVector told = FloatVector.fromArray(SPECIES, turnS, turn * WORLDS + i).sub(way.deadS);
         until = until.blend(until.min(told), told.compare(GT, flown));
@@ -100,7 +101,8 @@ final class ForecastPlants implements ForecastVehicles {
       VectorMask<Float> on = FloatVector.fromArray(SPECIES, goes, i).compare(GT, 0f);
       for (int number = i; number < from.length; number += WORLDS)
         FloatVector.fromArray(SPECIES, to, number).intoArray(from, number, on);
-      FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i), until = FloatVector.fromArray(SPECIES, stopS, i);
+      FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
+          until = FloatVector.fromArray(SPECIES, stopS, i);
       // To the end itself: a rest that rounding leaves would be a step of its own.
       FloatVector then = flown.add(FloatVector.fromArray(SPECIES, forS, i));
       flown.blend(until.blend(then, until.sub(then).compare(GT, 1e-6f)), on).intoArray(flownS, i);

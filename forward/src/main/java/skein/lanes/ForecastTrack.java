@@ -51,13 +51,16 @@ final class ForecastTrack {
   private final int periodGrains, farRows;
   private final float periodS;
 
-  /** The row in which the newest reading became known, -1 before the first; when it was made, from that row's begin. */
+  /**
+   * The row in which the newest reading became known, -1 before the first; when it was made, from that row's
+   * begin.
+   */
   final int[] knownRow = new int[WORLDS], readAt = new int[WORLDS];
 
   /** 1 where it became known in this period. */
   final int[] fresh = new int[WORLDS];
 
-  // The row of the oldest command held, which was in effect at the reading, and the direction of the one before.
+  // The row of the oldest command held, which was in effect at the reading; the direction of the one before.
   private final int[] head = new int[WORLDS];
   private final Directions before = new Directions(WORLDS), prior = new Directions(WORLDS);
 
@@ -72,7 +75,7 @@ final class ForecastTrack {
 
   Directions turn;
 
-  /** By vector: the number of the first turn that counts, the others of {@link #held} are none; and how many there are. */
+  /** By vector: the first turn that counts, those of {@link #held} before it do not; how many there are. */
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
 
   /** At most, of any vector. */
@@ -84,7 +87,7 @@ final class ForecastTrack {
   /** Whether a command on the way laid may be taken for lost within a period. */
   private boolean mayLose;
 
-  /** How long the way is, and the part of it until the command is sent, which is how old the reading is then, s. */
+  /** How long the way is, and the part of it until the command is sent: how old the reading is then, s. */
   final float[] endS = new float[WORLDS], ageS = new float[WORLDS];
 
   /** 1 where a turn is that of a command of its own. */
@@ -144,8 +147,11 @@ final class ForecastTrack {
     IntVector first = here.add(0);
     for (int i = 0; i < WORLDS; i += LANES) {
       first = first.min(IntVector.fromArray(INTS, head, i));
-      here.sub(IntVector.fromArray(INTS, knownRow, i)).min(farRows).mul(-periodGrains)
-          .add(IntVector.fromArray(INTS, readAt, i)).intoArray(newestAt, i);
+      here.sub(IntVector.fromArray(INTS, knownRow, i))
+          .min(farRows)
+          .mul(-periodGrains)
+          .add(IntVector.fromArray(INTS, readAt, i))
+          .intoArray(newestAt, i);
     }
     oldest = Math.max(oldest, first.reduceLanes(MIN));
     if (row - oldest >= slots) makeRoom(row);
@@ -202,13 +208,20 @@ final class ForecastTrack {
    * @param delays the means of all vehicles' readings
    */
   void enter(
-      LaneVectors vectors, int[] whose, int vehicle, int[] asked, int[] made, int[] received, MeanDelays delays) {
+      LaneVectors vectors,
+      int[] whose,
+      int vehicle,
+      int[] asked,
+      int[] made,
+      int[] received,
+      MeanDelays delays) {
     IntVector zero = IntVector.broadcast(INTS, 0), one = IntVector.broadcast(INTS, 1);
     entering.count = 0;
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector now = IntVector.fromArray(INTS, made, i), last = IntVector.fromArray(INTS, newestAt, i);
-      VectorMask<Integer> newer = IntVector.fromArray(INTS, whose, i).compare(EQ, vehicle).and(now.compare(GT, last));
+      VectorMask<Integer> newer =
+          IntVector.fromArray(INTS, whose, i).compare(EQ, vehicle).and(now.compare(GT, last));
       if (!newer.anyTrue()) continue;
       entering.first[entering.count++] = i;
       zero.blend(one, newer).intoArray(enters, i);
@@ -230,7 +243,9 @@ final class ForecastTrack {
         Readings nth = readings.get(n);
         VectorMask<Integer> does = count.compare(EQ, n).and(enter);
         VectorMask<Float> means = does.cast(SPECIES);
-        IntVector.fromArray(INTS, nth.madeAt, i).blend(IntVector.fromArray(INTS, made, i), does).intoArray(nth.madeAt, i);
+        IntVector.fromArray(INTS, nth.madeAt, i)
+            .blend(IntVector.fromArray(INTS, made, i), does)
+            .intoArray(nth.madeAt, i);
         IntVector.fromArray(INTS, nth.receivedAt, i)
             .blend(IntVector.fromArray(INTS, received, i), does)
             .intoArray(nth.receivedAt, i);
@@ -245,7 +260,7 @@ final class ForecastTrack {
     }
   }
 
-  /** Flies to the readings that entered: lets stand what is taken to have acted before each, by what was known at it. */
+  /** Lets stand what is taken to have acted before each reading that entered, by what was known then. */
   void conclude(int row) {
     int n = 0;
     while (findEntering(n)) {
@@ -276,7 +291,9 @@ final class ForecastTrack {
       int i = entering.first[k];
       IntVector enter = IntVector.fromArray(INTS, enters, i);
       VectorMask<Integer> does = enter.compare(GT, 0);
-      IntVector.fromArray(INTS, readAt, i).blend(IntVector.fromArray(INTS, made, i), does).intoArray(readAt, i);
+      IntVector.fromArray(INTS, readAt, i)
+          .blend(IntVector.fromArray(INTS, made, i), does)
+          .intoArray(readAt, i);
       IntVector.fromArray(INTS, knownRow, i).blend(here, does).intoArray(knownRow, i);
       enter.max(IntVector.fromArray(INTS, fresh, i)).intoArray(fresh, i);
     }
@@ -352,14 +369,18 @@ final class ForecastTrack {
       for (int r = laidFrom; r < row; r++) {
         int slot = (r & mask) * WORLDS + i, at = first + (r - laidFrom) * WORLDS + i;
         VectorMask<Float> present =
-            IntVector.fromArray(INTS, sentAt, slot).compare(LT, none).and(earliest.compare(LE, r)).cast(SPECIES);
+            IntVector.fromArray(INTS, sentAt, slot)
+                .compare(LT, none)
+                .and(earliest.compare(LE, r))
+                .cast(SPECIES);
         VectorMask<Float> acted =
             IntVector.fromArray(INTS, counts, at)
                 .compare(GT, 0)
                 .cast(SPECIES)
                 .and(FloatVector.fromArray(SPECIES, turnS, at).compare(LE, until))
                 .and(flies);
-        FloatVector x = FloatVector.fromArray(SPECIES, priorX, i), y = FloatVector.fromArray(SPECIES, priorY, i);
+        FloatVector x = FloatVector.fromArray(SPECIES, priorX, i),
+            y = FloatVector.fromArray(SPECIES, priorY, i);
         if (acted.anyTrue()) {
           IntVector.fromArray(INTS, head, i).blend(r, acted.cast(INTS)).intoArray(head, i);
           FloatVector.fromArray(SPECIES, beforeX, i).blend(x, acted).intoArray(beforeX, i);
@@ -378,7 +399,9 @@ final class ForecastTrack {
       }
       heldFrom[i / LANES] = since;
     }
-    if (isFull) throw new IllegalStateException("more than " + held + " commands act within a dead time of " + deadS + " s");
+    if (isFull)
+      throw new IllegalStateException(
+          "more than " + held + " commands act within a dead time of " + deadS + " s");
   }
 
   /**
@@ -409,7 +432,8 @@ final class ForecastTrack {
           ((FloatVector) now.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
               .mul(grainS)
               .add(
-                  ((FloatVector) here.sub(IntVector.fromArray(INTS, knownRow, i)).convertShape(I2F, SPECIES, 0))
+                  ((FloatVector)
+                          here.sub(IntVector.fromArray(INTS, knownRow, i)).convertShape(I2F, SPECIES, 0))
                       .mul(rowS));
       age.intoArray(ageS, i);
       age.add(FloatVector.fromArray(SPECIES, toS, i)).max(zero).intoArray(endS, i);
@@ -459,21 +483,27 @@ final class ForecastTrack {
       for (int r = first; r < row; r++) {
         int slot = (r & mask) * WORLDS + i;
         place += WORLDS;
-        IntVector sending = IntVector.fromArray(INTS, sentAt, slot), answered = IntVector.fromArray(INTS, answeredAt, slot);
+        int begin = (int) Math.max((r - row) * (long) periodGrains, -FAR);
+        IntVector sending = IntVector.fromArray(INTS, sentAt, slot),
+            answered = IntVector.fromArray(INTS, answeredAt, slot);
         VectorMask<Integer> present = sending.compare(LT, none).and(earliest.compare(LE, r));
         VectorMask<Integer> later = seen.compare(GT, 0);
-        VectorMask<Float> isKnown =
-            answered.add((int) Math.max((r - row) * (long) periodGrains, -FAR)).compare(LE, until).cast(SPECIES);
+        VectorMask<Float> isKnown = answered.add(begin).compare(LE, until).cast(SPECIES);
         FloatVector acts =
             ((FloatVector) sending.sub(read).convertShape(I2F, SPECIES, 0))
                 .mul(grainS)
                 .add(((FloatVector) rows.neg().add(r).convertShape(I2F, SPECIES, 0)).mul(rowS))
                 .add(to);
         FloatVector off =
-            ((FloatVector) answered.sub(sending).convertShape(I2F, SPECIES, 0)).mul(grainS).sub(roundTrip).mul(half);
+            ((FloatVector) answered.sub(sending).convertShape(I2F, SPECIES, 0))
+                .mul(grainS)
+                .sub(roundTrip)
+                .mul(half);
         acts = acts.add(zero.blend(off, isKnown)).max(latest);
         FloatVector wait =
-            ((FloatVector) now.sub(sending).convertShape(I2F, SPECIES, 0)).mul(grainS).add((row - r) * periodS);
+            ((FloatVector) now.sub(sending).convertShape(I2F, SPECIES, 0))
+                .mul(grainS)
+                .add((row - r) * periodS);
         VectorMask<Float> unanswered = present.and(later).cast(SPECIES).andNot(isKnown);
         mayLose |= wait.add(rowS).compare(GT, patience).and(unanswered).anyTrue();
         VectorMask<Float> count = present.cast(SPECIES).andNot(wait.compare(GT, patience).and(unanswered));

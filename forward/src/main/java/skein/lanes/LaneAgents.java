@@ -22,8 +22,9 @@ import skein.simd.WorldRandom;
 /**
  * One vehicle in many worlds, and its controllers, as {@code skein.flow.Pace} and {@code
  * skein.flow.Steer} let them: when each decides upon what it was offered, and when its command acts. A
- * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept from the episode's begin,
- * modulo 2³²: what is long past is drawn near again before it would be taken for the future.
+ * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept
+ * from the episode's begin, modulo 2³²: what is long past is drawn near again before it would be taken for
+ * the future.
  */
 abstract class LaneAgents {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;

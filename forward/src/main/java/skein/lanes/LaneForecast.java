@@ -13,13 +13,12 @@ final class LaneForecast {
   private final MeanDelays delays = new MeanDelays();
   private final ForecastTrack[] tracks;
 
-  // By vehicle: by what it is carried forward, and its newest reading, by LaneVehicles.SEEN_X and what follows it.
+  // By vehicle: by what it is carried forward, and where its newest reading is, at LaneVehicles.SEEN_X.
   private final ForecastVehicles[] vehicles;
   private final float[][] read;
 
   /** By vehicle, for the decider asked for last: as {@link ForecastVehicles#predict} puts it. */
   private final float[][] predicted;
-
 
   /** Now, and in which ways were laid. */
   private int row, laidRow;

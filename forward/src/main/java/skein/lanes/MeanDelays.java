@@ -39,8 +39,9 @@ final class MeanDelays {
           to = FloatVector.fromArray(SPECIES, toS, i),
           from = FloatVector.fromArray(SPECIES, fromS, i);
       FloatVector counted = count.add(one).min(memory);
-      FloatVector there = ((FloatVector) at.sub(IntVector.fromArray(INTS, asked, i)).convertShape(I2F, SPECIES, 0)).mul(grainS),
-          back = ((FloatVector) IntVector.fromArray(INTS, received, i).sub(at).convertShape(I2F, SPECIES, 0)).mul(grainS);
+      IntVector asking = IntVector.fromArray(INTS, asked, i), came = IntVector.fromArray(INTS, received, i);
+      FloatVector there = ((FloatVector) at.sub(asking).convertShape(I2F, SPECIES, 0)).mul(grainS),
+          back = ((FloatVector) came.sub(at).convertShape(I2F, SPECIES, 0)).mul(grainS);
       to.blend(to.add(there.sub(to).div(counted)), does).intoArray(toS, i);
       from.blend(from.add(back.sub(from).div(counted)), does).intoArray(fromS, i);
       count.blend(counted, does).intoArray(readings, i);

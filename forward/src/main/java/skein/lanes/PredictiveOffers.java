@@ -43,9 +43,9 @@ final class PredictiveOffers extends LaneOffers {
   /** Whether on some link questions may have to wait. */
   private boolean mayWait;
 
-  // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends of
-  // all, the latest first; twice the time from the row's begin, and 1 more for what is behind the question that
-  // is due in the same moment: it was not known when that was scheduled, a period before.
+  // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends
+  // of all, the latest first. Twice the time from the row's begin, and 1 more for what is behind the
+  // question that is due in the same moment: it was not known when that was scheduled, a period before.
   private final int[][] places, began;
   private final int[][][] latest;
 
@@ -163,7 +163,8 @@ final class PredictiveOffers extends LaneOffers {
       IntVector at = IntVector.fromArray(INTS, asks, i),
           to = IntVector.fromArray(INTS, there, i),
           roundTrip = IntVector.fromArray(INTS, back, i).add(to);
-      VectorMask<Integer> comes = roundTrip.compare(LE, timeout).and(IntVector.fromArray(INTS, answers, i).compare(NE, none));
+      VectorMask<Integer> comes =
+          roundTrip.compare(LE, timeout).and(IntVector.fromArray(INTS, answers, i).compare(NE, none));
       at.add(to).intoArray(reads, i);
       none.blend(at.add(roundTrip), comes).intoArray(answers, i);
     }
