@@ -2,6 +2,7 @@ package skein.lanes;
 
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LEAST_POWER;
 import static skein.simd.LaneMath.LOG2_E;
 import static skein.simd.LaneMath.POWER_1;
 import static skein.simd.LaneMath.POWER_2;
@@ -26,12 +27,6 @@ final class LagFlights extends LaneFlights {
   private static final int EXCESS_X = PIECE_OWN, EXCESS_Y = PIECE_OWN + WORLDS;
   private static final int NUMBERS = 2;
 
-  /** Of powers of two that floats hold. */
-  private static final float LEAST_EXPONENT = -120f;
-
-  /** In the place of none: no vehicle gets anywhere within. */
-  private static final double LEAST_LAG_S = 1e-6;
-
   private final float speedMps, lagS;
 
   LagFlights(Duelist duelist, Reduced model, LoopLanes loop) {
@@ -49,7 +44,7 @@ final class LagFlights extends LaneFlights {
     FloatVector halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
         lag = FloatVector.broadcast(SPECIES, lagS),
         speed = FloatVector.broadcast(SPECIES, speedMps),
-        least = FloatVector.broadcast(SPECIES, LEAST_EXPONENT),
+        least = FloatVector.broadcast(SPECIES, LEAST_POWER),
         one = FloatVector.broadcast(SPECIES, 1f),
         round = FloatVector.broadcast(SPECIES, ROUND),
         power1 = FloatVector.broadcast(SPECIES, POWER_1),

@@ -1,6 +1,7 @@
 package skein.lanes;
 
 import static jdk.incubator.vector.VectorOperators.ASHR;
+import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LSHL;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
@@ -21,8 +22,9 @@ import skein.simd.WorldRandom;
 /**
  * One vehicle in many worlds, and its controllers, as {@code skein.flow.Pace} and {@code
  * skein.flow.Steer} let them: when each decides upon what it was offered, and when its command acts. A
- * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept from the episode's begin,
- * modulo 2³²: what is long past is drawn near again before it would be taken for the future.
+ * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept
+ * from the episode's begin, modulo 2³²: what is long past is drawn near again before it would be taken for
+ * the future.
  */
 abstract class LaneAgents {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
@@ -54,8 +56,17 @@ abstract class LaneAgents {
   /** When it decides, from the period's begin; {@link LaneOffers#NONE} where it does not. */
   final int[] decides = new int[WORLDS];
 
-  // When it sends, or NONE, and when the command acts.
-  private final int[] sends = new int[WORLDS], acts = new int[WORLDS];
+  /**
+   * 1 where it goes before what it is offered in the moment in which it may be commanded again: by a {@link
+   * #forecast} offers are scheduled a period before, and this was known before that.
+   */
+  private final int[] goesFirst = new int[WORLDS];
+
+  // When it sends, or NONE, when the command acts, and when it is known to have arrived: the first never is.
+  private final int[] sends = new int[WORLDS], acts = new int[WORLDS], answers = new int[WORLDS];
+
+  /** What readings are carried forward by; null where decisions go by the readings themselves. */
+  final LaneForecast forecast;
 
   /** From the own last decision to this one, s. */
   final float[] elapsedS = new float[WORLDS];
@@ -80,6 +91,7 @@ abstract class LaneAgents {
   LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
     this.self = self;
     this.vehicles = vehicles;
+    forecast = loop.forecast();
     decidesFirst = loop.decidesFirst();
     together = loop.offers().together;
     decided = decidesFirst ? new Directions(WORLDS) : sent;
@@ -97,6 +109,7 @@ abstract class LaneAgents {
     for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
     Arrays.fill(sentAt, -1);
     Arrays.fill(decidedLong, NEVER);
+    Arrays.fill(goesFirst, 0);
     vehicles.start();
   }
 
@@ -145,7 +158,20 @@ abstract class LaneAgents {
   /** Decide where it is their turn, as {@link #choose}. */
   final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(vectors, offers.joinedAt, offers.nextAt);
+    if (forecast != null) forecast.predict(vectors, decides);
     choose(all, offers, vectors, readAt);
+  }
+
+  /**
+   * What decisions go by of this vehicle: {@link LaneObservation#X} and so on, from {@link #seenFrom} on. Of
+   * what is predicted that is of the agents who decide.
+   */
+  final float[] seen() {
+    return forecast == null ? vehicles.state : forecast.predicted(self);
+  }
+
+  final int seenFrom() {
+    return forecast == null ? LaneVehicles.SEEN_X : 0;
   }
 
   /** When each decides and sends. */
@@ -162,7 +188,8 @@ abstract class LaneAgents {
       IntVector joined = IntVector.fromArray(INTS, joinedAt, i);
       IntVector when = joined.max(IntVector.fromArray(INTS, ready, i).sub(begin));
       VectorMask<Integer> offered = joined.compare(LT, none);
-      VectorMask<Integer> goes = when.compare(LT, IntVector.fromArray(INTS, nextAt, i)).and(offered);
+      IntVector next = IntVector.fromArray(INTS, nextAt, i).add(IntVector.fromArray(INTS, goesFirst, i));
+      VectorMask<Integer> goes = when.compare(LT, next).and(offered);
       IntVector sending = none.blend(when, goes), deciding = decidesFirst ? joined : sending;
       sending.intoArray(sends, i);
       deciding.intoArray(decides, i);
@@ -187,6 +214,7 @@ abstract class LaneAgents {
   final void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
     int place = LaneDelays.placeOf(row) + LaneDelays.placeOfLine(line);
     send(place, offers.delays, offers.place[self], vectors);
+    if (forecast != null) forecast.send(self, vectors, sends, answers, sent);
     if (vectors.count * LANES < WORLDS) forget(vectors);
     remember(vectors, endGrains);
     vehicles.act(row, vectors, acts, sent);
@@ -205,6 +233,7 @@ abstract class LaneAgents {
         dead = IntVector.broadcast(INTS, deadGrains),
         begin = IntVector.broadcast(INTS, now),
         never = IntVector.broadcast(INTS, NEVER / 2),
+        period = IntVector.broadcast(INTS, periodGrains),
         zero = IntVector.broadcast(INTS, 0);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
@@ -229,8 +258,16 @@ abstract class LaneAgents {
       IntVector arrives = when.add(there).max(reachedBefore.sub(begin));
       none.blend(arrives.add(dead), goes).intoArray(acts, i);
       // The command before is answered when this one has replaced it; the very first replaces none.
-      IntVector again = when.add(interval);
-      again = again.blend(arrives.add(back).add(handover).max(again), before.compare(LT, never));
+      IntVector again = when.add(interval), answer = arrives.add(back);
+      VectorMask<Integer> replaces = before.compare(LT, never);
+      none.blend(answer, replaces).intoArray(answers, i);
+      again = again.blend(answer.add(handover).max(again), replaces);
+      if (forecast != null) {
+        IntVector known = when.blend(answer, replaces);
+        IntVector.fromArray(INTS, goesFirst, i)
+            .blend(zero.blend(1, again.sub(known).compare(GT, period)), goes)
+            .intoArray(goesFirst, i);
+      }
       reachedBefore.blend(arrives.add(begin), goes).intoArray(reaches, i);
       IntVector.fromArray(INTS, ready, i).blend(again.add(begin), goes).intoArray(ready, i);
       FloatVector newCos = FloatVector.fromArray(SPECIES, decidedNow.cos, i),

@@ -18,8 +18,13 @@ final class LaneVectors {
   /** All vectors. */
   static LaneVectors all() {
     LaneVectors all = new LaneVectors();
-    for (int i = 0; i < WORLDS; i += LANES) all.first[all.count++] = i;
+    all.takeAll();
     return all;
+  }
+
+  void takeAll() {
+    count = 0;
+    for (int i = 0; i < WORLDS; i += LANES) first[count++] = i;
   }
 
   /**

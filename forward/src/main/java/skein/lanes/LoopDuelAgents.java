@@ -34,6 +34,7 @@ final class LoopDuelAgents extends LaneAgents {
     this.policy = policy;
     this.effort = effort;
     startHeading = (float) duelist.startHeadingRad();
+    loop.carryForward(self, duelist, vehicles);
   }
 
   @Override
@@ -57,22 +58,16 @@ final class LoopDuelAgents extends LaneAgents {
   @Override
   void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     LaneAgents opponents = all[1 - self];
-    see(LaneObservation.X, opponents, LaneVehicles.SEEN_X);
-    see(LaneObservation.Y, opponents, LaneVehicles.SEEN_Y);
-    if (policy.needsVelocity()) {
-      see(LaneObservation.VX, opponents, LaneVehicles.SEEN_VX);
-      see(LaneObservation.VY, opponents, LaneVehicles.SEEN_VY);
+    for (int what = 0; what < (policy.needsVelocity() ? LaneObservation.READ : LaneObservation.VX); what++) {
+      int from = seenFrom() + what * WORLDS;
+      observation.see(what, opponents.seen(), from, seen(), from);
     }
     if (policy.needsAges()) {
-      age(readAt[self], observation.ownAge);
-      age(readAt[1 - self], observation.opponentAge);
+      age(self, readAt, observation.ownAge);
+      age(1 - self, readAt, observation.opponentAge);
     }
     if (!together) know(opponents, vectors, offers.joinedAt);
     policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
-  }
-
-  private void see(int what, LaneAgents opponents, int from) {
-    observation.see(what, opponents.vehicles.state, from, vehicles.state, from);
   }
 
   /** What the opponent sends after the offer was made is not known in it. */
@@ -91,6 +86,11 @@ final class LoopDuelAgents extends LaneAgents {
           .blend(FloatVector.fromArray(SPECIES, opponents.sent.sin, i), isKnown)
           .intoArray(known.sin, i);
     }
+  }
+
+  private void age(int vehicle, int[][] readAt, float[] into) {
+    if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
+    else age(readAt[vehicle], into);
   }
 
   private void age(int[] readAt, float[] into) {

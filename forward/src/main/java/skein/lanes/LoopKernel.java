@@ -24,6 +24,11 @@ final class LoopKernel {
   private final LaneAgents[] agents;
   private final Scoreboard scores;
   private final boolean withVelocity, withAges;
+
+  /** Whether readings are carried forward: then one counts before all vehicles are known. */
+  private final boolean isForecast;
+
+  private static final LaneVectors ALL = LaneVectors.all();
   private final int[][] readAt;
 
   /** In which somebody is offered something in a beat. */
@@ -47,7 +52,8 @@ final class LoopKernel {
       needsVelocity |= each.needsVelocity();
       needsAges |= each.needsAges();
     }
-    withVelocity = needsVelocity;
+    isForecast = loop.forecast() != null;
+    withVelocity = needsVelocity || isForecast;
     withAges = needsAges;
   }
 
@@ -86,7 +92,7 @@ final class LoopKernel {
 
   private void read(int row, LaneAgents agent) {
     int[] at = offers.sampledAt[agent.self], fresh = offers.fresh[agent.self], held = readAt[agent.self];
-    agent.vehicles.read(row, vectors, offers.joinedAt, at, fresh, withVelocity);
+    agent.vehicles.read(row, isForecast ? ALL : vectors, offers.joinedAt, at, fresh, withVelocity);
     if (withAges)
       for (int i = 0; i < WORLDS; i += LANES) {
         IntVector now = IntVector.fromArray(INTS, at, i), before = IntVector.fromArray(INTS, held, i);

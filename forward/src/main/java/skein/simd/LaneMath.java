@@ -70,6 +70,9 @@ public final class LaneMath {
   public static final float POWER_4 = 0.009671513f;
   public static final float POWER_5 = 0.0013264727f;
 
+  /** Of powers of two that floats hold, below which they count as this. */
+  public static final float LEAST_POWER = -120f;
+
   /** The value in every lane. For static constants. */
   public static FloatVector constant(float value) {
     return FloatVector.broadcast(SPECIES, value);

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable
-import skein.forward.{DelayTable, Delays, LoopTiming, Steering}
+import skein.forward.{DelayTable, Delays, Duelist, LoopTiming, Steering}
 
 /** A loop for worlds with delays of their own: what it offers to whom, how it lets commands go, and for how
   * long vehicles have to remember. Mutable as its offers are: one per kernel.
@@ -18,10 +18,24 @@ private[lanes] final class LoopLanes(
     maxDelayS: Double,
     shortCut: Boolean = true
 ):
+  /** How the vehicles' readings are carried forward, if they are. */
+  private val predictor: Option[TimetablePredictor] = timing match
+    case predictive: LoopTiming.Predictive => TimetablePredictor.of(predictive.predictor).toOption
+    case _                                 => None
+
+  /** Null where decisions go by the readings themselves. */
+  val forecast: LaneForecast =
+    predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS))
+
+  /** From now on a vehicle's readings are carried forward, if the loop does. */
+  def carryForward(vehicle: Int, duelist: Duelist, read: LaneVehicles): Unit =
+    for by <- predictor do forecast.follow(vehicle, by.alone(duelist), read)
+
   val offers: LaneOffers = timing match
     case stream: LoopTiming.Stream         => StreamOffers(stream, vehicles, durationS, shortCut)
     case sequential: LoopTiming.Sequential => SequentialOffers(sequential, vehicles)
     case futures: LoopTiming.Futures       => FuturesOffers(futures, vehicles, maxDelayS)
+    case predictive: LoopTiming.Predictive => PredictiveOffers(predictive, vehicles, maxDelayS, forecast)
     case other => throw IllegalArgumentException(s"expected a loop that is not refused, came $other")
 
   def periodS: Double    = timing.periodS
@@ -35,6 +49,7 @@ private[lanes] final class LoopLanes(
   /** Whether a vehicle decides at every offer, and what waits is the decision. */
   val decidesFirst: Boolean = timing match
     case stream: LoopTiming.Stream => stream.decideThenPace
+    case _: LoopTiming.Predictive  => false
     case _                         => true
 
   /** A command is under way for so long at most, s. */
@@ -54,8 +69,8 @@ private[lanes] object LoopLanes:
   /** From the first reading of a view to its decision. */
   def readingS(timing: LoopTiming, vehicles: Int, maxDelayS: Double): Double =
     val inTurn = timing match
-      case _: LoopTiming.Stream => 2
-      case _                    => vehicles
+      case _: (LoopTiming.Stream | LoopTiming.Predictive) => 2
+      case _                                              => vehicles
     inTurn * LoopTiming.askingOf(timing).timeoutS.min(2 * maxDelayS)
 
 /** One of a kind for links about as slow: how far a loop is looked ahead depends on it, and no result does.

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, LoopTiming}
+import skein.forward.{Asking, DelayTable, Delays, LoopTiming}
 import skein.port.Moves
 import skein.units.Expect
 
@@ -28,10 +28,7 @@ private[lanes] object LoopSupport:
     val ofLoop   = timing match
       case stream: LoopTiming.Stream =>
         for
-          _ <- Expect.that(!stream.asking.inOrder):
-            "the lanes take answers as they come, and this loop in order"
-          _ <- Expect.that(stream.asking.spreadS == 0):
-            "the lanes ask all vehicles at once, and this loop spreads its questions"
+          _ <- asksAtOnce(stream.asking)
           _ <- Expect.that(stream.patienceS > 0):
             "the lanes wait for the other vehicles' readings, and this loop does not"
         yield Vector(stream.patienceS, stream.toleranceS)
@@ -40,7 +37,13 @@ private[lanes] object LoopSupport:
           .that(vehicles * timeoutS <= MostInTurnS):
             s"$vehicles questions in turn may take longer than the lanes can count"
           .map(_ => Vector.empty)
-      case _ => Left("worlds with delays of their own fly by lanes under sequential, futures and stream")
+      case predictive: LoopTiming.Predictive =>
+        for
+          _ <- asksAtOnce(predictive.asking)
+          _ <- TimetablePredictor.of(predictive.predictor)
+        // It is due in the middle between two questions.
+        yield Vector(predictive.periodS / 2)
+      case _: LoopTiming.Paused => Left("worlds that stand still while it is decided meet no delays")
     val refused =
       for
         _ <- Expect.that(model.fliesAlone):
@@ -58,3 +61,11 @@ private[lanes] object LoopSupport:
           "the lanes count time in grains of 4 ns, and this loop's times are none"
       yield ()
     refused.left.toOption
+
+  private def asksAtOnce(asking: Asking): Either[String, Unit] =
+    for
+      _ <- Expect.that(!asking.inOrder):
+        "the lanes take answers as they come, and this loop in order"
+      _ <- Expect.that(asking.spreadS == 0):
+        "the lanes ask all vehicles at once, and this loop spreads its questions"
+    yield ()

@@ -163,6 +163,7 @@ private[lanes] final class LoopTeamAgents private (
       TeamMember:
 
   private val decisions = TeamDecisions(self, team)
+  loop.carryForward(self, duelist.copy(speed = 1), vehicles)
 
   def take(world: Int, duelist: Duelist, numbers: Array[Double]): Unit =
     vehicles.place(world, duelist)
@@ -180,7 +181,8 @@ private[lanes] final class LoopTeamAgents private (
       vectors: LaneVectors,
       readAt: Array[Array[Int]]
   ): Unit =
-    team.show(offers.beat)
+    // What is predicted for one decision is not what is for another.
+    team.show(if forecast == null then offers.beat else offers.beat * all.length + self)
     decisions.decide(elapsedS, decidedNow, 0)
 
   override def remember(vectors: LaneVectors, endGrains: Int): Unit =
@@ -196,5 +198,5 @@ private[lanes] object LoopTeamAgents:
   ): Array[LoopTeamAgents] =
     val all = Array.tabulate(team.size)(self => LoopTeamAgents(self, team(self), loop, model, views))
     for vehicle <- all; call <- views.call +: all.map(_.decisions.call) do
-      call.show(vehicle.self, vehicle.vehicles)
+      call.show(vehicle)
     all

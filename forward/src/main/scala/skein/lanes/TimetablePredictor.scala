@@ -12,6 +12,12 @@ private[skein] trait TimetablePredictor:
   /** All worlds' predictions of one vehicle. */
   def vehicles(duelist: Duelist): PredictedVehicles
 
+  /** The same where every world has delays of its own. */
+  def alone(duelist: Duelist): ForecastVehicles
+
+  /** From a command's arrival until a vehicle is taken to follow it, s. */
+  def deadTimeS: Double
+
 /** Tells by which propagations a reading of one vehicle is carried forward. Immutable: it knows what the
   * model remembers at that reading.
   */
@@ -53,6 +59,8 @@ private[skein] object TimetablePredictor:
 /** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
 private object CoastPredictor extends TimetablePredictor, Propagator:
   def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
+  def alone(duelist: Duelist): ForecastVehicles            = ForecastCoasting()
+  def deadTimeS: Double                                    = 0
   def propagator: Propagator                               = this
   def next(legs: Vector[Propagator.Leg]): Propagator       = this
   def predicted(legs: Vector[Propagator.Leg]): Propagation =
@@ -62,7 +70,9 @@ private object CoastPredictor extends TimetablePredictor, Propagator:
   * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
   */
 private final class LagPredictor(model: ReducedModel) extends TimetablePredictor:
+  def deadTimeS: Double                             = model.deadTimeS
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
+  def alone(duelist: Duelist): ForecastVehicles = ForecastLagVehicles(duelist.speed * model.gain, model.lagS)
 
   def propagator: Propagator = ReducedPropagator(model.deadTimeS, propagation)
 
@@ -82,7 +92,9 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
 private final class DragPredictor(lanes: PlantLanes) extends TimetablePredictor:
   private val tell = lanes.stages.tell(lanes.plant)
 
+  def deadTimeS: Double                             = lanes.plant.deadTimeS
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, duelist.speed)
+  def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, duelist.speed)
 
   def propagator: Propagator =
     ReducedPropagator(lanes.plant.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))

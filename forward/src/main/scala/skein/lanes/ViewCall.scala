@@ -24,9 +24,10 @@ private[lanes] final class ViewCall(
     for i <- places.indices if vehicles(i) == vehicle && fields(i) == field do
       call.input(places(i), array, from)
 
-  /** The same of all that is read of a vehicle. */
-  def show(vehicle: Int, of: LaneVehicles): Unit =
-    for (from, field) <- ViewCall.Read.zipWithIndex do show(vehicle, field, of.state, from)
+  /** The same of all that decisions go by of a vehicle. */
+  def show(of: LaneAgents): Unit =
+    for field <- 0 until LaneObservation.READ do
+      show(of.self, field, of.seen, of.seenFrom + field * LaneFunction.COUNT)
 
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
     var i = 0
@@ -40,7 +41,3 @@ private[lanes] final class ViewCall(
         case _ => body.seenVy
       call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
       i += 1
-
-private object ViewCall:
-  private val Read =
-    Vector(LaneVehicles.SEEN_X, LaneVehicles.SEEN_Y, LaneVehicles.SEEN_VX, LaneVehicles.SEEN_VY)

@@ -21,7 +21,7 @@ import skein.policy.*
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.Span
-import skein.vehicle.{ReducedModel, PlantModel}
+import skein.vehicle.{ConstantTurn, ReducedModel, PlantModel}
 
 class DuelBatchSimulation extends munit.FunSuite:
   import DuelBatchSimulation.*
@@ -43,8 +43,10 @@ class DuelBatchSimulation extends munit.FunSuite:
       assertEquals(numbers(outcomes, world), scalar(worlds, world, LoopTiming.Stream(), lag), s"world $world")
 
   for model <- Seq(lag, PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))) do
-    test(s"single worlds under prediction with $model fly by the scalar reference, and the engine says so"):
-      val timing = LoopTiming.Predictive(predictor = lag.predictor)
+    test(
+      s"$model, predicted by what the lanes do not know, flies by the scalar reference, and the engine says so"
+    ):
+      val timing = LoopTiming.Predictive(predictor = ConstantTurn)
       val batch  = DuelBatch(short, timing, model, threads = 2)
       val worlds = mixed(20)
       val flown  = batch.fly(worlds, captureRadiusM = 5)
@@ -83,6 +85,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       Seq(alternating)
     ))
     for published <- Seq(
+        LoopTiming.Predictive(predictor = lag.predictor, asking = Asking(inOrder = true)),
         LoopTiming.Stream(asking = Asking(inOrder = true)),
         LoopTiming.Stream(asking = Asking(spreadS = 0.1)),
         LoopTiming.Stream(steering = Steering(mostOutstanding = 6))

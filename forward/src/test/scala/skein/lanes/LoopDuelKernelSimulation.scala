@@ -1,18 +1,20 @@
 package skein.lanes
 
 import skein.forward.{
+  Asking,
   DelayTable,
   Duel,
   LoopTiming,
   Reduced,
   ReducedResponse,
+  Steering,
   VelocityResponse,
   VelocityResponses
 }
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ConstantVelocity, ReducedModel}
 
 class LoopDuelKernelSimulation extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
@@ -54,11 +56,12 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     kernel.fly(keys, Array.fill(worlds)(link), captureM)
     kernel
 
-  private val loops = Seq(
+  private def loops(model: VelocityResponse) = Seq(
     LoopTiming.Sequential(),
     LoopTiming.Futures(),
     LoopTiming.Stream(),
-    LoopTiming.Stream(decideThenPace = true)
+    LoopTiming.Stream(decideThenPace = true),
+    LoopTiming.Predictive(predictor = model.predictor)
   )
 
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
@@ -73,14 +76,19 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
   )
 
   private def agreement(timing: LoopTiming, link: DelayTable, durationS: Double, model: VelocityResponse) =
+    unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[Policy])
+
+  private def unseen(timing: LoopTiming, link: DelayTable, durationS: Double, model: VelocityResponse)(
+      pursuer: Int => Policy
+  ) =
     DuelAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
-      duel(_, durationS).pursuer.policy.asInstanceOf[Policy],
+      pursuer,
       duel(_, durationS).evader.policy.asInstanceOf[Policy]
     )
 
   for
     (vehicles, model) <- models
-    timing            <- loops
+    timing            <- loops(model)
     (name, link)      <- links
     if vehicles == "lag" || name == "vpn" || name.startsWith("110")
   do
@@ -90,17 +98,93 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     ):
       agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
 
+  private val unseenPursuers = Seq[(String, Int => Policy)](
+    "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
+    "asks for velocities and ages" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))
+  )
+
+  for
+    (does, pursuer)   <- unseenPursuers
+    (vehicles, model) <- models
+    predictor         <- Seq(model.predictor, ConstantVelocity)
+    if predictor != ConstantVelocity || vehicles == "drag"
+  do
+    test(
+      s"$vehicles predicted by $predictor, beside a pursuer that $does: the scalar reference's decisions and flight"
+    ):
+      unseen(
+        LoopTiming.Predictive(predictor = predictor),
+        DelayTable.vpn,
+        6,
+        model
+      )(pursuer).check(does, 0 until worlds by 9)
+
+  test(
+    "predictive every 10 ms over a constant link: of events in one moment the first scheduled is the first"
+  ):
+    for link <- Seq(DelayTable.none, wild(20, 0), wild(45, 0)) do
+      agreement(
+        LoopTiming.Predictive(0.01, lag.predictor),
+        link,
+        5,
+        lag
+      ).check(s"${link.maxS} s", 0 until worlds by 16)
+
+  private val slow = Reduced(gain = 0.95, lagS = 0.8, deadTimeS = 0.3)
+
+  for (what, timing, link, model) <- Seq(
+      (
+        "that asks one question at a time",
+        LoopTiming.Predictive(0.1, lag.predictor, Asking(window = 1)),
+        wild(110, 60),
+        lag
+      ),
+      (
+        "most of whose questions fail",
+        LoopTiming.Predictive(0.1, lag.predictor, Asking(timeoutS = 0.3)),
+        wild(370, 115),
+        lag
+      ),
+      (
+        "that may command in the moment in which it is due",
+        LoopTiming.Predictive(0.04, lag.predictor, steering = Steering(minIntervalS = 0.05)),
+        wild(27, 14),
+        lag
+      ),
+      (
+        "of vehicles with a long dead time",
+        LoopTiming.Predictive(0.04, slow.predictor),
+        wild(45, 60),
+        slow
+      )
+    )
+  do
+    test(s"a predictive loop $what: the scalar reference's decisions and flight for 10 s"):
+      agreement(timing, link, 10, model).check(what, 0 until worlds by 3)
+
+  test("predictive over a constant link whose answers come when it is decided"):
+    for meanMs <- Seq(50, 100, 150, 350, 450) do
+      agreement(
+        LoopTiming.Predictive(0.1, lag.predictor),
+        wild(meanMs, 0),
+        5,
+        lag
+      ).check(s"$meanMs ms", 0 until worlds by 16)
+
   for (name, timing) <- Seq(
       "every 20 ms"  -> LoopTiming.Futures(0.02),
       "every 20 ms"  -> LoopTiming.Sequential(0.02),
       "every 10 ms"  -> LoopTiming.stream(0.01),
-      "every 300 ms" -> LoopTiming.Futures(0.3)
+      "every 300 ms" -> LoopTiming.Futures(0.3),
+      "every 10 ms"  -> LoopTiming.Predictive(0.01, lag.predictor),
+      "every 20 ms"  -> LoopTiming.Predictive(0.02, lag.predictor),
+      "every 300 ms" -> LoopTiming.Predictive(0.3, lag.predictor)
     )
   do
     test(s"${timing.productPrefix} $name over vpn: the scalar reference's decisions and flight for 12 s"):
       agreement(timing, DelayTable.vpn, 12, lag).check(name, 0 until worlds by 16)
 
-  for timing <- loops do
+  for timing <- loops(lag) do
     test(s"$timing over vpn: the scalar reference's decisions and flight for 60 s, in each world compared"):
       agreement(timing, DelayTable.vpn, 60, lag).check("60 s", 0 until worlds by 11)
 

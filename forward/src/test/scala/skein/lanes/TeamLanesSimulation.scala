@@ -125,7 +125,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
 
   for
     (name, draw)   <- scenarios
-    timing         <- loops.filterNot(_.isInstanceOf[LoopTiming.Predictive])
+    timing         <- loops
     (linked, link) <-
       links ++ Seq("110 ms and 60 ms of jitter" -> wild(110, 60), "150 ms of jitter" -> wild(150, 150))
   do
@@ -140,7 +140,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       "drag"    -> ReducedResponse(ReducedModel.AirSim),
       "bicycle" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
     )
-    timing <- Seq(LoopTiming.Stream(), LoopTiming.Futures())
+    timing <-
+      Seq(LoopTiming.Stream(), LoopTiming.Futures(), LoopTiming.Predictive(predictor = plant.predictor))
   do
     test(
       s"$name, $model, $timing, own delays over vpn: every world flies as by the scalar reference, 3 s to 4 mm"
