@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.units.Vector3
-import skein.vehicle.{Quadrotor, Setpoint}
+import skein.vehicle.{Airframe, CascadeGains, ControllerGains, Quadrotor, Setpoint}
 
 class LaneQuadrotorsSuite extends munit.FunSuite:
   private val vehicles = LaneQuadrotors.VEHICLES
@@ -30,6 +30,34 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
       val speed    = (kernel.velocityNed(v) - states(v).velocityNed).norm
       assert(position < 5e-3, s"vehicle $v is $position m off")
       assert(speed < 5e-3, s"vehicle $v is $speed m/s off")
+
+  test("another airframe with other gains flies as its scalar quadrotor does: 3 s, to 2 mm"):
+    val heavy  = Quadrotor(Airframe(massKg = 1.3, dragCoefficient = 0.5), ControllerGains(velocityP = 0.3))
+    val kernel = LaneQuadrotors.of(heavy).fold(fail(_), identity)
+    val states = Array.tabulate(vehicles)(v => heavy.hovering(Vector3(0, 0, downM(v))))
+    for v <- 0 until vehicles do
+      val (north, east) = velocity(v, 1)
+      kernel.hover(v, Vector3(0, 0, downM(v)))
+      kernel.command(v, north, east, downM(v).toFloat)
+      for _ <- 1 to 1000 do heavy.step(states(v), Setpoint.velocityZ(north, east, downM(v)))
+    kernel.fly(1000)
+    for v <- 0 until vehicles do
+      val off = (kernel.positionNed(v) - states(v).positionNed).norm
+      assert(off < 2e-3, s"vehicle $v is $off m off")
+
+  test("fewer vehicles fly the same, to the bit"):
+    val Vector(all, some) = Vector.fill(2)(LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity))
+    some.use(3)
+    for kernel <- Seq(all, some) do
+      for v <- 0 until 3 do
+        kernel.hover(v, Vector3(0, 0, -20))
+        kernel.command(v, 3, v.toFloat, -20)
+      kernel.fly(333)
+    for v <- 0 until 3 do assertEquals(some.positionNed(v), all.positionNed(v))
+
+  test("gains that a client has set remember more than lanes keep, which is told"):
+    val told = LaneQuadrotors.of(Quadrotor.AirSim.tuned(CascadeGains.Default)).left.getOrElse("none")
+    assert(told.contains("cascadeMemory"), told)
 
   test("hover holds its position to a millimetre over 30 s, in floats too"):
     val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity)
