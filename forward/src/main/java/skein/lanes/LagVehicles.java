@@ -228,7 +228,7 @@ final class LagVehicles extends LaneVehicles {
   }
 
   @Override
-  void flyToRow(int row) {
+  void flyToRow(int row, boolean isLookedAt) {
     if (this.row < row) flyTo(row, AT_BEGIN);
   }
 

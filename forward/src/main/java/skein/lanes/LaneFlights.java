@@ -100,8 +100,13 @@ abstract class LaneFlights extends LaneVehicles {
    */
   abstract void fly(LaneVectors vectors, float[] into, int at, boolean withVelocity);
 
+  /** The same to where others {@link #begin}. */
+  void flyOn(LaneVectors vectors) {
+    fly(vectors, flown, 0, true);
+  }
+
   /**
-   * New pieces begin where {@link #chosen} ones were {@link #flown} to, under commands, in worlds where
+   * New pieces begin where {@link #chosen} ones were {@link #flyOn flown} to, under commands, in worlds where
    * {@code acts} is less than {@link LaneOffers#NONE}; elsewhere the chosen ones go on.
    *
    * @param at where in {@link #pieces} they go
@@ -121,9 +126,11 @@ abstract class LaneFlights extends LaneVehicles {
   }
 
   @Override
-  final void flyToRow(int row) {
+  final void flyToRow(int row, boolean isLookedAt) {
     Arrays.fill(until, row * periodGrains);
+    // No piece lasts longer than times are told apart by.
     goOn(row, ALL);
+    if (!isLookedAt) return;
     choose(ALL);
     fly(ALL, state, X, false);
   }
@@ -133,7 +140,7 @@ abstract class LaneFlights extends LaneVehicles {
     ask(row, vectors, acts, acts, Integer.MIN_VALUE);
     goOn(row, vectors);
     chooseNewest(vectors);
-    fly(vectors, flown, 0, true);
+    flyOn(vectors);
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
@@ -160,7 +167,7 @@ abstract class LaneFlights extends LaneVehicles {
   private void goOn(int row, LaneVectors vectors) {
     while (findOver(vectors)) {
       copyNewest(over);
-      fly(over, flown, 0, true);
+      flyOn(over);
       System.arraycopy(chosen, ALONG_X, along.cos, 0, WORLDS);
       System.arraycopy(chosen, ALONG_Y, along.sin, 0, WORLDS);
       begin(over, fill(row, over, next), ends, along);

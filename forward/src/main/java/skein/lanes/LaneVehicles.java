@@ -71,8 +71,12 @@ abstract class LaneVehicles {
   abstract void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
 
-  /** Flies to a row's begin. */
-  abstract void flyToRow(int row);
+  /**
+   * Flies to a row's begin.
+   *
+   * @param isLookedAt whether somebody looks at where they are then
+   */
+  abstract void flyToRow(int row, boolean isLookedAt);
 
   /**
    * Lets commands act, none earlier than the one before.

@@ -108,8 +108,10 @@ final class LoopKernel {
   }
 
   private void score(int row) {
-    for (LaneAgents each : agents) each.vehicles.flyToRow(row);
-    scores.score((float) (row * periodS));
+    float timeS = (float) (row * periodS);
+    boolean counts = scores.counts(timeS);
+    for (LaneAgents each : agents) each.vehicles.flyToRow(row, counts);
+    if (counts) scores.score(timeS);
   }
 
   /** From a row's begin to the end of the episode, as far as integers count. */

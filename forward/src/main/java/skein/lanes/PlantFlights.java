@@ -69,6 +69,11 @@ final class PlantFlights extends LaneFlights {
     see.apply();
   }
 
+  @Override
+  void flyOn(LaneVectors vectors) {
+    reach();
+  }
+
   private void reach() {
     FloatVector speed = FloatVector.broadcast(SPECIES, speedMps), whole = FloatVector.broadcast(SPECIES, stepS);
     boolean allFly = true;

@@ -76,10 +76,11 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
       stage.shown.show(vehicle, 0, north, northAt)
       stage.shown.show(vehicle, 1, east, eastAt)
 
-  /** Where all vehicles are [[place placed]] now. */
-  def score(timeS: Float): Unit =
-    val stage = stageAt(timeS)
-    if stage != null then add(stage, timeS)
+  /** Whether anything counts at a time. */
+  def counts(timeS: Float): Boolean = stageAt(timeS) != null
+
+  /** Where all vehicles are [[place placed]] now, at a time that [[counts]]. */
+  def score(timeS: Float): Unit = add(stageAt(timeS), timeS)
 
   private def stageAt(timeS: Float): Stage =
     var last = stages.length - 1
