@@ -39,7 +39,7 @@ final class ForecastTrack {
   /** Before all that is known, s. */
   private static final float LONG_AGO_S = -1e9f;
 
-  /** As many grains as a time is told apart from others in. */
+  /** Times further back than so many grains count as this far back. */
   private static final int FAR = 1 << 30;
 
   /** Turns that may stand: those within a dead time before the reading, and the one before them. */
@@ -74,6 +74,9 @@ final class ForecastTrack {
   float[] turnS;
 
   Directions turn;
+
+  /** {@link #turnS}, and the directions' numbers. */
+  private float[][] ofTurns;
 
   /** By vector: the first turn that counts, those of {@link #held} before it do not; how many there are. */
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
@@ -123,6 +126,7 @@ final class ForecastTrack {
   private void makeTurns() {
     turnS = new float[(held + 1 + slots) * WORLDS];
     turn = new Directions(turnS.length);
+    ofTurns = new float[][] {turnS, turn.cos, turn.sin};
     counts = new int[turnS.length];
   }
 
@@ -162,8 +166,8 @@ final class ForecastTrack {
   private void makeRoom(int row) {
     int count = slots;
     int[] sentBefore = sentAt, answeredBefore = answeredAt;
-    float[] heldS = turnS;
-    Directions directions = sent, standing = turn;
+    float[][] standing = ofTurns;
+    Directions directions = sent;
     slots = 2 * count;
     sentAt = new int[slots * WORLDS];
     answeredAt = new int[slots * WORLDS];
@@ -176,9 +180,8 @@ final class ForecastTrack {
       System.arraycopy(directions.sin, from, sent.sin, to, WORLDS);
     }
     makeTurns();
-    System.arraycopy(heldS, 0, turnS, 0, held * WORLDS);
-    System.arraycopy(standing.cos, 0, turn.cos, 0, held * WORLDS);
-    System.arraycopy(standing.sin, 0, turn.sin, 0, held * WORLDS);
+    for (int i = 0; i < ofTurns.length; i++)
+      System.arraycopy(standing[i], 0, ofTurns[i], 0, held * WORLDS);
   }
 
   /**
@@ -340,27 +343,31 @@ final class ForecastTrack {
           // What has turned the vehicle by then replaces the last turn; others follow it.
           VectorMask<Float> follows = stands.and(at.compare(GT, span));
           if (follows.anyTrue()) {
-            isFull |= since == 0;
-            int oldestAt = since * WORLDS + i, to = Math.max(since - 1, 0) * WORLDS + i;
-            FloatVector.fromArray(SPECIES, turnS, oldestAt).intoArray(turnS, to);
-            FloatVector.fromArray(SPECIES, turnX, oldestAt).intoArray(turnX, to);
-            FloatVector.fromArray(SPECIES, turnY, oldestAt).intoArray(turnY, to);
-            since = Math.max(since - 1, 0);
-            for (to += WORLDS; to < last; to += WORLDS) {
-              FloatVector.fromArray(SPECIES, turnS, to)
-                  .blend(FloatVector.fromArray(SPECIES, turnS, to + WORLDS), follows)
-                  .intoArray(turnS, to);
-              FloatVector.fromArray(SPECIES, turnX, to)
-                  .blend(FloatVector.fromArray(SPECIES, turnX, to + WORLDS), follows)
-                  .intoArray(turnX, to);
-              FloatVector.fromArray(SPECIES, turnY, to)
-                  .blend(FloatVector.fromArray(SPECIES, turnY, to + WORLDS), follows)
-                  .intoArray(turnY, to);
+            int oldestAt = since * WORLDS + i;
+            FloatVector oldestS = FloatVector.fromArray(SPECIES, turnS, oldestAt);
+            // Worlds make room by what no longer counts: else all that follow in one would take room in all.
+            boolean isNeeded =
+                oldestAt >= last
+                    || FloatVector.fromArray(SPECIES, turnS, oldestAt + WORLDS)
+                        .compare(GT, oldestS.max(span))
+                        .and(follows)
+                        .anyTrue();
+            isFull |= isNeeded && since == 0;
+            if (isNeeded && since > 0) {
+              since--;
+              for (float[] each : ofTurns)
+                FloatVector.fromArray(SPECIES, each, oldestAt).intoArray(each, oldestAt - WORLDS);
             }
+            for (int to = oldestAt; to < last; to += WORLDS)
+              for (float[] each : ofTurns)
+                FloatVector.fromArray(SPECIES, each, to)
+                    .blend(FloatVector.fromArray(SPECIES, each, to + WORLDS), follows)
+                    .intoArray(each, to);
           }
-          FloatVector.fromArray(SPECIES, turnS, last + i).blend(at, stands).intoArray(turnS, last + i);
-          FloatVector.fromArray(SPECIES, turnX, last + i).blend(x, stands).intoArray(turnX, last + i);
-          FloatVector.fromArray(SPECIES, turnY, last + i).blend(y, stands).intoArray(turnY, last + i);
+          for (float[] each : ofTurns)
+            FloatVector.fromArray(SPECIES, each, last + i)
+                .blend(FloatVector.fromArray(SPECIES, each, from), stands)
+                .intoArray(each, last + i);
         }
       }
       IntVector earliest = IntVector.fromArray(INTS, head, i);

@@ -36,10 +36,8 @@ final class FuturesOffers extends LaneOffers {
   /** Steps kept: a power of two. */
   private final int ring;
 
-  // Tasks by agent and slot, from their own step's begin: when they end with an offer; and when they read
-  // each vehicle, by agent, vehicle and slot.
-  private final int[][][] end;
-  private final int[][][][] readAt;
+  // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
+  private final int[][][] beginAt, end;
 
   /** The latest ends of all tasks before, the latest first, from the begin of the step known last. */
   private final int[][] latest;
@@ -47,17 +45,20 @@ final class FuturesOffers extends LaneOffers {
   /** When the first task of the last step that was not missed began. */
   private final int[] began = new int[WORLDS];
 
+  /** 1 where the step drawn last has no tasks. */
+  private final int[] missed = new int[WORLDS];
+
   /** By vehicle: the delays of a task's question and of the answer, in turn. */
   private final int[][] drawn;
 
   /** Steps that may have offers still, and the next to be drawn. */
   private int oldest, next;
 
-  // By agent: the next offer, the one behind it, and the step of the next.
-  private final int[][] soonest, second, stepOf;
+  // By agent: the next offer, the one behind it, and of the next its step and when its task began.
+  private final int[][] soonest, second, stepOf, beginOf;
 
-  /** Of the next offer, when each vehicle was read, by agent and vehicle. */
-  private final int[][][] nextRead;
+  // Of the beat's offers: where their steps' random numbers are, when their tasks go on to the next vehicle.
+  private final int[] places = new int[WORLDS], goesOn = new int[WORLDS];
 
   private final int[] beatPlaces = new int[WORLDS];
   private int row;
@@ -70,27 +71,25 @@ final class FuturesOffers extends LaneOffers {
    */
   FuturesOffers(LoopTiming.Futures timing, int vehicles, double maxDelayS) {
     super(vehicles, new LaneDelays(), false, (int) Math.ceil(AHEAD_S / timing.periodS()));
-    double periodS = timing.periodS(), longestS = timing.asking().timeoutS() * 2 * vehicles;
+    double periodS = timing.periodS(),
+        taskS = vehicles * Math.min(timing.asking().timeoutS(), 2 * maxDelayS);
     periodGrains = LaneViews.grains(periodS);
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     // A decision waits for the answer to the command before at most.
-    ahead = 1 + rowsAhead + (int) Math.ceil((2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS()) / periodS);
-    ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(longestS / periodS) + 4) - 1);
+    double waitsS = 2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS();
+    ahead = 1 + rowsAhead + (int) Math.ceil(waitsS / periodS);
+    // A task may wait for one that waits for another.
+    ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(3 * taskS / periodS) + 4) - 1);
     most = vehicles * timing.asking().window();
     drawn = new int[2 * vehicles][WORLDS];
     soonest = new int[vehicles][WORLDS];
     second = new int[vehicles][WORLDS];
     stepOf = new int[vehicles][WORLDS];
-    nextRead = new int[vehicles][vehicles][WORLDS];
+    beginOf = new int[vehicles][WORLDS];
+    beginAt = new int[vehicles][ring][WORLDS];
     end = new int[vehicles][ring][WORLDS];
-    readAt = new int[vehicles][vehicles][ring][WORLDS];
     latest = new int[most][WORLDS];
-    joinedAt = new int[WORLDS];
-    nextAt = new int[WORLDS];
-    for (int v = 0; v < vehicles; v++) {
-      sampledAt[v] = new int[WORLDS];
-      place[v] = beatPlaces;
-    }
+    keepOffers(beatPlaces);
   }
 
   @Override
@@ -110,9 +109,8 @@ final class FuturesOffers extends LaneOffers {
     IntVector period = IntVector.broadcast(INTS, step == 0 ? 0 : periodGrains),
         past = IntVector.broadcast(INTS, PAST);
     for (int i = 0; i < WORLDS; i += LANES) {
-      for (int[] each : latest) {
+      for (int[] each : latest)
         IntVector.fromArray(INTS, each, i).sub(period).max(past).intoArray(each, i);
-      }
       IntVector.fromArray(INTS, began, i).sub(period).max(past).intoArray(began, i);
     }
     for (int agent = 0; agent < vehicles; agent++) {
@@ -125,7 +123,7 @@ final class FuturesOffers extends LaneOffers {
   }
 
   private void begin(int agent, int slot) {
-    int[] lastOf = latest[most - 1], ends = end[agent][slot];
+    int[] lastOf = latest[most - 1], begins = beginAt[agent][slot], ends = end[agent][slot];
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
         zero = IntVector.broadcast(INTS, 0),
@@ -140,12 +138,12 @@ final class FuturesOffers extends LaneOffers {
         before.blend(begin, goes).intoArray(began, i);
         zero.blend(1, goes.not()).intoArray(missed, i);
       }
+      begin.intoArray(begins, i);
       IntVector over = begin;
       VectorMask<Integer> offers = goes;
       for (int v = 0; v < vehicles; v++) {
         IntVector there = IntVector.fromArray(INTS, drawn[2 * v], i),
             back = IntVector.fromArray(INTS, drawn[2 * v + 1], i).add(there);
-        over.add(there).intoArray(readAt[agent][v][slot], i);
         over = over.add(back.min(timeout), offers);
         offers = offers.andNot(back.compare(GT, timeout));
       }
@@ -159,28 +157,16 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** 1 where the step drawn last has no tasks. */
-  private final int[] missed = new int[WORLDS];
-
   @Override
   void startRow(int number) {
     row = number;
     draw();
-    while (oldest < row && isOver(oldest & ring - 1)) oldest++;
+    while (oldest < row && isEmpty(end, oldest & ring - 1)) oldest++;
     if (next - oldest > ring)
       throw new IllegalStateException("more than " + ring + " steps have tasks under way");
-    taken.count = 0;
-    for (int i = 0; i < WORLDS; i += LANES) taken.first[taken.count++] = i;
+    taken.takeAll();
     Arrays.fill(joinedAt, NONE);
     for (int agent = 0; agent < vehicles; agent++) look(agent);
-  }
-
-  private boolean isOver(int slot) {
-    IntVector none = IntVector.broadcast(INTS, NONE);
-    for (int[][] each : end)
-      for (int i = 0; i < WORLDS; i += LANES)
-        if (IntVector.fromArray(INTS, each[slot], i).compare(NE, none).anyTrue()) return false;
-    return true;
   }
 
   @Override
@@ -210,26 +196,44 @@ final class FuturesOffers extends LaneOffers {
       if (due.anyTrue()) {
         taken.first[taken.count++] = i;
         IntVector.fromArray(INTS, second[agent], i).intoArray(nextAt, i);
-        for (int v = 0; v < vehicles; v++)
-          IntVector.fromArray(INTS, nextRead[agent][v], i).intoArray(sampledAt[v], i);
-        IntVector.fromArray(INTS, stepOf[agent], i).sub(here).mul(STEP).intoArray(beatPlaces, i);
+        IntVector.fromArray(INTS, beginOf[agent], i).intoArray(goesOn, i);
+        IntVector step = IntVector.fromArray(INTS, stepOf[agent], i);
+        step.mul(STEP).intoArray(places, i);
+        step.sub(here).mul(STEP).intoArray(beatPlaces, i);
       }
     }
-    if (taken.count > 0) look(agent);
-    return taken.count > 0;
+    if (taken.count == 0) return false;
+    read(agent);
+    look(agent);
+    return true;
+  }
+
+  /** When an agent's tasks that offer something read each vehicle: their delays are drawn again. */
+  private void read(int agent) {
+    int[] there = drawn[0], back = drawn[1];
+    for (int v = 0; v < vehicles; v++) {
+      delays.draw(taken, places, Delays.question(agent, v), there);
+      delays.draw(taken, places, Delays.answer(agent, v), back);
+      for (int k = 0; k < taken.count; k++) {
+        int i = taken.first[k];
+        IntVector at = IntVector.fromArray(INTS, goesOn, i).add(IntVector.fromArray(INTS, there, i));
+        at.intoArray(sampledAt[v], i);
+        at.add(IntVector.fromArray(INTS, back, i)).intoArray(goesOn, i);
+      }
+    }
   }
 
   /**
    * Which offers an agent has next, in vectors in which it took some, or may have more; what it took is over.
    */
   private void look(int agent) {
-    int[][] ends = end[agent];
+    int[][] begins = beginAt[agent], ends = end[agent];
     IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);
     for (int k = 0; k < taken.count; k++) {
       int i = taken.first[k];
       VectorMask<Integer> gone = IntVector.fromArray(INTS, joinedAt, i).compare(NE, none);
       IntVector last = IntVector.broadcast(INTS, -1).blend(IntVector.fromArray(INTS, stepOf[agent], i), gone);
-      IntVector first = zero.add(none), then = zero.add(none), which = zero.add(zero);
+      IntVector first = zero.add(none), then = zero.add(none), which = zero.add(zero), begun = zero.add(zero);
       for (int step = oldest; step < next; step++) {
         int slot = step & ring - 1, shift = (step - row) * periodGrains;
         IntVector time = IntVector.fromArray(INTS, ends[slot], i);
@@ -240,15 +244,12 @@ final class FuturesOffers extends LaneOffers {
         then = then.min(first.max(time));
         first = first.min(time);
         which = which.blend(step, sooner);
-        if (sooner.anyTrue())
-          for (int v = 0; v < vehicles; v++) {
-            IntVector read = IntVector.fromArray(INTS, readAt[agent][v][slot], i).add(shift);
-            IntVector.fromArray(INTS, nextRead[agent][v], i).blend(read, sooner).intoArray(nextRead[agent][v], i);
-          }
+        begun = begun.blend(IntVector.fromArray(INTS, begins[slot], i).add(shift), sooner);
       }
       first.intoArray(soonest[agent], i);
       then.intoArray(second[agent], i);
       which.intoArray(stepOf[agent], i);
+      begun.intoArray(beginOf[agent], i);
     }
   }
 }

@@ -64,6 +64,20 @@ abstract class LaneOffers {
     this.delays = delays;
   }
 
+  /**
+   * Makes arrays for the beat's offers, for loops in which all offers of a world belong to one step.
+   *
+   * @param places for {@link #place}
+   */
+  final void keepOffers(int[] places) {
+    joinedAt = new int[WORLDS];
+    nextAt = new int[WORLDS];
+    for (int v = 0; v < vehicles; v++) {
+      sampledAt[v] = new int[WORLDS];
+      place[v] = places;
+    }
+  }
+
   abstract void start(int[] worldKeys, DelayTable[] links);
 
   /** To a period; they are taken in turn, from 0. */
@@ -75,6 +89,12 @@ abstract class LaneOffers {
   /** Whether the beat's offers are made to a vehicle's controller. */
   final boolean isFor(int vehicle) {
     return whose == ALL || whose == vehicle;
+  }
+
+  /** Whether no world has a time in a slot, of times by vehicle and slot. */
+  static boolean isEmpty(int[][][] times, int slot) {
+    for (int[][] each : times) if (isBefore(each[slot], NONE)) return false;
+    return true;
   }
 
   /** Whether some world's time comes before another. */

@@ -108,7 +108,8 @@ final class LaneViews {
 
   private boolean more;
 
-  LaneViews(LoopTiming.Stream timing, int vehicles, double durationS, boolean shortCut) {
+  LaneViews(
+      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
     this.vehicles = vehicles;
     reached = new int[ROWS][vehicles][WORLDS];
     place = new int[vehicles][WORLDS];
@@ -119,7 +120,8 @@ final class LaneViews {
     periodGrains = grains(timing.periodS());
     patienceGrains = grains(timing.patienceS());
     latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
-    for (int i = 0; i < WORLDS; i++) sources[i] = new ViewSource(timing, vehicles, durationS, ahead);
+    for (int i = 0; i < WORLDS; i++)
+      sources[i] = new ViewSource(timing, vehicles, durationS, maxDelayS, ahead);
   }
 
   static int grains(double seconds) {

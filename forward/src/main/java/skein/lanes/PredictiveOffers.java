@@ -91,22 +91,17 @@ final class PredictiveOffers extends LaneOffers {
     asked = new int[vehicles][ring][WORLDS];
     read = new int[vehicles][ring][WORLDS];
     answered = new int[vehicles][ring][WORLDS];
-    joinedAt = new int[WORLDS];
-    nextAt = new int[WORLDS];
+    keepOffers(new int[WORLDS]);
     Arrays.fill(nextAt, due + periodGrains);
-    int[] here = new int[WORLDS];
-    for (int v = 0; v < vehicles; v++) {
-      sampledAt[v] = new int[WORLDS];
-      fresh[v] = forecast.track(v).fresh;
-      place[v] = here;
-    }
+    for (int v = 0; v < vehicles; v++) fresh[v] = forecast.track(v).fresh;
   }
 
   @Override
   void start(int[] worldKeys, DelayTable[] links) {
     delays.start(worldKeys, links);
     mayWait = false;
-    for (DelayTable link : links) mayWait |= 2 * LaneViews.grains(link.maxS()) + 2 >= window * periodGrains;
+    for (DelayTable link : links)
+      mayWait |= 2 * LaneViews.grains(link.maxS()) + 2 >= (long) window * periodGrains;
     for (int v = 0; v < vehicles; v++) {
       Arrays.fill(places[v], 0);
       Arrays.fill(began[v], PAST);
@@ -124,17 +119,9 @@ final class PredictiveOffers extends LaneOffers {
     searching.takeAll();
     Arrays.fill(found, -1);
     while (take()) forecast.enter(searching, whose, askedAt, madeAt, receivedAt);
-    while (oldest < row && isOver(oldest & ring - 1)) oldest++;
+    while (oldest < row && isEmpty(answered, oldest & ring - 1)) oldest++;
     forecast.tell(joinedAt, sampledAt);
     more = true;
-  }
-
-  private boolean isOver(int slot) {
-    IntVector none = IntVector.broadcast(INTS, NONE);
-    for (int v = 0; v < vehicles; v++)
-      for (int i = 0; i < WORLDS; i += LANES)
-        if (IntVector.fromArray(INTS, answered[v][slot], i).compare(NE, none).anyTrue()) return false;
-    return true;
   }
 
   @Override

@@ -54,12 +54,7 @@ final class SequentialOffers extends LaneOffers {
     drawn = new int[2 * vehicles][WORLDS];
     periodGrains = LaneViews.grains(timing.periodS());
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
-    joinedAt = new int[WORLDS];
-    nextAt = new int[WORLDS];
-    for (int v = 0; v < vehicles; v++) {
-      sampledAt[v] = new int[WORLDS];
-      place[v] = beatPlaces;
-    }
+    keepOffers(beatPlaces);
   }
 
   @Override

@@ -8,8 +8,12 @@ final class StreamOffers extends LaneOffers {
   private final LaneViews views;
   private boolean isFirst;
 
-  StreamOffers(LoopTiming.Stream timing, int vehicles, double durationS, boolean shortCut) {
-    this(new LaneViews(timing, vehicles, durationS, shortCut));
+  /**
+   * @param maxDelayS the longest one-way delay of any link
+   */
+  StreamOffers(
+      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
+    this(new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut));
   }
 
   private StreamOffers(LaneViews views) {

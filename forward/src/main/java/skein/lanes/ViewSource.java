@@ -16,13 +16,17 @@ import skein.signal.Stamped;
  * and asks here for the others.
  */
 final class ViewSource {
-  /** Questions of one vehicle that may be under way: more than any window allows. */
-  private static final int RING = 32;
-
   static final long NEVER = Long.MAX_VALUE;
 
   private final long periodNs, timeoutNs, patienceNs, endNs;
   private final int vehicles, window, ahead;
+
+  /**
+   * Questions kept of each vehicle: with one that takes long, those asked meanwhile, and as many for the one
+   * told last, whose answer may have come as it was asked.
+   */
+  private final int ring;
+
   private int key;
   private DelayTable link;
 
@@ -59,11 +63,15 @@ final class ViewSource {
   int row;
 
   /**
+   * @param maxDelayS the longest one-way delay of any link
    * @param ahead rows within which the questions of a regular view are answered
    */
-  ViewSource(LoopTiming.Stream timing, int vehicles, double durationS, int ahead) {
+  ViewSource(LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, int ahead) {
     this.vehicles = vehicles;
     this.ahead = ahead;
+    window = timing.asking().window();
+    double longestS = Math.min(timing.asking().timeoutS(), 2 * maxDelayS);
+    ring = 2 * (int) Math.ceil(longestS / timing.periodS()) + window + 2;
     tick = new int[vehicles];
     asked = new int[vehicles];
     oldest = new int[vehicles];
@@ -71,11 +79,11 @@ final class ViewSource {
     newest = new int[vehicles];
     told = new int[vehicles];
     waits = new boolean[vehicles];
-    endsAt = new long[vehicles][RING];
-    sentAt = new long[vehicles][RING];
-    reachesAt = new long[vehicles][RING];
-    succeeds = new boolean[vehicles][RING];
-    tickOf = new int[vehicles][RING];
+    endsAt = new long[vehicles][ring];
+    sentAt = new long[vehicles][ring];
+    reachesAt = new long[vehicles][ring];
+    succeeds = new boolean[vehicles][ring];
+    tickOf = new int[vehicles][ring];
     known = new boolean[vehicles];
     renewed = new boolean[vehicles];
     toldAt = new long[vehicles];
@@ -88,7 +96,6 @@ final class ViewSource {
     periodNs = Nanos.of(timing.periodS());
     timeoutNs = Nanos.of(timing.asking().timeoutS());
     patienceNs = Nanos.of(timing.patienceS());
-    window = timing.asking().window();
     endNs = Nanos.of(durationS);
   }
 
@@ -127,8 +134,8 @@ final class ViewSource {
       for (int v = 0; v < vehicles; v++)
         if (underWay[v] > 0)
           for (int q = oldest[v]; q < asked[v]; q++)
-            if (endsAt[v][q % RING] < end) {
-              end = endsAt[v][q % RING];
+            if (endsAt[v][q % ring] < end) {
+              end = endsAt[v][q % ring];
               vehicle = v;
               number = q;
             }
@@ -143,12 +150,12 @@ final class ViewSource {
         return;
       }
       if (end == now) {
-        endsAt[vehicle][number % RING] = NEVER;
+        endsAt[vehicle][number % ring] = NEVER;
         underWay[vehicle]--;
-        while (oldest[vehicle] < asked[vehicle] && endsAt[vehicle][oldest[vehicle] % RING] == NEVER)
+        while (oldest[vehicle] < asked[vehicle] && endsAt[vehicle][oldest[vehicle] % ring] == NEVER)
           oldest[vehicle]++;
         boolean answered =
-            succeeds[vehicle][number % RING]
+            succeeds[vehicle][number % ring]
                 && (number > newest[vehicle] || isLater(vehicle, number));
         ask(vehicle, now);
         if (answered) {
@@ -170,7 +177,7 @@ final class ViewSource {
 
   private void ask(int vehicle, long now) {
     if (waits[vehicle] && underWay[vehicle] < window) {
-      int number = asked[vehicle], at = number % RING;
+      int number = asked[vehicle], at = number % ring;
       waits[vehicle] = false;
       underWay[vehicle]++;
       asked[vehicle]++;
@@ -188,16 +195,16 @@ final class ViewSource {
    * Whether an answer tells of a later moment than the one told last: questions, too, overtake each other.
    */
   private boolean isLater(int vehicle, int number) {
-    return isNewer(vehicle, number, reachesAt[vehicle][told[vehicle] % RING], toldAt[vehicle]);
+    return isNewer(vehicle, number, reachesAt[vehicle][told[vehicle] % ring], toldAt[vehicle]);
   }
 
   private boolean isNewer(int vehicle, int number, long thanValidAt, long thanReceivedAt) {
-    int at = number % RING;
+    int at = number % ring;
     return Stamped.isNewer(reachesAt[vehicle][at], sentAt[vehicle][at], thanValidAt, thanReceivedAt);
   }
 
   private boolean seen(int vehicle, int number, long now) {
-    int at = number % RING;
+    int at = number % ring;
     if (known[vehicle] && !isNewer(vehicle, number, validAt[vehicle], receivedAt[vehicle])) return false;
     known[vehicle] = true;
     renewed[vehicle] = true;

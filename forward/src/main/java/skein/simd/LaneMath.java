@@ -70,7 +70,7 @@ public final class LaneMath {
   public static final float POWER_4 = 0.009671513f;
   public static final float POWER_5 = 0.0013264727f;
 
-  /** Of powers of two that floats hold, below which they count as this. */
+  /** Exponents of two below this count as this: floats hold no power that is much smaller. */
   public static final float LEAST_POWER = -120f;
 
   /** The value in every lane. For static constants. */

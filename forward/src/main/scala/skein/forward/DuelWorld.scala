@@ -212,18 +212,21 @@ private[skein] object DuelWorld:
 
   /** How many of one vehicle's newest questions and commands must be kept. A task of `Futures` reads all
     * vehicles one after the other, each within the time-out, and needs its first reading at the end, when
-    * each of the vehicles may have begun a task in every period since.
+    * each of the vehicles may have begun a task in every period since. Loops that ask every period compare an
+    * answer with the one told last, whose question may be as old again.
     */
-  def ringOf(timing: LoopTiming, vehicles: Int): Int = timing match
-    case futures: LoopTiming.Futures =>
-      val periods = vehicles * futures.asking.timeoutS / futures.periodS
-      val needed  = vehicles * (math.ceil(periods) + futures.asking.window + 1)
-      require(
-        needed <= MostRing,
-        s"at most $MostRing questions of a vehicle can be kept, $timing may need $needed"
-      )
-      needed.toInt.max(Ring)
-    case _ => Ring
+  def ringOf(timing: LoopTiming, vehicles: Int): Int =
+    val asking                 = LoopTiming.askingOf(timing)
+    def periods(timeS: Double) = math.ceil(timeS / timing.periodS)
+    val needed: Double         = timing match
+      case _: LoopTiming.Futures => vehicles * (periods(vehicles * asking.timeoutS) + asking.window + 1)
+      case _: (LoopTiming.Stream | LoopTiming.Predictive) => 2 * periods(asking.timeoutS) + asking.window + 2
+      case _                                              => Ring
+    require(
+      needed <= MostRing,
+      s"at most $MostRing questions of a vehicle can be kept, $timing may need $needed"
+    )
+    needed.toInt.max(Ring)
 
   private val MostRing = 1 << 16
 

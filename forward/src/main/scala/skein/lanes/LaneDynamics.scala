@@ -103,6 +103,7 @@ private[skein] object LaneDynamics:
 /** Vehicles whose readings are carried forward. */
 private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS}
+  override def stepS: Double                         = model.stepS
   override def fliesAlone: Boolean                   = model.fliesAlone
   override def predictor: Option[TimetablePredictor] = Some(by)
   def vehicles(duelist: Duelist): TimetableVehicles  =

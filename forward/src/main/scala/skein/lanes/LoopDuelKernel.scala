@@ -5,7 +5,7 @@ import skein.forward.{DelayTable, Duel}
 /** Duels by [[LoopKernel]].
   *
   * @param duel start, speeds and duration; its policies are not used
-  * @param model none with which the loop is refused
+  * @param model one that [[LoopSupport]] does not refuse
   * @param pursuers take the parameters of each world's pursuer before it flies
   * @param asked what they are judged by
   */

@@ -32,7 +32,7 @@ private[lanes] final class LoopLanes(
     for by <- predictor do forecast.follow(vehicle, by.alone(duelist), read)
 
   val offers: LaneOffers = timing match
-    case stream: LoopTiming.Stream         => StreamOffers(stream, vehicles, durationS, shortCut)
+    case stream: LoopTiming.Stream         => StreamOffers(stream, vehicles, durationS, maxDelayS, shortCut)
     case sequential: LoopTiming.Sequential => SequentialOffers(sequential, vehicles)
     case futures: LoopTiming.Futures       => FuturesOffers(futures, vehicles, maxDelayS)
     case predictive: LoopTiming.Predictive => PredictiveOffers(predictive, vehicles, maxDelayS, forecast)

@@ -9,10 +9,11 @@ import skein.units.Expect
 
 /** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
   * quantities are formulas fly by lanes: worlds that share episodes by [[TimetableKernel]], all of an episode
-  * by one [[Timetable]], which is made once; others by [[LoopKernel]]. All else flies by the scalar reference
-  * ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate, its link
-  * and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their
-  * order. One call at a time.
+  * by one [[Timetable]], which is made once; others by [[LoopKernel]]. Other teams' quadrotors and bodies of
+  * MuJoCo are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar
+  * reference ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate,
+  * its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on
+  * their order. One call at a time.
   */
 final class TeamBatch(
     timing: LoopTiming,

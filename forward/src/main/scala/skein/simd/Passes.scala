@@ -55,33 +55,43 @@ private object Passes:
         if arg.op == Op.Mul && fused(arg) && !usedPlainly(arg) then arg.args else Vector(arg)
       )
     val ends   = cut(computed, argsOf, most, mostConstants)
-    val passOf = mutable.HashMap.empty[Node, Int]
-    for (node, at) <- computed.zipWithIndex do passOf(node) = ends.count(_ <= at)
     val number = ends.size - 1
+    val passOf = mutable.HashMap.empty[Node, Int]
+    for ((first, end), pass) <- (0 +: ends).zip(ends).zipWithIndex; at <- first until end do
+      passOf(computed(at)) = pass
     val ofPass = computed.groupBy(passOf).withDefaultValue(Vector.empty)
     val needs  = Vector.tabulate(number + 1): pass =>
       ofPass(pass).flatMap(argsOf).distinct.filter(arg =>
         !isLeaf(arg) && passOf(arg) < pass
       )
     // Conditions are computed again where another pass needs them: a mask is not laid by.
-    def numbersOf(node: Node): Vector[Node] =
-      if node.op.isCondition then argsOf(node).flatMap(numbersOf) else Vector(node)
-    val numbers = needs.map(_.flatMap(numbersOf).distinct)
+    val again   = needs.map(conditionsOf)
+    val numbers = needs
+      .zip(again)
+      .map((each, again) => (each ++ again.flatMap(argsOf)).filterNot(_.op.isCondition).distinct)
     val lastUse = mutable.LinkedHashMap.empty[Node, Int]
     for (each, pass) <- numbers.zipWithIndex; node <- each if !isLeaf(node) do lastUse(node) = pass
-    val places                                 = placed(lastUse, passOf, number + 1)
-    def conditionsOf(node: Node): Vector[Node] =
-      if node.op.isCondition then node.args.flatMap(conditionsOf) :+ node else Vector.empty
+    val places = placed(lastUse, passOf, number + 1)
     Vector.tabulate(number + 1): pass =>
       val own    = ofPass(pass)
-      val again  = needs(pass).flatMap(conditionsOf).distinct
       val loaded = numbers(pass).filter(node => !isLeaf(node) && passOf(node) < pass)
       Pass(
-        again ++ own,
+        again(pass) ++ own,
         loaded.map(node => node -> places(node)).toMap,
         own.filter(places.contains).map(node => node -> places(node)),
         outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
       )
+
+  /** Those of the nodes that are conditions, and the conditions that they are made of, each once and behind
+    * these.
+    */
+  private def conditionsOf(nodes: Vector[Node]): Vector[Node] =
+    val found                  = mutable.LinkedHashSet.empty[Node]
+    def find(node: Node): Unit = if node.op.isCondition && !found(node) then
+      node.args.foreach(find)
+      found += node
+    nodes.foreach(find)
+    found.toVector
 
   /** Where passes end that lay by and fetch as few numbers as possible.
     *
@@ -96,6 +106,8 @@ private object Passes:
     val count   = order.size
     val placeOf = order.zipWithIndex.toMap
     val args    = order.map(argsOf(_).filterNot(arg => arg.isConst || arg.op == Op.Always))
+    val costs   = order.map(LaneCosts.of)
+    val needs   = order.map(LaneCosts.constantsOf)
     val lastUse = Array.ofDim[Int](count)
     for (of, at) <- args.zipWithIndex; arg <- of if !isLeaf(arg) do lastUse(placeOf(arg)) = at
     val best = Array.fill(count + 1)(Double.PositiveInfinity)
@@ -110,8 +122,8 @@ private object Passes:
       while first > 0 && fits do
         first -= 1
         val node = order(first)
-        size += LaneCosts.of(node)
-        constants ++= LaneCosts.constantsOf(node)
+        size += costs(first)
+        constants ++= needs(first)
         fits = first == end - 1 || size <= most && constants.size <= mostConstants
         if fits then
           if !isLeaf(node) then fetched -= node

@@ -120,6 +120,18 @@ class FlownByLanesSuite extends munit.FunSuite:
         val engine = batch.engine(team, shared, Seq(DelayTable.vpn))
         assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
+  test(
+    "a plant whose steps are longer than lanes fly is refused in teams under every loop that meets delays"
+  ):
+    val model = PlantResponse(Bicycle(1.2, 0.3, 4, 0.4, stepS = 1.5))
+    val team  = TeamCandidate(
+      Engagement.of(Surround(6).fleet, 3),
+      Vector(Judged(OffRing(8), Reduction.Rms, 0))
+    )
+    for timing <- loops(model).tail do
+      val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn))
+      assert(engine.startsWith("scalar: the lanes fly steps of"), s"$timing: $engine")
+
   test("the table has a row for all that the engines fly, and no other"):
     val all =
       for

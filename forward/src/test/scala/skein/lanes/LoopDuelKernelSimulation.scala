@@ -184,6 +184,20 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     test(s"${timing.productPrefix} $name over vpn: the scalar reference's decisions and flight for 12 s"):
       agreement(timing, DelayTable.vpn, 12, lag).check(name, 0 until worlds by 16)
 
+  for periodS <- Seq(0.01, 0.004) do
+    test(
+      s"stream every $periodS s, where questions fail after many later ones: the scalar reference's decisions"
+    ):
+      val timing = LoopTiming.Stream(periodS, periodS / 2, periodS, asking = Asking(window = 16))
+      agreement(timing, wild(40, 200), 5, lag).check("slow", 0 until worlds by 9)
+
+  test("predictive with a period of dead time over a link of much jitter: worlds turn at times of their own"):
+    val late   = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.1)
+    val timing = LoopTiming.Predictive(0.1, late.predictor)
+    for (jitterMs, episode) <- Seq(150.0, 300.0).zipWithIndex do
+      fly(timing, wild(200, jitterMs), 60, late, Array.tabulate(worlds)(WorldRandom.key(4, episode, _))): Unit
+      agreement(timing, wild(200, jitterMs), 10, late).check("late", 0 until worlds by 9)
+
   for timing <- loops(lag) do
     test(s"$timing over vpn: the scalar reference's decisions and flight for 60 s, in each world compared"):
       agreement(timing, DelayTable.vpn, 60, lag).check("60 s", 0 until worlds by 11)

@@ -43,6 +43,31 @@ class LaneMathSuite extends munit.FunSuite:
       val error = largestError(compiled(op, xs), i => exact(xs(i)))
       assert(error < bound, error)
 
+  test("conditions are compiled once, however many others are made of them, and pass from pass to pass"):
+    val trace         = Trace()
+    def input(i: Int) = trace.input(i)
+    var inside        = trace.lt(input(0), trace.const(0))
+    def on(i: Int)    = trace.lt(input(0), trace.const(i))
+    for i <- 1 to 40 do
+      inside = trace.or(trace.and(inside, on(2 * i)), trace.and(trace.not(inside), on(2 * i + 1)))
+    // Longer than a pass: the condition is needed again behind it.
+    var sum = trace.where(inside, input(0), input(1))
+    for i <- 1 to 60 do sum = trace.unary(Op.Sqrt, trace.add(trace.unary(Op.Abs, sum), trace.const(i)))
+    val chosen   = trace.where(inside, sum, trace.neg(sum))
+    val function = LaneCompiler.compile(2, Vector(chosen))
+    val into     = Array.ofDim[Float](LaneFunction.COUNT)
+    val xs       = Array.tabulate(LaneFunction.COUNT)(i => i - 20.5f)
+    function.apply(
+      Array(xs, xs, into),
+      Array(0, 0, 0),
+      Array.emptyFloatArray,
+      Array.ofDim[Float](function.scratch)
+    )
+    for (x, i) <- xs.zipWithIndex do
+      var holds = x < 0
+      for k <- 1 to 40 do holds = if holds then x < 2 * k else x < 2 * k + 1
+      assertEquals(into(i) > 0, holds, s"$x")
+
   test("the exponential, compiled, errs by less than 2.5e-7 of its value"):
     val xs    = spread(-20, 20)
     val out   = compiled(Op.Exp, xs)
