@@ -41,22 +41,24 @@ private[lanes] object QuadrotorLanes:
   /** @return or why such quadrotors do not fly by lanes */
   def of(quadrotor: Quadrotor): Either[String, QuadrotorLanes] =
     val airborne = Airborne(quadrotor)
-    known(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)
+    forms(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)
 
-  private val known = Forms[Airborne, FixedFormula](_.fits(_))(compiled)
+  private val forms = Forms[Airborne, FixedFormula](_.fits(_))(compiled)
 
-  private def compiled(of: Airborne): Either[Untraceable, FixedFormula] = Formula
-    .of(
-      of,
-      "step",
-      known = Map(
-        "state.grounded"      -> false,
-        "state.contacts"      -> 0,
-        "state.verticalMode"  -> VerticalMode.Position,
-        "state.cascadeMemory" -> null
-      )
-    )
-    .map(formula => FixedFormula(formula, of, rows = formula.outputs.size))
+  private def compiled(of: Airborne): Either[Untraceable, FixedFormula] =
+    for formula <- Formula.of(of, "step", known = known)
+    yield
+      // A step's outputs are the next one's inputs.
+      require(formula.inputs.map(_.stripPrefix(State)).startsWith(formula.outputs.map(_._1)), formula.inputs)
+      FixedFormula(formula, of, rows = formula.outputs.size)
+
+  /** Of a state in the air under `moveByVelocityZ`, what is no number. */
+  private def known: Map[String, Any] = Map(
+    "grounded"      -> false,
+    "contacts"      -> 0,
+    "verticalMode"  -> VerticalMode.Position,
+    "cascadeMemory" -> null
+  ).map((name, value) => (State + name, value))
 
   /** What is compiled. */
   private final class Airborne(quadrotor: Quadrotor):
