@@ -54,7 +54,28 @@ final case class BudgetCells(
     episodes: Int,
     onProgress: Long => Unit = _ => (),
     isCancelled: () => Boolean = () => false
-)
+):
+  /** Of each cell, once their [[CellWorlds]] are flown.
+    *
+    * @param flown how many worlds were
+    * @param value of a world
+    * @return or that it was stopped before
+    */
+  def tallies(flown: Int)(value: Int => Double): Either[String, Vector[RunningStats]] = Either.cond(
+    flown == links.size * episodes,
+    Vector.tabulate(links.size)(link =>
+      RunningStats.of(episodes)(episode => value(link * episodes + episode))
+    ),
+    BudgetSubject.Stopped
+  )
+
+/** The worlds of cells that are flown together: of each link the same episodes, one link after the other. */
+abstract class CellWorlds(links: Vector[DelayTable], each: Int, seed: Long):
+  private val tables               = links.toArray
+  private val keys                 = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
+  def size: Int                    = tables.length * each
+  def key(world: Int): Int         = keys(world % each)
+  def link(world: Int): DelayTable = tables(world / each)
 
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
@@ -94,26 +115,17 @@ final class DuelSubject(
     batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
-    import cells.{episodes, links}
-    val worlds   = Worlds(links.map(DelayTable.of), episodes)
-    val outcomes =
-      batch.fly(worlds, objective.captureRadiusM, done => cells.onProgress(done), cells.isCancelled)
-    Either.cond(
-      outcomes.flown == worlds.size,
-      Vector.tabulate(links.size): link =>
-        RunningStats.of(episodes)(episode =>
-          objective.value(outcomes, link * episodes + episode, policy.role, durationS)
-        ),
-      BudgetSubject.Stopped
+    val outcomes = batch.fly(
+      Worlds(cells.links.map(DelayTable.of), cells.episodes),
+      objective.captureRadiusM,
+      cells.onProgress(_),
+      cells.isCancelled
     )
+    cells.tallies(outcomes.flown)(objective.value(outcomes, _, policy.role, durationS))
 
-  private final class Worlds(links: Vector[DelayTable], each: Int) extends DuelWorlds:
-    private val tables = links.toArray
-    private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
-
-    def size: Int                       = tables.length * each
+  private final class Worlds(links: Vector[DelayTable], each: Int)
+      extends CellWorlds(links, each, seed),
+        DuelWorlds:
     override def asked: Set[DuelNumber] = objective.asked(policy.role)
-    def key(world: Int): Int            = keys(world % each)
-    def link(world: Int): DelayTable    = tables(world / each)
     def pursuer(world: Int): Policy     = DuelSubject.this.pursuer
     def evader(world: Int): Policy      = DuelSubject.this.evader

@@ -78,26 +78,19 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
     if cells.fliesByLanes(candidate, shareEpisodes = false, links.map(DelayTable.of)) then 300 else 10
 
   def tallies(asked: BudgetCells): Either[String, Vector[RunningStats]] =
-    import asked.{episodes, links}
-    val worlds   = Worlds(links.map(DelayTable.of), episodes)
-    val outcomes = cells.fly(worlds, asked.onProgress(_), asked.isCancelled)
-    Either.cond(
-      outcomes.flown == worlds.size,
-      Vector.tabulate(links.size)(link =>
-        RunningStats.of(episodes)(episode => value(outcomes, link * episodes + episode))
-      ),
-      BudgetSubject.Stopped
+    val outcomes = cells.fly(
+      Worlds(asked.links.map(DelayTable.of), asked.episodes),
+      asked.onProgress(_),
+      asked.isCancelled
     )
+    asked.tallies(outcomes.flown)(value(outcomes, _))
 
   private def value(outcomes: TeamOutcomes, world: Int) =
-    question.objective.terms.zip(outcomes.values).map((term, values) => term._1 * values(world)).sum
+    outcomes.sum(question.objective.terms.map(_._1), world)
 
-  private final class Worlds(links: Vector[DelayTable], each: Int) extends TeamWorlds:
-    private val tables                       = links.toArray
-    private val keys                         = Array.tabulate(each)(WorldRandom.key(question.seed, 0, _))
-    def size: Int                            = tables.length * each
-    def key(world: Int): Int                 = keys(world % each)
-    def link(world: Int): DelayTable         = tables(world / each)
+  private final class Worlds(links: Vector[DelayTable], each: Int)
+      extends CellWorlds(links, each, question.seed),
+        TeamWorlds:
     def candidate(world: Int): TeamCandidate = TeamSubject.this.candidate
 
 /** Whatever its measures are: each is taken of a whole flight.

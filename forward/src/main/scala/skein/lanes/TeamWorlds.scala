@@ -72,5 +72,12 @@ final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
 
   private[lanes] def flown_=(worlds: Int): Unit = done = worlds
 
+  /** A sum of a world's numbers.
+    *
+    * @param weights by what is judged
+    */
+  def sum(weights: Vector[Double], world: Int): Double =
+    weights.indices.map(number => weights(number) * values(number)(world)).sum
+
   private[lanes] def set(world: Int, came: Vector[Double]): Unit =
     for (value, number) <- came.zipWithIndex do values(number)(world) = value.toFloat

@@ -35,7 +35,7 @@ final class TeamEvaluator(
       Vector.tabulate(teams.size): number =>
         Array.tabulate(keys.length): episode =>
           val world = number * keys.length + episode
-          weights.indices.map(i => weights(i) * outcomes.values(i)(world)).sum
+          outcomes.sum(weights, world)
 
   private final class Worlds(teams: Vector[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
     def size: Int                            = teams.size * keys.length
