@@ -17,6 +17,10 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   private var used    = VEHICLES
   private var isOther = false
 
+  // Nearly always all hover at one place: that, and the state's numbers there.
+  private var heldNed                 = Vector3.Zero
+  private var holding: Vector[Double] = lanes.numbersOf(lanes.quadrotor.hovering(heldNed))
+
   /** Of the vehicles now, row by row. */
   def state: Array[Float] = if isOther then other else one
 
@@ -40,12 +44,17 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   /** Lets it hover, settled, told to hold this place. */
   def hover(place: Int, goalNed: Vector3): Unit =
-    val numbers = lanes.numbersOf(lanes.quadrotor.hovering(goalNed))
-    for (number, row) <- numbers.zipWithIndex do state(row * VEHICLES + place) = number.toFloat
+    if goalNed != heldNed then
+      heldNed = goalNed
+      holding = lanes.numbersOf(lanes.quadrotor.hovering(goalNed))
+    for row <- holding.indices do state(row * VEHICLES + place) = holding(row).toFloat
     command(place, 0, 0, goalNed.z.toFloat)
 
-  def hover(place: Int, downM: Double): Unit =
-    hover(place, Vector3(0, 0, downM - lanes.quadrotor.hoverSagM(downM, Environment.Calm)))
+  def hover(place: Int, downM: Double): Unit = hover(place, holdingAt(downM))
+
+  /** What a vehicle above its start is to hold, to settle at this altitude. */
+  def holdingAt(downM: Double): Vector3 =
+    Vector3(0, 0, downM - lanes.quadrotor.hoverSagM(downM, Environment.Calm))
 
   def command(place: Int, northMps: Float, eastMps: Float, downM: Float): Unit =
     goal(place) = northMps

@@ -17,7 +17,7 @@ private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, for
   /** Which numbers these are of a state. */
   def numbersOf(state: QuadrotorState): Vector[Double] = fields.map(_.getDouble(state))
 
-  private val fields = rows.map: name =>
+  private lazy val fields = rows.map: name =>
     val field = classOf[QuadrotorState].getDeclaredField(name)
     field.setAccessible(true)
     field

@@ -102,7 +102,7 @@ final class TeamBatch(
   private final class Prepared(val candidate: TeamCandidate):
     private val agents                    = candidate.engagement.agents
     val form: Option[Form]                = lanesOf(candidate).toOption
-    val isStepped: Boolean                = steppedOf(candidate).isDefined
+    lazy val isStepped: Boolean           = steppedOf(candidate).isDefined
     val ofPolicies: Vector[Array[Double]] = form.toVector.flatMap: form =>
       agents.zipWithIndex.map((agent, self) =>
         form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy])

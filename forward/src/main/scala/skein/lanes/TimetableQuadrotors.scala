@@ -13,6 +13,7 @@ private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuad
     extends TimetableVehicles(duelist):
   import TimetableQuadrotors.*
   import TimetableVehicles.WORLDS
+  private val hold     = flown.holdingAt(duelist.altitudeDownM)
   private val carried  = Array.ofDim[Float](2)
   private val position = LaneCall(placed, carried)
   private val velocity = LaneCall(moved, carried)
@@ -21,7 +22,7 @@ private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuad
     flown.use(worlds)
     for world <- 0 until WORLDS do rest(world)
 
-  def rest(world: Int): Unit = flown.hover(world, duelist.altitudeDownM)
+  def rest(world: Int): Unit = flown.hover(world, hold)
 
   def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
     flown.fly(times(at).toInt)
