@@ -29,7 +29,8 @@ private object Passes:
   private val MostConstants = 20
 
   // The same where inputs and outputs are rows of few arrays, whose addresses leave registers: a step with
-  // drag and two lags in one pass takes 210 ns, in two 250 to 300.
+  // drag and two lags in one pass takes 210 ns, in two 250 to 300; the quadrotor's 400 operations fly 119 M
+  // steps a second in four passes, and 95 M in eight of 60.
   private val MostOfRows          = 140
   private val MostConstantsOfRows = 30
 
