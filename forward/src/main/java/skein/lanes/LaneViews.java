@@ -121,7 +121,7 @@ final class LaneViews {
     patienceGrains = grains(timing.patienceS());
     latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
     for (int i = 0; i < WORLDS; i++)
-      sources[i] = new ViewSource(timing, vehicles, durationS, maxDelayS, ahead);
+      sources[i] = ViewSource.apply(timing, vehicles, durationS, maxDelayS, ahead);
   }
 
   static int grains(double seconds) {
@@ -246,7 +246,7 @@ final class LaneViews {
   }
 
   private void stayIrregular(int world) {
-    sources[world].isRegular = false;
+    sources[world].stayIrregular();
     irregularUpTo[world] = Integer.MAX_VALUE;
   }
 
@@ -255,10 +255,10 @@ final class LaneViews {
     ViewSource source = sources[world];
     source.next();
     hasNext[world] = true;
-    boolean isRegular = source.isRegular && shortCut;
-    for (int step = source.row + 1; isRegular && step < lookedAt; step++)
+    boolean isRegular = source.isRegular() && shortCut;
+    for (int step = source.row() + 1; isRegular && step < lookedAt; step++)
       isRegular = isRegular(world, step);
-    if (isRegular) irregularUpTo[world] = source.row;
+    if (isRegular) irregularUpTo[world] = source.row();
     else stayIrregular(world);
   }
 
@@ -308,14 +308,14 @@ final class LaneViews {
     for (int i = 0; i < irregularCount; i++) {
       int world = irregular[i];
       ViewSource source = sources[world];
-      if (source.row == row) {
+      if (source.row() == row) {
         any = true;
         put(world, source);
-        if (source.isRegular && shortCut) hasNext[world] = false;
+        if (source.isRegular() && shortCut) hasNext[world] = false;
         else {
           goOn(world);
-          nextAt[world] = fromTick(source.joinedAt);
-          if (source.row == row) {
+          nextAt[world] = fromTick(source.joinedAt());
+          if (source.row() == row) {
             more = true;
             // The next row was looked after already.
             stayIrregular(world);
@@ -325,7 +325,7 @@ final class LaneViews {
         joinedAt[world] = NONE;
         for (int[] each : isFresh) each[world] = 0;
         hasOld = true;
-      } else if (isFirst) nextAt[world] = fromTick(source.joinedAt);
+      } else if (isFirst) nextAt[world] = fromTick(source.joinedAt());
       if (hasNext[world]) irregular[kept++] = world;
     }
     irregularCount = kept;
@@ -333,14 +333,14 @@ final class LaneViews {
   }
 
   private void put(int world, ViewSource source) {
-    joinedAt[world] = fromTick(source.joinedAt);
+    joinedAt[world] = fromTick(source.joinedAt());
     for (int v = 0; v < vehicles; v++) {
-      int at = fromTick(source.sampledAt[v]);
+      int at = fromTick(source.sampledAt()[v]);
       sampledAt[v][world] = at;
-      place[v][world] = LaneDelays.placeOf(source.question[v]) - LaneDelays.placeOf(row);
+      place[v][world] = LaneDelays.placeOf(source.question()[v]) - LaneDelays.placeOf(row);
       hasOther |= place[v][world] != 0;
-      isFresh[v][world] = source.isFresh[v] ? 1 : 0;
-      hasOld |= !source.isFresh[v];
+      isFresh[v][world] = source.isFresh()[v] ? 1 : 0;
+      hasOld |= !source.isFresh()[v];
     }
   }
 

@@ -1,11 +1,12 @@
 package skein.forward
 
 /** A loop that asks every vehicle periodically and goes by the newest reading of each. Mutable. */
-private[skein] abstract class AskingRun(world: DuelWorld, periodS: Double, asking: Asking)
+private[skein] abstract class AskingRun(protected val world: DuelWorld, periodS: Double, asking: Asking)
     extends LoopRun,
       PeriodicQuestions.Seen:
 
-  private val questions =
+  /** By vehicle. */
+  protected val questions: Array[PeriodicQuestions] =
     Array.tabulate(world.count)(PeriodicQuestions(world, _, Nanos.of(periodS), asking, this))
 
   /** Of the newest reading of each vehicle, ns. */
@@ -14,9 +15,14 @@ private[skein] abstract class AskingRun(world: DuelWorld, periodS: Double, askin
   /** Which vehicles have been seen. */
   protected val known = Array.ofDim[Boolean](world.count)
 
-  def start(): Unit =
-    java.util.Arrays.fill(known, false)
-    questions.foreach(_.start())
+  def start(): Unit = begin(0)
+
+  /** Begins at a question, when all before were answered and used, if there were any. */
+  protected def begin(question: Int): Unit =
+    java.util.Arrays.fill(known, question > 0)
+    java.util.Arrays.fill(validAt, Long.MinValue)
+    java.util.Arrays.fill(receivedAt, Long.MinValue)
+    questions.foreach(_.begin(question))
 
   final def tick(vehicle: Int, number: Int): Unit = questions(vehicle).tick(number)
 

@@ -47,15 +47,18 @@ private[skein] final class DuelWorld(
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
 
-  /** Back to the start of an episode. */
-  def start(worldKey: Int, listener: LoopObserver): Unit =
+  /** Back to the start of an episode.
+    *
+    * @param firstQuestion the number of each vehicle's next question
+    */
+  def start(worldKey: Int, listener: LoopObserver, firstQuestion: Int = 0): Unit =
     key = worldKey
     time = 0
     watching = listener
     queue.clear()
     for vehicle <- vehicles.indices do
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
-      asked(vehicle) = 0; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
+      asked(vehicle) = firstQuestion; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
 
   /** Is told what happens. */
   def observer: LoopObserver = watching

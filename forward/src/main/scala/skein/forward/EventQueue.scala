@@ -1,12 +1,15 @@
 package skein.forward
 
 /** A bounded queue of events in the order of their times, ns; events of one time keep the order in which they
-  * were added. An event is a `Long` of the caller's. Allocates nothing after construction.
+  * were added. An event is a `Long` of the caller's. Allocates nothing but room for more events than waited
+  * at any time before.
   */
 private[skein] final class EventQueue(capacity: Int):
-  private val times    = Array.ofDim[Long](capacity)
-  private val sequence = Array.ofDim[Long](capacity)
-  private val events   = Array.ofDim[Long](capacity)
+  import java.util.Arrays.copyOf
+
+  private var times    = Array.ofDim[Long](EventQueue.Room.min(capacity))
+  private var sequence = Array.ofDim[Long](times.length)
+  private var events   = Array.ofDim[Long](times.length)
   private var size     = 0
   private var added    = 0L
 
@@ -18,7 +21,7 @@ private[skein] final class EventQueue(capacity: Int):
   def nextTime: Long = times(0)
 
   def add(time: Long, event: Long): Unit =
-    if size == capacity then throw IllegalStateException(s"more than $capacity events are waiting")
+    if size == times.length then makeRoom()
     var hole = size
     size += 1
     val number = added
@@ -27,6 +30,13 @@ private[skein] final class EventQueue(capacity: Int):
       move((hole - 1) / 2, hole)
       hole = (hole - 1) / 2
     put(hole, time, number, event)
+
+  private def makeRoom(): Unit =
+    if size == capacity then throw IllegalStateException(s"more than $capacity events are waiting")
+    val room = (2 * size).min(capacity)
+    times = copyOf(times, room)
+    sequence = copyOf(sequence, room)
+    events = copyOf(events, room)
 
   def take(): Long =
     val first = events(0)
@@ -52,3 +62,6 @@ private[skein] final class EventQueue(capacity: Int):
 
   private def put(at: Int, time: Long, number: Long, event: Long): Unit =
     times(at) = time; sequence(at) = number; events(at) = event
+
+private[skein] object EventQueue:
+  private val Room = 16

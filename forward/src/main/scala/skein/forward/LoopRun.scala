@@ -2,9 +2,27 @@ package skein.forward
 
 /** A loop while it flies: what it does when something happens. One case of [[LoopTiming]] each. Mutable. */
 private[skein] trait LoopRun extends Controller.OnSent:
+  import DuelWorld.*
+
+  protected def world: DuelWorld
+
   def controllers: Array[Controller]
 
   def start(): Unit
+
+  /** Handles an event of a question, or of the loop's own clock. */
+  final def handle(event: Long): Unit =
+    val vehicle = vehicleOf(event)
+    val number  = numberOf(event)
+    kindOf(event) match
+      case Tick     => tick(vehicle, number)
+      case Sampled  => world.sampled(vehicle, number)
+      case Answered =>
+        world.received(vehicle, number)
+        answered(vehicle, number)
+      case TimedOut => timedOut(vehicle, number)
+      case Patience => patienceOver()
+      case Due      => due(number)
 
   /** It is time for what was scheduled as `Tick`. */
   def tick(vehicle: Int, number: Int): Unit
@@ -25,7 +43,8 @@ private[skein] trait LoopRun extends Controller.OnSent:
   def replaced(agent: Int, number: Int): Unit = ()
 
 /** [[LoopTiming.Paused]]. */
-private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) extends LoopRun:
+private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val world: DuelWorld)
+    extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val observation            = DuelObservation(world.count)
   val controllers: Array[Controller] =
@@ -47,7 +66,8 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld
   def timedOut(vehicle: Int, question: Int): Unit = ()
 
 /** [[LoopTiming.Sequential]]. */
-private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorld) extends LoopRun:
+private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protected val world: DuelWorld)
+    extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val observation            = DuelObservation(world.count)
   val controllers: Array[Controller] =
@@ -73,7 +93,8 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: D
   private def goOn(step: Int): Unit = world.schedule(world.nowNs + periodNs, DuelWorld.Tick, 0, step + 1)
 
 /** [[LoopTiming.Futures]]. */
-private[skein] final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) extends LoopRun:
+private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val world: DuelWorld)
+    extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val most                   = world.count * timing.asking.window
   private val observation            = DuelObservation(world.count)

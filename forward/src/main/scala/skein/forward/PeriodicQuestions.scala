@@ -23,9 +23,17 @@ private[skein] final class PeriodicQuestions(
   private var told     = -1
   private var oldest   = 0
 
-  def start(): Unit =
-    waits = false; asked = 0; underWay = 0; newest = -1; told = -1; oldest = 0
-    world.schedule(offsetNs, DuelWorld.Tick, vehicle, 0)
+  /** Begins at a question, when all before have ended, if there were any. */
+  def begin(question: Int): Unit =
+    waits = false; asked = question; underWay = 0; newest = question - 1; told = newest; oldest = question
+    world.schedule(offsetNs + question * periodNs, DuelWorld.Tick, vehicle, question)
+
+  /** Whether this question was told last, as the newest, none before it is under way, and so many were asked
+    * and none waits.
+    */
+  def isUpTo(question: Int, asked: Int): Boolean =
+    newest == question && told == question && underWay == asked - 1 - question &&
+      this.asked == asked && !waits
 
   def tick(number: Int): Unit =
     world.schedule(offsetNs + (number + 1) * periodNs, DuelWorld.Tick, vehicle, number + 1)

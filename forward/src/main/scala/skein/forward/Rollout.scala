@@ -104,22 +104,15 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     val vehicle = vehicleOf(event)
     val number  = numberOf(event)
     kindOf(event) match
-      case ScoreNow => scoreNow(number)
-      case Tick     => loop.tick(vehicle, number)
-      case Sampled  => world.sampled(vehicle, number)
-      case Answered =>
-        world.received(vehicle, number)
-        loop.answered(vehicle, number)
-      case TimedOut     => loop.timedOut(vehicle, number)
-      case Arrived      => world.arrived(vehicle, number)
-      case Acts         => world.acts(vehicle, number)
-      case Acknowledged =>
+      case ScoreNow                                              => scoreNow(number)
+      case Tick | Sampled | Answered | TimedOut | Patience | Due => loop.handle(event)
+      case Arrived                                               => world.arrived(vehicle, number)
+      case Acts                                                  => world.acts(vehicle, number)
+      case Acknowledged                                          =>
         loop.replaced(vehicle, number)
         loop.controllers(vehicle).acknowledged()
-      case Wake     => loop.controllers(vehicle).goOn()
-      case Patience => loop.patienceOver()
-      case Due      => loop.due(number)
-      case kind     => trackers(vehicle).foreach(Rollout.seeing(kind, number, _))
+      case Wake => loop.controllers(vehicle).goOn()
+      case kind => trackers(vehicle).foreach(Rollout.seeing(kind, number, _))
 
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)

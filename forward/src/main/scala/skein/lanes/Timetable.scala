@@ -1,18 +1,8 @@
 package skein.lanes
 
 import java.util.Comparator
-import skein.forward.{
-  Delays,
-  Duelist,
-  Engagement,
-  LoopTiming,
-  Rollout,
-  CameraTracker,
-  Vehicle,
-  VelocityResponse
-}
+import skein.forward.{CameraTracker, Delays, LoopTiming, Rollout}
 import skein.fusion.SensorModel
-import skein.policy.{Assignment, KeepHeading, Role}
 import skein.vehicle.ConstantVelocity
 
 /** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where
@@ -74,35 +64,18 @@ private[skein] object Timetable:
       eyes: Map[Int, SensorModel] = Map.empty
   ): Timetable =
     val notes = TimetableNotes(vehicles, model, eyes)
-    Rollout(still(vehicles, durationS, eyes), unpredicted(timing), link, Still(model)).fly(
-      key,
-      observer = notes
-    ): Unit
+    Rollout(
+      StandingStill.engagement(vehicles, durationS, eyes),
+      unpredicted(timing),
+      link,
+      StandingStill.Response(model.handoverS)
+    ).fly(key, observer = notes): Unit
     TimetableCompiler(notes, vehicles, model).result
 
   /** The same loop; what stands still is predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
-
-  /** An engagement in which nothing moves; its roles and rivals decide no time. */
-  private def still(vehicles: Int, durationS: Double, eyes: Map[Int, SensorModel]): Engagement = Engagement(
-    Vector.tabulate(vehicles)(self => Duelist(0, 0, 0, 0, 0, KeepHeading, eyes.get(self))),
-    Role.Evader +: Vector.fill(vehicles - 1)(Role.Pursuer),
-    Assignment(Vector.tabulate(vehicles)(self => Vector(if self == 0 then 1 else 0))),
-    durationS
-  )
-
-  private final class Still(model: LaneDynamics) extends VelocityResponse:
-    override def handoverS: Double = model.handoverS
-    def create(): Vehicle          = new Vehicle:
-      def start(x: Double, y: Double, z: Double): Unit = ()
-      def command(vx: Double, vy: Double): Unit        = ()
-      def advance(timeS: Double): Unit                 = ()
-      def x: Double                                    = 0
-      def y: Double                                    = 0
-      def vx: Double                                   = 0
-      def vy: Double                                   = 0
 
 /** Puts events in the order of their times, chooses places for readings and headings, each until its last
   * use, and tells each vehicle when what happens to it.

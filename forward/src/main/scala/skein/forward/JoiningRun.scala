@@ -1,0 +1,44 @@
+package skein.forward
+
+/** Joins the newest readings to views, as `skein.flow.JoinLatest` does, under [[LoopTiming.Stream]]. Mutable.
+  */
+private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: DuelWorld)
+    extends AskingRun(world, timing.periodS, timing.asking):
+  import JoiningRun.NoEnd
+
+  private val patienceNs = Nanos.of(timing.patienceS)
+
+  /** The view. */
+  protected val observation: DuelObservation = DuelObservation(world.count)
+
+  /** Whose reading was not renewed since the view before. */
+  protected val waiting: Array[Boolean] = Array.ofDim(world.count)
+
+  private var patienceEnds = NoEnd
+
+  override protected def begin(question: Int): Unit =
+    java.util.Arrays.fill(waiting, true)
+    patienceEnds = NoEnd
+    super.begin(question)
+
+  protected def renewed(vehicle: Int, question: Int): Unit =
+    waiting(vehicle) = false
+    observation.take(world, vehicle, question)
+    if !known.contains(false) then
+      if !waiting.contains(true) || patienceNs <= 0 then join()
+      else if patienceEnds == NoEnd then
+        patienceEnds = world.nowNs + patienceNs
+        world.schedule(patienceEnds, DuelWorld.Patience, 0, 0)
+
+  override def patienceOver(): Unit = if patienceEnds == world.nowNs then join()
+
+  private def join(): Unit =
+    joined()
+    java.util.Arrays.fill(waiting, true)
+    patienceEnds = NoEnd
+
+  /** [[observation]] is the next view. */
+  protected def joined(): Unit
+
+private[skein] object JoiningRun:
+  private val NoEnd = -1L
