@@ -79,7 +79,7 @@ object WholeFlights:
       else if plane.agents.map(_.altitudeDownM).distinct.size > 1 then Left("not all fly at one altitude")
       else Right(plane)
     catch
-      case refused: IllegalArgumentException => Left(refused.getMessage.stripPrefix("requirement failed: "))
+      case refused: IllegalArgumentException => Left(Expect.refused(refused))
 
   /** One episode by forward simulation.
     *

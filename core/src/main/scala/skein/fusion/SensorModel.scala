@@ -33,11 +33,15 @@ final case class SensorModel(
     deadlineS: Double = 0.3,
     fusion: FusionSettings = FusionSettings()
 ):
-  require(
-    everyS > 0 && fovRad > 0 && fovRad < math.Pi && farthestM > 0 && detection >= 0 && detection <= 1 &&
-      bearingSdRad > 0 && rangeBias > 0 && rangeSd > 0 && workers > 0 && deadlineS > 0,
-    s"a sensor takes images, sees less than 180° and says how wrong it may be: $this"
-  )
+  require(everyS > 0, s"expected a positive time between images, came $everyS s")
+  require(fovRad > 0 && fovRad < math.Pi, s"expected a field of view between 0 and π, came $fovRad rad")
+  require(farthestM > 0, s"expected a positive largest range, came $farthestM m")
+  require(detection >= 0 && detection <= 1, s"expected a detection between 0 and 1, came $detection")
+  require(bearingSdRad > 0, s"expected a positive standard deviation of the bearing, came $bearingSdRad rad")
+  require(rangeBias > 0, s"expected a positive bias of the range, of 1 where it is exact, came $rangeBias")
+  require(rangeSd > 0, s"expected a positive standard deviation of the range, came $rangeSd")
+  require(workers > 0, s"expected at least one worker, came $workers")
+  require(deadlineS > 0, s"expected a positive deadline, came $deadlineS s")
 
   /** What comes of an image, if the opponent is found in it. */
   def measured(at: Instant, image: Exposure): Option[Measurement] =

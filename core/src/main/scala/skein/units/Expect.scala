@@ -15,3 +15,6 @@ private[skein] object Expect:
   def all[A, B](of: Seq[A])(one: A => Either[String, B]): Either[String, Seq[B]] =
     val (wrong, right) = of.map(one).partitionMap(identity)
     Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
+
+  /** What a `require` refused, for a person. */
+  def refused(by: IllegalArgumentException): String = by.getMessage.stripPrefix("requirement failed: ")

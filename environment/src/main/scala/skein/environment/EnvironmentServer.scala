@@ -9,6 +9,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.scenario.Scenarios
+import skein.units.Expect
 
 /** Environments behind a Unix socket, for processes that fork, or that no Java should live in. What is seen
   * and done stands in a file that both sides map ([[EnvironmentBuffers]]); over the socket go only words:
@@ -76,7 +77,7 @@ object EnvironmentServer:
             case _ => throw EOFException(s"expected 1 to 4, came $request")
           if request == 4 then answer(out, 0, batch.engine) else out.write(0)
         catch
-          case mistake: IllegalArgumentException => answer(out, 1, mistake.getMessage)
+          case mistake: IllegalArgumentException => answer(out, 1, Expect.refused(mistake))
           case mistake: IOException              => throw mistake
           case NonFatal(mistake)                 => answer(out, 2, mistake.getMessage)
 

@@ -2,6 +2,7 @@ package skein.settings
 
 import com.typesafe.config.{Config, ConfigException, ConfigUtil}
 import skein.identify.Fitted
+import skein.units.Expect
 
 /** What files of fitted numbers share. */
 private object FittedFile:
@@ -31,4 +32,4 @@ private object FittedFile:
     try HoconFile.parse(text, path).flatMap(file => read(file.resolve().getConfig(section)))
     catch
       case wrong: ConfigException          => Left(s"$path is no $what: ${wrong.getMessage}")
-      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
+      case wrong: IllegalArgumentException => Left(s"$path: ${Expect.refused(wrong)}")
