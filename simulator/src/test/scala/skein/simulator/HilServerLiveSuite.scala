@@ -9,11 +9,11 @@ import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.hil.*
 import skein.link.{Address, PreciseScheduler, TcpTransport}
 import skein.signal.Kinematics
-import skein.testing.Waiting
+import skein.testing.{Conclusive, Waiting}
 import skein.units.*
 
 /** Autopilots' interfaces over real sockets. */
-class HilServerLiveSuite extends munit.FunSuite, Waiting:
+class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
   private given system: ActorSystem = ActorSystem("hil", PreciseScheduler.config)
 
   override def afterAll(): Unit =
@@ -39,27 +39,28 @@ class HilServerLiveSuite extends munit.FunSuite, Waiting:
     Await.result(server.truth(), 5.seconds).vehicles.head.kinematics
 
   test("a small autopilot flies over TCP; a second one is turned away meanwhile"):
-    serving(AutopilotKind.Px4, speed = 4): server =>
-      val at        = server.peerAddresses.head
-      val autopilot = SmallAutopilot()
-      val flown     = HilPeer.fly(autopilot, 20_000_000, at, TcpTransport())()
-      while autopilot.heard.isEmpty do Thread.onSpinWait()
-      val other = Socket(at.host, at.port)
-      other.setSoTimeout(5000)
-      assertEquals(other.getInputStream.read(), -1)
-      other.close()
-      // Not where it is at the end: on its own the vehicle sinks, and this thread may be told of that late.
-      var seen  = Vector(truth(server))
-      val until = 60.seconds.fromNow
-      while !flown.isCompleted && until.hasTimeLeft() do seen :+= truth(server)
-      assert(flown.isCompleted)
-      def hovers(state: Kinematics) =
-        (state.positionNed - Vector3(0, 0, -5)).norm < 2 && state.velocityNed.norm < 0.5
-      assert(seen.exists(hovers), seen.takeRight(3).toString)
-      assertEquals(server.peerStats.turnedAway, 1L)
-      val next = SmallAutopilot()
-      Await.ready(HilPeer.fly(next, 22_000_000, at, TcpTransport())(), 30.seconds)
-      assert(next.heard.size > 100, "who comes later is served")
+    conclusive:
+      serving(AutopilotKind.Px4, speed = 4): server =>
+        val at        = server.peerAddresses.head
+        val autopilot = SmallAutopilot()
+        val flown     = HilPeer.fly(autopilot, 20_000_000, at, TcpTransport())()
+        while autopilot.heard.isEmpty do Thread.onSpinWait()
+        val other = Socket(at.host, at.port)
+        other.setSoTimeout(5000)
+        assertEquals(other.getInputStream.read(), -1)
+        other.close()
+        // Not where it is at the end: on its own the vehicle sinks, and this thread may be told of that late.
+        var seen  = Vector(truth(server))
+        val until = 60.seconds.fromNow
+        while !flown.isCompleted && until.hasTimeLeft() do seen :+= truth(server)
+        assert(flown.isCompleted)
+        def hovers(state: Kinematics) =
+          (state.positionNed - Vector3(0, 0, -5)).norm < 2 && state.velocityNed.norm < 0.5
+        assert(seen.exists(hovers), seen.takeRight(3).toString)
+        assertEquals(server.peerStats.turnedAway, 1L)
+        val next = SmallAutopilot()
+        Await.ready(HilPeer.fly(next, 22_000_000, at, TcpTransport())(), 30.seconds)
+        assert(next.heard.size > 100, "who comes later is served")
 
   test("noise by TCP is counted, and the next autopilot is served"):
     serving(AutopilotKind.Px4): server =>
