@@ -10,13 +10,13 @@ import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, Wire}
 import skein.signal.LatencyProfile
 import skein.simulator.*
-import skein.testing.Waiting
+import skein.testing.{Lengthy, Waiting}
 import skein.units.*
 
 /** Flights over MAVLink by UDP and by TCP, with a simulator that runs already, as PX4's would; its clock runs
   * faster, since the ways to the starts are most of it.
   */
-class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
+class MavlinkFlightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavlink-flight")
 
   override def afterAll(): Unit =
