@@ -67,6 +67,7 @@ final class LagVehicles extends LaneVehicles {
   private int row;
 
   private static final int[] AT_BEGIN = new int[WORLDS];
+  private static final LaneVectors ALL = LaneVectors.all();
 
   /**
    * By slot: when the command acts, from its own row's begin, s; e to that time over the lag; and by
@@ -221,24 +222,26 @@ final class LagVehicles extends LaneVehicles {
   void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
     if (fresh != null) remember();
-    flyTo(row, at);
-    if (withVelocity) readVelocities();
+    // Those that are flown on must be so everywhere; where they are already, the others stay.
+    LaneVectors read = this.row < row ? ALL : vectors;
+    flyTo(row, read, at);
+    if (withVelocity) readVelocities(read);
     lookBack(at, fresh);
     if (fresh != null) keep(fresh);
   }
 
   @Override
   void flyToRow(int row, boolean isLookedAt) {
-    if (this.row < row) flyTo(row, AT_BEGIN);
+    if (this.row < row) flyTo(row, ALL, AT_BEGIN);
   }
 
   /** Flies on from the row before, if the vehicles are there, and reads them. */
-  private void flyTo(int row, int[] sampledAt) {
+  private void flyTo(int row, LaneVectors vectors, int[] sampledAt) {
     boolean fliesOn = this.row < row;
     findNear(row, latestS(sampledAt), fliesOn);
-    if (!fliesOn) fly(0, 0, 1, sampledAt);
+    if (!fliesOn) fly(vectors, 0, 0, 1, sampledAt);
     else {
-      fly((float) periodS, periodGain, periodDecay, sampledAt);
+      fly(vectors, (float) periodS, periodGain, periodDecay, sampledAt);
       while (first < next && latest[first & slots - 1] <= ageS(first & slots - 1, row)) first++;
       while (oldest < first
           && latest[oldest & slots - 1] <= ageS(oldest & slots - 1, row) - earliestS) oldest++;
@@ -274,7 +277,7 @@ final class LagVehicles extends LaneVehicles {
   }
 
   /** Flies for so long, with the commands that begin to act in this time, and reads the vehicles. */
-  private void fly(float dtS, float gainS, float keepShare, int[] sampledAt) {
+  private void fly(LaneVectors vectors, float dtS, float gainS, float keepShare, int[] sampledAt) {
     float[] state = this.state, commands = this.commands;
     FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
         minusGain = FloatVector.broadcast(SPECIES, -gainS),
@@ -291,7 +294,8 @@ final class LagVehicles extends LaneVehicles {
         power3 = FloatVector.broadcast(SPECIES, POWER_3),
         power4 = FloatVector.broadcast(SPECIES, POWER_4),
         power5 = FloatVector.broadcast(SPECIES, POWER_5);
-    for (int i = 0; i < WORLDS; i += LANES) {
+    for (int n = 0; n < vectors.count; n++) {
+      int i = vectors.first[n];
       FloatVector end =
           ((FloatVector)
                   IntVector.fromArray(INTS, sampledAt, i)
@@ -364,8 +368,9 @@ final class LagVehicles extends LaneVehicles {
   }
 
   /** How fast the vehicles fly where they were read. */
-  void readVelocities() {
-    for (int i = 0; i < WORLDS; i += LANES) {
+  void readVelocities(LaneVectors vectors) {
+    for (int n = 0; n < vectors.count; n++) {
+      int i = vectors.first[n];
       FloatVector end = FloatVector.fromArray(SPECIES, state, END + i),
           decay = FloatVector.fromArray(SPECIES, state, DECAY + i);
       FloatVector vx =

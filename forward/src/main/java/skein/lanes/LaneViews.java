@@ -50,13 +50,16 @@ final class LaneViews {
    */
   private static final int MOST_AHEAD = 4;
 
+  /** So many rows before its own a view may be told. */
+  static final int ROWS_EARLY = 1;
+
   private final int ahead;
 
   private final long periodNs;
-  private final boolean mayCut;
 
-  /** Off where questions of one vehicle may overtake each other on their way to it. */
-  private boolean shortCut;
+  /** Off, all views are told one by one. */
+  private final boolean shortCut;
+
   private final int periodGrains;
   private final int patienceGrains, latestGrains;
   private final ViewSource[] sources = new ViewSource[WORLDS];
@@ -114,7 +117,7 @@ final class LaneViews {
     reached = new int[ROWS][vehicles][WORLDS];
     place = new int[vehicles][WORLDS];
     isFresh = new int[vehicles][WORLDS];
-    this.mayCut = shortCut;
+    this.shortCut = shortCut;
     periodNs = Nanos.of(timing.periodS());
     ahead = Math.min(MOST_AHEAD, timing.asking().window());
     periodGrains = grains(timing.periodS());
@@ -135,9 +138,6 @@ final class LaneViews {
 
   /** Back to the start of an episode. */
   void start(int[] worldKeys, DelayTable[] worldLinks) {
-    shortCut = mayCut;
-    for (DelayTable link : worldLinks)
-      if ((link.maxS() - link.delaysS()[0]) * 1e9 >= periodNs) shortCut = false;
     keys = worldKeys;
     links = worldLinks;
     delays.start(worldKeys, worldLinks);
@@ -246,7 +246,6 @@ final class LaneViews {
   }
 
   private void stayIrregular(int world) {
-    sources[world].stayIrregular();
     irregularUpTo[world] = Integer.MAX_VALUE;
   }
 
@@ -300,7 +299,11 @@ final class LaneViews {
     return irregularBeat(false);
   }
 
-  /** Puts the beat's views of irregular worlds where the others' are; whether there were any. */
+  /**
+   * Puts the beat's views of irregular worlds where the others' are; whether there were any. A world without
+   * one in a row may have several in the next: then the first is told now, for what one world has in a beat
+   * more all take part in.
+   */
   private boolean irregularBeat(boolean isFirst) {
     more = false;
     boolean any = false;
@@ -308,10 +311,12 @@ final class LaneViews {
     for (int i = 0; i < irregularCount; i++) {
       int world = irregular[i];
       ViewSource source = sources[world];
-      if (source.row() == row) {
+      boolean isEarly =
+          isFirst && irregularFrom[world] <= row && source.row() == row + ROWS_EARLY && !source.isRegular();
+      if (source.row() == row || isEarly) {
         any = true;
         put(world, source);
-        if (source.isRegular() && shortCut) hasNext[world] = false;
+        if (irregularUpTo[world] == source.row()) hasNext[world] = false;
         else {
           goOn(world);
           nextAt[world] = fromTick(source.joinedAt());

@@ -17,7 +17,7 @@ final class StreamOffers extends LaneOffers {
   }
 
   private StreamOffers(LaneViews views) {
-    super(views.vehicles, views.delays, true, 0);
+    super(views.vehicles, views.delays, true, LaneViews.ROWS_EARLY);
     this.views = views;
   }
 

@@ -25,13 +25,8 @@ private[lanes] final class ViewSource private (
   /** When the view told last was joined, ns; [[ViewSource.Never]] if the flight ends before. */
   var joinedAt = Never
 
-  private var regular = false
-
   /** Whether the view told last is that of its row's questions, and nothing older is left behind it. */
-  def isRegular: Boolean = regular
-
-  /** The view told last is not to be taken for regular. */
-  def stayIrregular(): Unit = regular = false
+  var isRegular = false
 
   /** The latest of the ticks at which the view's questions were asked, or that of the view before. */
   var row = 0
@@ -50,7 +45,7 @@ private[lanes] final class ViewSource private (
     link.delays = worldLink
     world.start(worldKey, LoopObserver.Nobody, first)
     row = first - 1
-    regular = false
+    isRegular = false
     java.util.Arrays.fill(question, first - 1)
     java.util.Arrays.fill(sampledAt, Long.MinValue)
     begin(first)
@@ -62,7 +57,7 @@ private[lanes] final class ViewSource private (
     if !isJoined then
       joinedAt = Never
       row = Int.MaxValue
-      regular = false
+      isRegular = false
 
   protected def joined(): Unit =
     isJoined = true
@@ -73,12 +68,19 @@ private[lanes] final class ViewSource private (
       if sampledAt(vehicle) > Long.MinValue then row = row.max(tickOf(vehicle))
       vehicle += 1
     val ticks = (world.nowNs / periodNs).toInt + 1
-    regular = world.nowNs < (row + ahead) * periodNs
+    isRegular = world.nowNs < (row + ahead) * periodNs
     vehicle = 0
-    while regular && vehicle < world.count do
-      regular = question(vehicle) == row && tickOf(vehicle) == row &&
-        sampledAt(vehicle) < (row + 1) * periodNs && questions(vehicle).isUpTo(row, ticks)
+    while isRegular && vehicle < world.count do
+      isRegular = question(vehicle) == row && tickOf(vehicle) == row &&
+        sampledAt(vehicle) < (row + 1) * periodNs && questions(vehicle).isUpTo(row, ticks) &&
+        areInTime(vehicle, ticks)
       vehicle += 1
+
+  /** Whether none of the questions behind the view's had to wait. */
+  private def areInTime(vehicle: Int, ticks: Int): Boolean =
+    var next = row + 1
+    while next < ticks && world.sentAtNs(world.slot(vehicle, next)) == next * periodNs do next += 1
+    next >= ticks
 
   /** At which the view's question to a vehicle was asked. */
   private def tickOf(vehicle: Int): Int =

@@ -1,0 +1,78 @@
+package skein.lanes
+
+import scala.collection.mutable.ArrayBuffer
+import skein.forward.{DelayTable, LoopTiming}
+import skein.optimise.LatencyBudget
+import skein.simd.WorldRandom
+
+class StreamOffersSuite extends munit.FunSuite:
+  private val worlds    = LaneOffers.WORLDS
+  private val durationS = 30.0
+
+  /** Times from the flight's start, in grains, and places from its first question's. */
+  private final case class Told(
+      joinedAt: Long,
+      nextAt: Option[Long],
+      sampledAt: Vector[Long],
+      isFresh: Vector[Boolean],
+      place: Vector[Int]
+  )
+
+  /** All views of each world, in the order in which they are told. */
+  private def views(
+      timing: LoopTiming.Stream,
+      vehicles: Int,
+      links: Array[DelayTable],
+      shortCut: Boolean
+  ): Vector[Vector[Told]] =
+    val offers = StreamOffers(timing, vehicles, durationS, links.map(_.maxS).max, shortCut)
+    val told   = Vector.fill(worlds)(ArrayBuffer.empty[Told])
+    val rows   = (durationS / timing.periodS).round.toInt
+    val period = LaneViews.grains(timing.periodS).toLong
+    val team   = (0 until vehicles).toVector
+    def isNew(vehicle: Int, world: Int) = offers.fresh(vehicle) == null || offers.fresh(vehicle)(world) > 0
+    offers.start(Array.tabulate(worlds)(WorldRandom.key(6, 0, _)), links)
+    for row <- 0 until rows do
+      offers.startRow(row)
+      while offers.nextBeat() do
+        for world <- 0 until worlds if offers.joinedAt(world) != LaneOffers.NONE do
+          val begin                 = row * period
+          def times(of: Array[Int]) = begin + of(world)
+          told(world) += Told(
+            times(offers.joinedAt),
+            Option.when(offers.nextAt(world) != LaneOffers.NONE)(times(offers.nextAt)),
+            team.map(v => times(offers.sampledAt(v))),
+            team.map(isNew(_, world)),
+            team.map(v => LaneDelays.placeOf(row) + offers.place(v)(world))
+          )
+    told.map(_.toVector)
+
+  for
+    vehicles           <- Seq(2, 3, 6)
+    (meanMs, jitterMs) <- Seq(
+      (36.0, 22.0),
+      (103.0, 66.0),
+      (110.0, 60.0),
+      (215.0, 36.0),
+      (190.0, 90.0),
+      (150.0, 150.0),
+      (300.0, 300.0)
+    )
+  do
+    test(
+      s"$vehicles vehicles, $meanMs ms and $jitterMs ms of jitter: views by lanes are those told one by one"
+    ):
+      val timing = LoopTiming.stream(0.1)
+      val bad    = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+      // Side by side with links of which nothing is irregular.
+      val links    = Array.tabulate(worlds)(world => if world % 3 == 0 then DelayTable.none else bad)
+      val byLanes  = views(timing, vehicles, links, shortCut = true)
+      val oneByOne = views(timing, vehicles, links, shortCut = false)
+      // Told early, the last ones are told though they are joined when the flight is over.
+      val within = (durationS - 1) * 1e9 / DelayTable.GrainNs
+      for world <- 0 until worlds do
+        val (these, those) = (byLanes(world), oneByOne(world))
+        for ((one, other), number) <- these.zip(those).zipWithIndex if other.joinedAt < within do
+          assertEquals(one, other, s"world $world, view $number")
+        assertEquals(these.count(_.joinedAt < within), those.count(_.joinedAt < within), s"world $world")
+        assert(these.size > durationS * 5, s"world $world: ${these.size} views")
