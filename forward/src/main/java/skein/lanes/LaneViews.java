@@ -301,8 +301,7 @@ final class LaneViews {
 
   /**
    * Puts the beat's views of irregular worlds where the others' are; whether there were any. A world without
-   * one in a row may have several in the next: then the first is told now, for what one world has in a beat
-   * more all take part in.
+   * one in a row may have several in the next. Then the first is told now: a beat more costs all worlds.
    */
   private boolean irregularBeat(boolean isFirst) {
     more = false;
