@@ -4,8 +4,9 @@ import java.io.{PrintWriter, StringWriter}
 import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
+import scala.concurrent.duration.*
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
-import skein.loop.{AnyLoop, FlightOutcome}
+import skein.loop.{AnyLoop, FlightOutcome, LoopKind}
 import skein.measure.RecordedTracks
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
@@ -13,7 +14,7 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
 import skein.units.*
-import skein.vtime.VirtualTime
+import skein.vtime.{RunLimits, VirtualTime}
 
 /** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler
   * and the sockets replaced. Equal settings and plans give equal recordings, byte for byte.
@@ -60,8 +61,16 @@ object VirtualFlights:
     * @return how it ended and what was recorded, or why it could not be flown
     */
   def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
+    fly(settings, plan, RunLimits())
+
+  /** @param limits of a flight in which time goes on */
+  private[flight] def fly(
+      settings: FlySettings,
+      plan: FlightPlan,
+      limits: RunLimits
+  ): Either[String, VirtualFlightResult] =
     VirtualTime
-      .run(plan.seed): system =>
+      .run(plan.seed, limitsOf(plan.loop, settings.duration, limits)): system =>
         given ActorSystem = system
         import system.dispatcher
         val clock     = Clock.ofNanos(VirtualTime.clock(system))
@@ -92,6 +101,21 @@ object VirtualFlights:
             case Right(assembly) =>
               assembly.landed.map(landed => Right(VirtualFlightResult(landed, recorder)))
       .value
+
+  /** A paused flight without delays passes in one instant: as much more may run in it as it flies longer. */
+  private def limitsOf(loop: AnyLoop, duration: Span, limits: RunLimits): RunLimits =
+    if loop != LoopKind.Paused then limits
+    else
+      val seconds = duration.toSeconds.ceil.toLong
+      limits.copy(
+        tasksPerInstant = limits.tasksPerInstant + TasksPerSecond * seconds,
+        processorPerInstant = limits.processorPerInstant + ProcessorPerSecond * seconds
+      )
+
+  /** A team of 64 that is asked and commanded ten times a second has a tenth of this. */
+  private val TasksPerSecond = 100_000L
+
+  private val ProcessorPerSecond = 10.seconds
 
   /** What one flight of a scenario comes to, by itself. Flies on the calling thread.
     *

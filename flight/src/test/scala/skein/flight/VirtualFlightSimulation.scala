@@ -6,6 +6,7 @@ import skein.record.Digest
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vtime.RunLimits
 
 /** Whole flights in virtual time repeat exactly. */
 class VirtualFlightSimulation extends munit.FunSuite:
@@ -37,6 +38,13 @@ class VirtualFlightSimulation extends munit.FunSuite:
   test("another seed leaves another recording"):
     val plan = settings.plans.last
     assertNotEquals(digest(plan.copy(seed = plan.seed + 1)), digest(plan))
+
+  test(
+    "a paused flight without delays passes in one instant, and may do as much more in it as it flies longer"
+  ):
+    val paused = settings.copy(loops = List(LoopKind.Paused), links = List(LatencyProfile.none))
+    val flown  = VirtualFlights.fly(paused, paused.plans.head, RunLimits(tasksPerInstant = 1))
+    assertEquals(flown.map(_.landed.outcome), Right(FlightOutcome.Completed))
 
   test("a flight that ends in whatever error is told with its seed, and the others are flown"):
     val plan  = settings.plans.head
