@@ -108,9 +108,9 @@ private[cluster] final class CoordinatorBehavior private (
       addresses += ask.worker -> ask.replyTo
       if ask.run != job.run then say(ask.replyTo, Message.Welcome(job.run, job.question))
       else
-        if !state.workers.get(ask.worker).exists(_.isHere) then
-          tell(WorkerEvent.Joined(ask.worker, ask.cores))
+        val isNew = !state.workers.get(ask.worker).exists(_.isHere)
         state = state.joined(ask.worker, ask.cores)
+        if isNew then announce(WorkerEvent.Joined(ask.worker, ask.cores))
         serve(ask.worker, ask.holding)
 
   private def say(to: ActorRef[ToWorker], message: ToWorker): Unit =
@@ -182,7 +182,7 @@ private[cluster] final class CoordinatorBehavior private (
         died += 1
         state = state.lost(worker)
         hungry -= worker
-        tell(WorkerEvent.Lost(worker, record.holds.size))
+        announce(WorkerEvent.Lost(worker, record.holds.size))
         feed()
 
   private def compute(asked: Compute): Unit =
@@ -213,6 +213,11 @@ private[cluster] final class CoordinatorBehavior private (
     publish()
     call.foreach(_.promise.trySuccess(outcome))
     call = None
+
+  /** Whoever hears of a change sees it in the progress. */
+  private def announce(change: WorkerEvent): Unit =
+    publish()
+    tell(change)
 
   private def publish(): Unit =
     onProgress(ClusterProgress(

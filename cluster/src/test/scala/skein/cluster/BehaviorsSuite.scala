@@ -1,5 +1,6 @@
 package skein.cluster
 
+import java.util.concurrent.atomic.AtomicReference
 import java.util.concurrent.{ConcurrentLinkedQueue, Executors, LinkedBlockingQueue, TimeUnit}
 import org.apache.pekko.actor.{ActorSystem, Address}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
@@ -96,4 +97,29 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(working.next(), Message.Goodbye)
     assertEquals(worker("cleo", 0).next(), Message.Goodbye)
     assert(down.isEmpty, down.toString)
+    ledger.close()
+
+  test("whoever hears that a worker joined or was lost sees it in the progress"):
+    val ledger = Ledger
+      .open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7))
+      .fold(fail(_), identity)
+    val latest      = AtomicReference(ClusterProgress())
+    val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()
+    val coordinator =
+      system.spawnAnonymous(CoordinatorBehavior(
+        Job(7, "one", question),
+        ledger,
+        event => seen.add(event -> latest.get): Unit,
+        latest.set,
+        _ => ()
+      ))
+    def next() = Option(seen.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was told"))
+    coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, Heard[ToWorker]().actor)
+    val (joined, withAnna) = next()
+    assertEquals(joined, WorkerEvent.Joined("anna", 1))
+    assertEquals(withAnna.coordinator.workers.keySet, Set("anna"))
+    coordinator ! CoordinatorBehavior.Ended("anna")
+    val (lost, without) = next()
+    assertEquals(lost, WorkerEvent.Lost("anna", 0))
+    assertEquals((without.died, without.coordinator.workers("anna").isHere), (1, false))
     ledger.close()
