@@ -60,13 +60,14 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     worker ! WorkerBehavior.Member
     assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
 
+  private def newLedger(): Ledger =
+    Ledger.open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
+
   test(
     "who has ended or is out of reach is taken out of the cluster; when all is done " +
       "everybody else is told: who works, who is still preparing, and who asks only then"
   ):
-    val ledger = Ledger
-      .open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7))
-      .fold(fail(_), identity)
+    val ledger      = newLedger()
     val down        = LinkedBlockingQueue[Address]()
     val coordinator =
       system.spawnAnonymous(CoordinatorBehavior(
@@ -100,9 +101,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     ledger.close()
 
   test("whoever hears that a worker joined or was lost sees it in the progress"):
-    val ledger = Ledger
-      .open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7))
-      .fold(fail(_), identity)
+    val ledger      = newLedger()
     val latest      = AtomicReference(ClusterProgress())
     val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()
     val coordinator =

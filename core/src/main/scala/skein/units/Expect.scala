@@ -17,4 +17,5 @@ private[skein] object Expect:
     Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
 
   /** What a `require` refused, for a person. */
-  def refused(by: IllegalArgumentException): String = by.getMessage.stripPrefix("requirement failed: ")
+  def refused(by: IllegalArgumentException): String =
+    Option(by.getMessage).fold(by.toString)(_.stripPrefix("requirement failed: "))

@@ -8,6 +8,7 @@ import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 
 import java.util.Arrays;
+import java.util.function.Supplier;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.forward.DelayTable;
@@ -62,7 +63,11 @@ final class LaneViews {
 
   private final int periodGrains;
   private final int patienceGrains, latestGrains;
+
+  /** By world, made when some view of it is to come one by one. */
   private final ViewSource[] sources = new ViewSource[WORLDS];
+
+  private final Supplier<ViewSource> newSource;
 
   private int[] keys;
   private DelayTable[] links;
@@ -123,8 +128,7 @@ final class LaneViews {
     periodGrains = grains(timing.periodS());
     patienceGrains = grains(timing.patienceS());
     latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
-    for (int i = 0; i < WORLDS; i++)
-      sources[i] = ViewSource.apply(timing, vehicles, durationS, maxDelayS, ahead);
+    newSource = () -> ViewSource.apply(timing, vehicles, durationS, maxDelayS, ahead);
   }
 
   static int grains(double seconds) {
@@ -240,6 +244,7 @@ final class LaneViews {
     } else {
       irregular[irregularCount++] = world;
       irregularFrom[world] = step;
+      if (sources[world] == null) sources[world] = newSource.get();
       sources[world].begin(keys[world], links[world], step);
       goOn(world);
     }
