@@ -103,7 +103,7 @@ object VirtualFlights:
       .value
 
   /** A paused flight without delays passes in one instant: as much more may run in it as it flies longer. */
-  private def limitsOf(loop: AnyLoop, duration: Span, limits: RunLimits): RunLimits =
+  private[skein] def limitsOf(loop: AnyLoop, duration: Span, limits: RunLimits = RunLimits()): RunLimits =
     if loop != LoopKind.Paused then limits
     else
       val seconds = duration.toSeconds.ceil.toLong

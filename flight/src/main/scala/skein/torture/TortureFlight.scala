@@ -7,7 +7,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.*
-import skein.flight.{AirSimFleet, CameraSensor, Equipped}
+import skein.flight.{AirSimFleet, CameraSensor, Equipped, VirtualFlights}
 import skein.link.*
 import skein.loop.*
 import skein.record.*
@@ -24,7 +24,9 @@ object TortureFlight:
   /** Flies to the end on the calling thread. */
   def fly(faultPlan: FaultPlan): FlightTrace =
     VirtualTime
-      .run(faultPlan.seed, config = silent)(system => Assembly(faultPlan)(using system).fly())
+      .run(faultPlan.seed, VirtualFlights.limitsOf(faultPlan.loop, faultPlan.duration), silent)(system =>
+        Assembly(faultPlan)(using system).fly()
+      )
       .value
 
   private def writtenAndRead(memory: MemoryRecorder): Either[RecordError, Recording] =
