@@ -11,9 +11,9 @@ import static skein.simd.LaneMath.LANES;
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
-import skein.forward.DelayTable;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
+import skein.forward.TabledDelays;
 import skein.simd.WorldRandom;
 
 /**
@@ -27,6 +27,8 @@ final class FuturesOffers extends LaneOffers {
 
   /** Tasks last for longer and for shorter by about so much. */
   private static final double AHEAD_S = 0.2;
+
+  private static final LaneVectors ALL = LaneVectors.all();
 
   /** Long past. */
   private static final int PAST = -1_000_000_000;
@@ -57,7 +59,8 @@ final class FuturesOffers extends LaneOffers {
   // By agent: the next offer, the one behind it, and of the next its step and when its task began.
   private final int[][] soonest, second, stepOf, beginOf;
 
-  // Of the beat's offers: where their steps' random numbers are, when their tasks go on to the next vehicle.
+  // Where random numbers are: of a step drawn, or of the steps of the beat's offers; and when the tasks of
+  // these go on to the next vehicle.
   private final int[] places = new int[WORLDS], goesOn = new int[WORLDS];
 
   private final int[] beatPlaces = new int[WORLDS];
@@ -93,7 +96,7 @@ final class FuturesOffers extends LaneOffers {
   }
 
   @Override
-  void start(int[] worldKeys, DelayTable[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
     for (int[] each : latest) Arrays.fill(each, PAST);
     Arrays.fill(began, PAST);
@@ -113,33 +116,39 @@ final class FuturesOffers extends LaneOffers {
         IntVector.fromArray(INTS, each, i).sub(period).max(past).intoArray(each, i);
       IntVector.fromArray(INTS, began, i).sub(period).max(past).intoArray(began, i);
     }
+    Arrays.fill(places, step * STEP);
     for (int agent = 0; agent < vehicles; agent++) {
-      for (int v = 0; v < vehicles; v++) {
-        delays.draw(step * STEP, Delays.question(agent, v), drawn[2 * v]);
-        delays.draw(step * STEP, Delays.answer(agent, v), drawn[2 * v + 1]);
-      }
-      begin(agent, slot);
+      begin(agent, beginAt[agent][slot]);
+      delays.drawInTurn(ALL, places, agent, (long) step * periodGrains, beginAt[agent][slot], drawn);
+      end(beginAt[agent][slot], end[agent][slot]);
     }
   }
 
-  private void begin(int agent, int slot) {
-    int[] lastOf = latest[most - 1], begins = beginAt[agent][slot], ends = end[agent][slot];
-    IntVector none = IntVector.broadcast(INTS, NONE),
-        past = IntVector.broadcast(INTS, PAST),
-        zero = IntVector.broadcast(INTS, 0),
-        timeout = IntVector.broadcast(INTS, timeoutGrains);
+  /** When an agent's tasks begin. */
+  private void begin(int agent, int[] begins) {
+    int[] lastOf = latest[most - 1];
+    IntVector zero = IntVector.broadcast(INTS, 0);
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector before = IntVector.fromArray(INTS, began, i);
-      // A step whose predecessor waits still is missed. The other tasks follow the first.
-      VectorMask<Integer> goes =
-          agent == 0 ? before.compare(LE, zero) : IntVector.fromArray(INTS, missed, i).compare(EQ, 0);
       IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(agent == 0 ? zero : before.max(zero));
       if (agent == 0) {
+        // A step whose predecessor waits still is missed. The other tasks follow the first.
+        VectorMask<Integer> goes = before.compare(LE, zero);
         before.blend(begin, goes).intoArray(began, i);
         zero.blend(1, goes.not()).intoArray(missed, i);
       }
       begin.intoArray(begins, i);
-      IntVector over = begin;
+    }
+  }
+
+  /** When they end, if they do with an offer. */
+  private void end(int[] begins, int[] ends) {
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        past = IntVector.broadcast(INTS, PAST),
+        timeout = IntVector.broadcast(INTS, timeoutGrains);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Integer> goes = IntVector.fromArray(INTS, missed, i).compare(EQ, 0);
+      IntVector over = IntVector.fromArray(INTS, begins, i);
       VectorMask<Integer> offers = goes;
       for (int v = 0; v < vehicles; v++) {
         IntVector there = IntVector.fromArray(INTS, drawn[2 * v], i),
@@ -210,10 +219,9 @@ final class FuturesOffers extends LaneOffers {
 
   /** When an agent's tasks that offer something read each vehicle: their delays are drawn again. */
   private void read(int agent) {
-    int[] there = drawn[0], back = drawn[1];
+    delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
     for (int v = 0; v < vehicles; v++) {
-      delays.draw(taken, places, Delays.question(agent, v), there);
-      delays.draw(taken, places, Delays.answer(agent, v), back);
+      int[] there = drawn[2 * v], back = drawn[2 * v + 1];
       for (int k = 0; k < taken.count; k++) {
         int i = taken.first[k];
         IntVector at = IntVector.fromArray(INTS, goesOn, i).add(IntVector.fromArray(INTS, there, i));

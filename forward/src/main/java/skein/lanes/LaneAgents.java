@@ -79,6 +79,13 @@ abstract class LaneAgents {
 
   private final int[] drawn = new int[2 * LANES];
 
+  // Over links whose tables change: places of random numbers, how long commands and their answers are under
+  // way, and when commands arrive.
+  private final int[] drawnAt = new int[WORLDS],
+      there = new int[WORLDS],
+      back = new int[WORLDS],
+      arrives = new int[WORLDS];
+
   /** Directions commanded, or velocities over the vehicles' speed: what was sent last, and before that. */
   final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
 
@@ -213,6 +220,7 @@ abstract class LaneAgents {
    */
   final void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
     int place = LaneDelays.placeOf(row) + LaneDelays.placeOfLine(line);
+    if (!offers.delays.isSteady) draw(row, offers.delays, offers.place[self], vectors);
     send(place, offers.delays, offers.place[self], vectors);
     if (forecast != null) forecast.send(self, vectors, sends, answers, sent);
     if (vectors.count * LANES < WORLDS) forget(vectors);
@@ -220,8 +228,31 @@ abstract class LaneAgents {
     vehicles.act(row, vectors, acts, sent);
   }
 
+  /** How long commands and their answers are under way, over links whose tables change. */
+  private void draw(int row, LaneDelays delays, int[] places, LaneVectors vectors) {
+    long begin = (long) row * periodGrains;
+    IntVector step = IntVector.broadcast(INTS, LaneDelays.placeOf(row)),
+        now = IntVector.broadcast(INTS, this.now),
+        none = IntVector.broadcast(INTS, NONE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector.fromArray(INTS, places, i).add(step).intoArray(drawnAt, i);
+    }
+    delays.draw(vectors, drawnAt, line, begin, sends, there);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector when = IntVector.fromArray(INTS, sends, i);
+      none.blend(
+              when.add(IntVector.fromArray(INTS, there, i)).max(IntVector.fromArray(INTS, reaches, i).sub(now)),
+              when.compare(LT, none))
+          .intoArray(arrives, i);
+    }
+    delays.draw(vectors, drawnAt, line + 1, begin, arrives, back);
+  }
+
   /** Draws its delays in the same pass: a look into a table takes as long as a dozen other operations. */
   private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors) {
+    boolean isSteady = delays.isSteady;
     int[] keys = delays.keysOf(line), tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
     IntVector here = IntVector.broadcast(INTS, place),
         next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
@@ -237,17 +268,23 @@ abstract class LaneAgents {
         zero = IntVector.broadcast(INTS, 0);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
-          from = IntVector.fromArray(INTS, tableOf, i);
-      IntVector a = key.add(here), b = key.add(next);
-      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
-      b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
-      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
-      b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
-      a.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, 0);
-      b.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, LANES);
-      IntVector there = IntVector.fromArray(INTS, table, 0, drawn, 0),
-          back = IntVector.fromArray(INTS, table, 0, drawn, LANES);
+      IntVector there, back;
+      if (isSteady) {
+        IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
+            from = IntVector.fromArray(INTS, tableOf, i);
+        IntVector a = key.add(here), b = key.add(next);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+        a.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, 0);
+        b.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, LANES);
+        there = IntVector.fromArray(INTS, table, 0, drawn, 0);
+        back = IntVector.fromArray(INTS, table, 0, drawn, LANES);
+      } else {
+        there = IntVector.fromArray(INTS, this.there, i);
+        back = IntVector.fromArray(INTS, this.back, i);
+      }
       IntVector when = IntVector.fromArray(INTS, sends, i), time = IntVector.fromArray(INTS, decides, i);
       VectorMask<Integer> goes = when.compare(LT, none);
       VectorMask<Integer> does = time.compare(LT, none);

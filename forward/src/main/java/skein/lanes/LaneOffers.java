@@ -6,6 +6,7 @@ import static skein.simd.LaneMath.LANES;
 
 import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
+import skein.forward.TabledDelays;
 
 /**
  * What the controllers of vehicles are offered to decide upon, in many worlds: under each loop
@@ -78,7 +79,7 @@ abstract class LaneOffers {
     }
   }
 
-  abstract void start(int[] worldKeys, DelayTable[] links);
+  abstract void start(int[] worldKeys, TabledDelays[] links);
 
   /** To a period; they are taken in turn, from 0. */
   abstract void startRow(int row);

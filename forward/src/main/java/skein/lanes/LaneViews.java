@@ -15,6 +15,7 @@ import skein.forward.DelayTable;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.Nanos;
+import skein.forward.TabledDelays;
 import skein.simd.WorldRandom;
 
 /**
@@ -41,6 +42,8 @@ final class LaneViews {
 
   /** As late as a time counts. */
   private static final int LATEST = 2_000_000_000;
+
+  private static final int[] AT_ONCE = new int[WORLDS];
 
   /** Rows kept: more than are looked ahead. */
   private static final int ROWS = 8;
@@ -70,7 +73,7 @@ final class LaneViews {
   private final Supplier<ViewSource> newSource;
 
   private int[] keys;
-  private DelayTable[] links;
+  private TabledDelays[] links;
 
   final LaneDelays delays = new LaneDelays();
 
@@ -82,6 +85,7 @@ final class LaneViews {
       nextLast = new int[ROWS][WORLDS];
 
   private final int[] drawn = new int[4 * LANES];
+  private final int[] roundTrip = new int[WORLDS], otherRoundTrip = new int[WORLDS];
 
   /** The lanes of each vector that {@link #ask} found irregular. */
   private final long[] irregularLanes = new long[WORLDS / LANES];
@@ -141,7 +145,7 @@ final class LaneViews {
   }
 
   /** Back to the start of an episode. */
-  void start(int[] worldKeys, DelayTable[] worldLinks) {
+  void start(int[] worldKeys, TabledDelays[] worldLinks) {
     keys = worldKeys;
     links = worldLinks;
     delays.start(worldKeys, worldLinks);
@@ -160,8 +164,7 @@ final class LaneViews {
    * now.
    */
   private void ask(int step) {
-    for (int vehicle = 0; vehicle < vehicles; vehicle += 2)
-      answer(vehicle, LaneDelays.placeOf(step), step % ROWS, (step + ROWS - 1) % ROWS);
+    for (int vehicle = 0; vehicle < vehicles; vehicle += 2) answer(vehicle, step);
     if (step > 0) {
       lookedAt = step;
       for (int i = 0; i < irregularLanes.length; i++)
@@ -176,10 +179,16 @@ final class LaneViews {
    * The same of a vehicle and the next one, if there is one: delays of a pair come from one sequence, and a
    * look into a table takes as long as a dozen other operations, which go on meanwhile.
    */
-  private void answer(int vehicle, int place, int slot, int slotBefore) {
+  private void answer(int vehicle, int step) {
+    int place = LaneDelays.placeOf(step), slot = step % ROWS, slotBefore = (step + ROWS - 1) % ROWS;
     boolean isFirst = vehicle == 0, isLast = vehicle + 2 >= vehicles, isAlone = vehicle + 1 == vehicles;
     int other = isAlone ? vehicle : vehicle + 1;
     int[][] to = reached[slot], toBefore = reached[slotBefore];
+    boolean isSteady = delays.isSteady;
+    if (!isSteady) {
+      draw(vehicle, step, to[vehicle], roundTrip);
+      draw(other, step, to[other], otherRoundTrip);
+    }
     int[] keys = delays.keysOf(Delays.question(0, vehicle)), tableOf = delays.tableOf, table = delays.delays;
     IntVector place0 = IntVector.broadcast(INTS, place),
         place1 = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
@@ -191,25 +200,33 @@ final class LaneViews {
         patience = IntVector.broadcast(INTS, patienceGrains),
         latest = IntVector.broadcast(INTS, latestGrains);
     for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector key = IntVector.fromArray(INTS, keys, i),
-          begin = IntVector.fromArray(INTS, tableOf, i);
-      IntVector a = key.add(place0), b = key.add(place1), c = key.add(place2), d = key.add(place3);
-      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
-      b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
-      c = c.lanewise(XOR, c.lanewise(LSHR, 16)).mul(multiplier1);
-      d = d.lanewise(XOR, d.lanewise(LSHR, 16)).mul(multiplier1);
-      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
-      b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
-      c = c.lanewise(XOR, c.lanewise(LSHR, 15)).mul(multiplier2);
-      d = d.lanewise(XOR, d.lanewise(LSHR, 15)).mul(multiplier2);
-      a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
-      b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
-      c.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 2 * LANES);
-      d.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 3 * LANES);
-      IntVector toOne = IntVector.fromArray(INTS, table, 0, drawn, 0),
-          one = IntVector.fromArray(INTS, table, 0, drawn, LANES).add(toOne),
-          toTwo = isAlone ? toOne : IntVector.fromArray(INTS, table, 0, drawn, 2 * LANES),
-          two = isAlone ? one : IntVector.fromArray(INTS, table, 0, drawn, 3 * LANES).add(toTwo);
+      IntVector toOne, one, toTwo, two;
+      if (isSteady) {
+        IntVector key = IntVector.fromArray(INTS, keys, i),
+            begin = IntVector.fromArray(INTS, tableOf, i);
+        IntVector a = key.add(place0), b = key.add(place1), c = key.add(place2), d = key.add(place3);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+        c = c.lanewise(XOR, c.lanewise(LSHR, 16)).mul(multiplier1);
+        d = d.lanewise(XOR, d.lanewise(LSHR, 16)).mul(multiplier1);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+        c = c.lanewise(XOR, c.lanewise(LSHR, 15)).mul(multiplier2);
+        d = d.lanewise(XOR, d.lanewise(LSHR, 15)).mul(multiplier2);
+        a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
+        b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
+        c.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 2 * LANES);
+        d.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 3 * LANES);
+        toOne = IntVector.fromArray(INTS, table, 0, drawn, 0);
+        one = IntVector.fromArray(INTS, table, 0, drawn, LANES).add(toOne);
+        toTwo = isAlone ? toOne : IntVector.fromArray(INTS, table, 0, drawn, 2 * LANES);
+        two = isAlone ? one : IntVector.fromArray(INTS, table, 0, drawn, 3 * LANES).add(toTwo);
+      } else {
+        toOne = IntVector.fromArray(INTS, to[vehicle], i);
+        one = IntVector.fromArray(INTS, roundTrip, i);
+        toTwo = IntVector.fromArray(INTS, to[other], i);
+        two = IntVector.fromArray(INTS, otherRoundTrip, i);
+      }
       toOne.intoArray(to[vehicle], i);
       toTwo.intoArray(to[other], i);
       IntVector soonest = one.min(two), slowest = one.max(two);
@@ -235,6 +252,16 @@ final class LaneViews {
       }
       irregularLanes[i / LANES] = irregular | overtakes.toLong();
     }
+  }
+
+  /** When a step's question reaches a vehicle, and when it is answered, over links whose tables change. */
+  private void draw(int vehicle, int step, int[] to, int[] roundTrip) {
+    int place = LaneDelays.placeOf(step), line = Delays.question(0, vehicle);
+    long begin = (long) step * periodGrains;
+    delays.draw(place, line, begin, AT_ONCE, to);
+    delays.draw(place, line + 1, begin, to, roundTrip);
+    for (int i = 0; i < WORLDS; i += LANES)
+      IntVector.fromArray(INTS, roundTrip, i).add(IntVector.fromArray(INTS, to, i)).intoArray(roundTrip, i);
   }
 
   private void makeIrregular(int world, int step) {

@@ -5,7 +5,7 @@ import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 
 import jdk.incubator.vector.IntVector;
-import skein.forward.DelayTable;
+import skein.forward.TabledDelays;
 
 /**
  * Flies many worlds at a time, each with delays of its own, under a loop's full event timing: duels and
@@ -63,7 +63,7 @@ final class LoopKernel {
    * @param worldKeys {@link skein.simd.WorldRandom#key} of each world
    * @param links of each world; none may be slower than the loop was made for
    */
-  void fly(int[] worldKeys, DelayTable[] links) {
+  void fly(int[] worldKeys, TabledDelays[] links) {
     offers.start(worldKeys, links);
     for (LaneAgents each : agents) each.start();
     scores.start();

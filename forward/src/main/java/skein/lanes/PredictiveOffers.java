@@ -13,9 +13,9 @@ import static skein.simd.LaneMath.LANES;
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
-import skein.forward.DelayTable;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
+import skein.forward.TabledDelays;
 import skein.simd.WorldRandom;
 
 /**
@@ -97,10 +97,10 @@ final class PredictiveOffers extends LaneOffers {
   }
 
   @Override
-  void start(int[] worldKeys, DelayTable[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
     mayWait = false;
-    for (DelayTable link : links)
+    for (TabledDelays link : links)
       mayWait |= 2 * LaneViews.grains(link.maxS()) + 2 >= (long) window * periodGrains;
     for (int v = 0; v < vehicles; v++) {
       Arrays.fill(places[v], 0);
@@ -135,16 +135,18 @@ final class PredictiveOffers extends LaneOffers {
   private void ask(int vehicle) {
     int slot = row & ring - 1, line = Delays.question(0, vehicle);
     int[] asks = asked[vehicle][slot], reads = read[vehicle][slot], answers = answered[vehicle][slot];
-    if (mayWait) {
-      delays.draw(ALL, places[vehicle], line, there);
-      delays.draw(ALL, places[vehicle], line + 1, back);
-      await(vehicle, asks, answers);
-    } else {
-      delays.draw(row * STEP, line, there);
-      delays.draw(row * STEP, line + 1, back);
+    if (mayWait) await(vehicle, asks, answers);
+    else {
       Arrays.fill(asks, 0);
       Arrays.fill(answers, 0);
+      Arrays.fill(places[vehicle], row * STEP);
     }
+    long begin = (long) row * periodGrains;
+    delays.draw(ALL, places[vehicle], line, begin, asks, there);
+    for (int i = 0; i < WORLDS; i += LANES)
+      IntVector.fromArray(INTS, asks, i).add(IntVector.fromArray(INTS, there, i)).intoArray(reads, i);
+    delays.draw(ALL, places[vehicle], line + 1, begin, reads, back);
+    if (mayWait) goOn(vehicle, asks, answers);
     IntVector none = IntVector.broadcast(INTS, NONE), timeout = IntVector.broadcast(INTS, timeoutGrains);
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector at = IntVector.fromArray(INTS, asks, i),
@@ -152,20 +154,17 @@ final class PredictiveOffers extends LaneOffers {
           roundTrip = IntVector.fromArray(INTS, back, i).add(to);
       VectorMask<Integer> comes =
           roundTrip.compare(LE, timeout).and(IntVector.fromArray(INTS, answers, i).compare(NE, none));
-      at.add(to).intoArray(reads, i);
       none.blend(at.add(roundTrip), comes).intoArray(answers, i);
     }
   }
 
   /** When the question is asked; one that is missed has no answer. */
   private void await(int vehicle, int[] asked, int[] answers) {
-    int[] begun = began[vehicle], lastOf = latest[vehicle][window - 1], places = this.places[vehicle];
+    int[] begun = began[vehicle], lastOf = latest[vehicle][window - 1];
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
         zero = IntVector.broadcast(INTS, 0),
-        twice = IntVector.broadcast(INTS, row == 0 ? 0 : 2 * periodGrains),
-        period = IntVector.broadcast(INTS, periodGrains),
-        timeout = IntVector.broadcast(INTS, timeoutGrains);
+        twice = IntVector.broadcast(INTS, row == 0 ? 0 : 2 * periodGrains);
     for (int i = 0; i < WORLDS; i += LANES) {
       for (int[] each : latest[vehicle])
         IntVector.fromArray(INTS, each, i).sub(twice).max(past).intoArray(each, i);
@@ -173,10 +172,23 @@ final class PredictiveOffers extends LaneOffers {
       VectorMask<Integer> goes = before.compare(LE, zero);
       IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(zero);
       before.blend(begin, goes).intoArray(begun, i);
-      IntVector asks = begin.lanewise(ASHR, 1);
-      asks.intoArray(asked, i);
+      begin.lanewise(ASHR, 1).intoArray(asked, i);
       none.blend(zero, goes).intoArray(answers, i);
+    }
+  }
+
+  /** What comes after the question, where it is asked. */
+  private void goOn(int vehicle, int[] asked, int[] answers) {
+    int[] places = this.places[vehicle];
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        past = IntVector.broadcast(INTS, PAST),
+        zero = IntVector.broadcast(INTS, 0),
+        period = IntVector.broadcast(INTS, periodGrains),
+        timeout = IntVector.broadcast(INTS, timeoutGrains);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Integer> goes = IntVector.fromArray(INTS, answers, i).compare(NE, none);
       IntVector.fromArray(INTS, places, i).add(STEP, goes).intoArray(places, i);
+      IntVector asks = IntVector.fromArray(INTS, asked, i);
       IntVector to = IntVector.fromArray(INTS, there, i), back = IntVector.fromArray(INTS, this.back, i);
       IntVector lasts = to.add(back).min(timeout);
       // That it will have ended is known when it reaches the vehicle, or at once if it does not in time.

@@ -10,9 +10,9 @@ import static skein.simd.LaneMath.LANES;
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
-import skein.forward.DelayTable;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
+import skein.forward.TabledDelays;
 import skein.simd.WorldRandom;
 
 /**
@@ -43,6 +43,7 @@ final class SequentialOffers extends LaneOffers {
 
   private final int[] beatPlaces = new int[WORLDS];
   private int rowPlace;
+  private long rowBegin;
 
   /** In which some world looks for its next round. */
   private final LaneVectors searching = new LaneVectors();
@@ -58,10 +59,11 @@ final class SequentialOffers extends LaneOffers {
   }
 
   @Override
-  void start(int[] worldKeys, DelayTable[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
     Arrays.fill(tick, 0);
     Arrays.fill(tickPlace, 0);
+    rowBegin = 0;
     Arrays.fill(end, NONE);
     Arrays.fill(laterEnd, NONE);
     find();
@@ -70,6 +72,7 @@ final class SequentialOffers extends LaneOffers {
   @Override
   void startRow(int row) {
     rowPlace = row * STEP;
+    rowBegin = (long) row * periodGrains;
     if (row > 0) {
       IntVector period = IntVector.broadcast(INTS, periodGrains), none = IntVector.broadcast(INTS, NONE);
       for (int i = 0; i < WORLDS; i += LANES) {
@@ -107,10 +110,7 @@ final class SequentialOffers extends LaneOffers {
   /** Fills up what each world knows of its next two rounds. */
   private void find() {
     while (shift()) {
-      for (int v = 0; v < vehicles; v++) {
-        delays.draw(searching, tickPlace, Delays.question(0, v), drawn[2 * v]);
-        delays.draw(searching, tickPlace, Delays.answer(0, v), drawn[2 * v + 1]);
-      }
+      delays.drawInTurn(searching, tickPlace, 0, rowBegin, tick, drawn);
       flyRound();
     }
   }

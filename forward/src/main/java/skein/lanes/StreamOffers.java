@@ -1,7 +1,7 @@
 package skein.lanes;
 
-import skein.forward.DelayTable;
 import skein.forward.LoopTiming;
+import skein.forward.TabledDelays;
 
 /** The views of the {@code stream} loop, offered to all vehicles at once. */
 final class StreamOffers extends LaneOffers {
@@ -22,7 +22,7 @@ final class StreamOffers extends LaneOffers {
   }
 
   @Override
-  void start(int[] worldKeys, DelayTable[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     views.start(worldKeys, links);
   }
 

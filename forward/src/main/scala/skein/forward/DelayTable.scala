@@ -9,11 +9,13 @@ import skein.units.*
   *
   * @param delaysS ascending, s: half of the round trip's quantile in the middle of each 1024th
   */
-final class DelayTable private (val delaysS: Array[Float]) extends Delays:
+final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
   private val delaysNs =
     delaysS.map(s => math.round(Span.ofSeconds(s).toNanos.toDouble / DelayTable.GrainNs) * DelayTable.GrainNs)
 
   def maxS: Float = delaysS.last
+
+  private[skein] def stretches(worldKey: Int): Stretch = Stretch.Only(this)
 
   /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight
     * seconds.

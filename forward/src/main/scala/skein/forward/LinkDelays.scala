@@ -50,23 +50,35 @@ final case class AlternatingDelays(
     quiet: DelayTable,
     busyLastsS: Double,
     quietLastsS: Double
-) extends Delays:
+) extends TabledDelays:
   require(busyLastsS > 0 && quietLastsS > 0, s"stretches must be positive: $busyLastsS, $quietLastsS s")
+
+  def maxS: Float = busy.maxS.max(quiet.maxS)
 
   /** Whether the link is busy at a time of a world's flight. Cost grows with the number of stretches before
     * it.
     */
   def isBusy(worldKey: Int, timeNs: Long): Boolean =
-    var stretch = 0
-    var isBusy  = uniform(worldKey, stretch) < busyLastsS / (busyLastsS + quietLastsS)
-    var until   = 0.0
-    while
-      stretch += 1
+    val stretch = Alternating(worldKey)
+    while stretch.untilNs <= timeNs do stretch.next()
+    stretch.isBusy
+
+  private[skein] def stretches(worldKey: Int): Stretch = Alternating(worldKey)
+
+  private final class Alternating(worldKey: Int) extends Stretch:
+    private var number = 0
+    private var untilS = 0.0
+    var isBusy         = uniform(worldKey, number) >= busyLastsS / (busyLastsS + quietLastsS)
+    next()
+
+    def table: DelayTable = if isBusy then busy else quiet
+    def untilNs: Long     = (untilS * 1e9).ceil.toLong
+
+    def next(): Unit =
+      isBusy = !isBusy
+      number += 1
       // Exponential stretches have no memory: the first, cut anywhere, lasts as long as any.
-      until -= StrictMath.log1p(-uniform(worldKey, stretch)) * (if isBusy then busyLastsS else quietLastsS)
-      until * 1e9 <= timeNs
-    do isBusy = !isBusy
-    isBusy
+      untilS -= StrictMath.log1p(-uniform(worldKey, number)) * (if isBusy then busyLastsS else quietLastsS)
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
     (if isBusy(worldKey, sentAtNs) then busy else quiet).delayNs(worldKey, line, step, number, sentAtNs)

@@ -75,7 +75,7 @@ final class DuelBatch(
   /** Which engine flies worlds of these policies, and why, in a line for the user.
     *
     * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]
-    * @param links that the worlds fly over: where delays are long for the period, or change in stretches, no
+    * @param links that the worlds fly over: where delays are long for the period, or are recorded ones, no
     *   lanes know them
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.formula.Untraceable
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponse}
+import skein.forward.{Delays, Duel, LoopTiming, Rollout, TabledDelays, VelocityResponse}
 import skein.fusion.SensorModel
 import skein.policy.Policy
 
@@ -147,7 +147,7 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
   protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
     new Lanes(pursuer, evader, asked):
       private val keys    = Array.ofDim[Int](batch)
-      private val links   = Array.ofDim[DelayTable](batch)
+      private val links   = Array.ofDim[TabledDelays](batch)
       private val kernels = BySlowest: maxDelayS =>
         val loop = LoopLanes(timing, 2, duel.durationS, maxDelayS)
         LoopDuelKernel(duel, loop, model, pursuers, evaders, asked)
@@ -156,7 +156,7 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
 
       protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
         keys(lane) = worlds.key(world)
-        links(lane) = worlds.link(world).asInstanceOf[DelayTable]
+        links(lane) = worlds.link(world).asInstanceOf[TabledDelays]
 
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 

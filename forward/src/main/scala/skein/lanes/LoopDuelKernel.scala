@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Duel}
+import skein.forward.{Duel, TabledDelays}
 
 /** Duels by [[LoopKernel]].
   *
@@ -33,6 +33,6 @@ private[lanes] final class LoopDuelKernel(
     * @param links of each world; none may be slower than the loop was made for
     * @param captureRadiusM a distance of at most this is a capture
     */
-  def fly(keys: Array[Int], links: Array[DelayTable], captureRadiusM: Float): Unit =
+  def fly(keys: Array[Int], links: Array[TabledDelays], captureRadiusM: Float): Unit =
     captureWithin(captureRadiusM)
     kernel.fly(keys, links)

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable
-import skein.forward.{DelayTable, Delays, Duelist, LoopTiming, Steering}
+import skein.forward.{Delays, Duelist, LoopTiming, Steering, TabledDelays}
 
 /** A loop for worlds with delays of their own: what it offers to whom, how it lets commands go, and for how
   * long vehicles have to remember. Mutable as its offers are: one per kernel.
@@ -82,7 +82,7 @@ private[lanes] final class BySlowest[K](make: Double => K):
 
   /** That for the slowest of these. */
   def apply(links: Array[? <: Delays]): K =
-    val slowestS = links.iterator.collect { case table: DelayTable => table.maxS }.max
+    val slowestS = links.iterator.collect { case link: TabledDelays => link.maxS }.max
     val about    = Iterator.iterate(BySlowest.FastestS)(_ * 1.4).find(_ >= slowestS).get
     made.getOrElseUpdate(about, make(about))
 

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Asking, DelayTable, Delays, LoopTiming}
+import skein.forward.{Asking, Delays, LoopTiming, TabledDelays}
 import skein.port.Moves
 import skein.units.Expect
 
@@ -14,8 +14,8 @@ private[lanes] object LoopSupport:
   /** Why this loop does not fly over a link by lanes, for a person. */
   def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
     link match
-      case table: DelayTable => refusal(timing, vehicles, table.maxS, model)
-      case _ => Some("worlds of their own fly by lanes where a link's delays do not come in stretches")
+      case tabled: TabledDelays => refusal(timing, vehicles, tabled.maxS, model)
+      case _                    => Some("worlds of their own fly by lanes where delays come from tables")
 
   private def refusal(
       timing: LoopTiming,

@@ -2,7 +2,7 @@ package skein.lanes
 
 import java.util.IdentityHashMap
 import scala.collection.mutable
-import skein.forward.{DelayTable, Delays, LoopTiming, VelocityResponse}
+import skein.forward.{Delays, LoopTiming, TabledDelays, VelocityResponse}
 import skein.policy.TeamPolicy
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -204,7 +204,7 @@ final class TeamBatch(
     private val kernel = LoopKernel(loop, members.map(identity[LaneAgents]), scores)
 
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
-      kernel.fly(keys, links.map(_.asInstanceOf[DelayTable]))
+      kernel.fly(keys, links.map(_.asInstanceOf[TabledDelays]))
 
   /** Candidates of one form fly side by side. */
   private final case class Form(

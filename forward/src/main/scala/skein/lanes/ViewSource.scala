@@ -41,7 +41,7 @@ private[lanes] final class ViewSource private (
   def controllers: Array[Controller] = Array.empty
 
   /** Begins at a question when all questions before are answered and joined, if there were any. */
-  def begin(worldKey: Int, worldLink: DelayTable, first: Int): Unit =
+  def begin(worldKey: Int, worldLink: TabledDelays, first: Int): Unit =
     link.delays = worldLink
     world.start(worldKey, LoopObserver.Nobody, first)
     row = first - 1
@@ -114,7 +114,7 @@ private[lanes] object ViewSource:
 
   /** That of the flight. */
   private final class Link extends Delays:
-    var delays: DelayTable = DelayTable.none
+    var delays: TabledDelays = DelayTable.none
 
     def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
       delays.delayNs(worldKey, line, step, number, sentAtNs)

@@ -209,7 +209,7 @@ private[skein] object DuelAgreement:
       duel: Duel,
       timing: LoopTiming,
       model: VelocityResponse,
-      link: Int => DelayTable,
+      link: Int => TabledDelays,
       key: Int => Int,
       captureM: Float = 0
   )(pursuer: Int => Policy, evader: Int => Policy): DuelAgreement =

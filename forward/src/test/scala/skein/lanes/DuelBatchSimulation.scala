@@ -10,6 +10,7 @@ import skein.forward.{
   LinkDelays,
   LoopTiming,
   PlantResponse,
+  RecordedDelays,
   Reduced,
   ReducedResponse,
   Rollout,
@@ -56,8 +57,8 @@ class DuelBatchSimulation extends munit.FunSuite:
         assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
 
   test(
-    "where delays come in stretches, and where a loop is asked as " +
-      "published, the engine says scalar and why; long delays fly"
+    "over recorded delays, and where a loop is asked as published, the engine says scalar and why; " +
+      "long delays fly, and those that change"
   ):
     val near                      = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(2)))
     val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))
@@ -77,12 +78,14 @@ class DuelBatchSimulation extends munit.FunSuite:
     )).contains("over 1 of 2 links; scalar over the others: a command"))
     assert(!isFast(LoopTiming.stream(0.01), near, slow))
     val alternating = LinkDelays.of(LatencyProfile.vpnMixed)
-    assert(clue(engine(LoopTiming.stream(0.1), alternating)).startsWith("scalar: "))
+    assert(isFast(LoopTiming.stream(0.1), alternating, near))
+    val recorded = RecordedDelays(Vector.fill(2)(Vector.fill(4)(Array(1L))))
+    assert(clue(engine(LoopTiming.stream(0.1), recorded)).startsWith("scalar: "))
     assert(batch(LoopTiming.stream(0.1)).fliesByLanes(
       PaperPursuer(),
       PaperEvader(),
       shareEpisodes = true,
-      Seq(alternating)
+      Seq(recorded)
     ))
     for published <- Seq(
         LoopTiming.Predictive(predictor = lag.predictor, asking = Asking(inOrder = true)),

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.{
+  AlternatingDelays,
   Asking,
   DelayTable,
   Duel,
@@ -8,6 +9,7 @@ import skein.forward.{
   Reduced,
   ReducedResponse,
   Steering,
+  TabledDelays,
   VelocityResponse,
   VelocityResponses
 }
@@ -40,7 +42,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
 
   private def fly(
       timing: LoopTiming,
-      link: DelayTable,
+      link: TabledDelays,
       durationS: Double,
       model: VelocityResponse,
       keys: Array[Int] = keys
@@ -66,19 +68,29 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
 
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
-  private val links = Seq[(String, DelayTable)](
+  /** Busy for a second or so, and quiet for half of one. */
+  private val changing = AlternatingDelays(wild(200, 300), DelayTable.direct, 1.0, 0.5)
+
+  private val links = Seq[(String, TabledDelays)](
     "none"                        -> DelayTable.none,
     "direct"                      -> DelayTable.direct,
     "vpn"                         -> DelayTable.vpn,
     "110 ms and 60 ms of jitter"  -> wild(110, 60),
     "200 ms and 300 ms of jitter" -> wild(200, 300),
-    "300 ms and 300 ms of jitter" -> wild(300, 300)
+    "300 ms and 300 ms of jitter" -> wild(300, 300),
+    "110 ms and a busy link"      -> AlternatingDelays(wild(110, 60), wild(300, 300), 0.5, 0.8),
+    "one that changes"            -> changing
   )
 
-  private def agreement(timing: LoopTiming, link: DelayTable, durationS: Double, model: VelocityResponse) =
+  private def agreement(
+      timing: LoopTiming,
+      link: TabledDelays,
+      durationS: Double,
+      model: VelocityResponse
+  ) =
     unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[Policy])
 
-  private def unseen(timing: LoopTiming, link: DelayTable, durationS: Double, model: VelocityResponse)(
+  private def unseen(timing: LoopTiming, link: TabledDelays, durationS: Double, model: VelocityResponse)(
       pursuer: Int => Policy
   ) =
     DuelAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
@@ -205,10 +217,10 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     test(
       s"$timing: a world's result depends on its key and parameters alone, not on its lane or its neighbours"
     ):
-      val link   = wild(150, 150)
-      val before = fly(timing, link, 20, lag)(DuelNumber.MeanLast10s).clone
-      // The others meet other delays.
-      val some   = keys.zipWithIndex.map((key, world) => if world % 3 == 0 then key else key ^ 0x5a5a5a)
-      val beside = fly(timing, link, 20, lag, some)
-      for world <- 0 until worlds by 3 do
-        assertEquals(beside(DuelNumber.MeanLast10s)(world), before(world), s"world $world")
+      for link <- Seq(wild(150, 150), changing) do
+        val before = fly(timing, link, 20, lag)(DuelNumber.MeanLast10s).clone
+        // The others meet other delays.
+        val some   = keys.zipWithIndex.map((key, world) => if world % 3 == 0 then key else key ^ 0x5a5a5a)
+        val beside = fly(timing, link, 20, lag, some)
+        for world <- 0 until worlds by 3 do
+          assertEquals(beside(DuelNumber.MeanLast10s)(world), before(world), s"world $world")

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, LoopTiming}
+import skein.forward.{AlternatingDelays, DelayTable, LoopTiming, TabledDelays}
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 
@@ -22,7 +22,7 @@ class StreamOffersSuite extends munit.FunSuite:
   private def views(
       timing: LoopTiming.Stream,
       vehicles: Int,
-      links: Array[DelayTable],
+      links: Array[TabledDelays],
       shortCut: Boolean
   ): Vector[Vector[Told]] =
     val offers = StreamOffers(timing, vehicles, durationS, links.map(_.maxS).max, shortCut)
@@ -47,25 +47,32 @@ class StreamOffersSuite extends munit.FunSuite:
           )
     told.map(_.toVector)
 
+  private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+
+  private val steady = Seq(
+    (36.0, 22.0),
+    (103.0, 66.0),
+    (110.0, 60.0),
+    (215.0, 36.0),
+    (190.0, 90.0),
+    (150.0, 150.0),
+    (300.0, 300.0)
+  ).map((mean, jitter) => s"$mean ms and $jitter ms of jitter" -> wild(mean, jitter))
+
+  private val changing = Seq(
+    "vpn and direct"  -> AlternatingDelays(DelayTable.vpn, DelayTable.direct, 4, 2),
+    "slow and direct" -> AlternatingDelays(wild(300, 300), DelayTable.direct, 1, 0.5)
+  ).map((name, link) => s"$name in turns" -> link)
+
   for
-    vehicles           <- Seq(2, 3, 6)
-    (meanMs, jitterMs) <- Seq(
-      (36.0, 22.0),
-      (103.0, 66.0),
-      (110.0, 60.0),
-      (215.0, 36.0),
-      (190.0, 90.0),
-      (150.0, 150.0),
-      (300.0, 300.0)
-    )
+    vehicles    <- Seq(2, 3, 6)
+    (name, bad) <- steady ++ changing
   do
-    test(
-      s"$vehicles vehicles, $meanMs ms and $jitterMs ms of jitter: views by lanes are those told one by one"
-    ):
+    test(s"$vehicles vehicles, $name: views by lanes are those told one by one"):
       val timing = LoopTiming.stream(0.1)
-      val bad    = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
       // Side by side with links of which nothing is irregular.
-      val links    = Array.tabulate(worlds)(world => if world % 3 == 0 then DelayTable.none else bad)
+      val links =
+        Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then DelayTable.none else bad)
       val byLanes  = views(timing, vehicles, links, shortCut = true)
       val oneByOne = views(timing, vehicles, links, shortCut = false)
       // Told early, the last ones are told though they are joined when the flight is over.

@@ -13,7 +13,7 @@ import skein.vehicle.ReducedModel
 class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private val worlds = TimetableKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
-  private val links  = Seq("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
+  private val links  = Seq[(String, Delays)]("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
 
   private val loops = Seq(
     LoopTiming.Paused(),
@@ -127,7 +127,11 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     (name, draw)   <- scenarios
     timing         <- loops
     (linked, link) <-
-      links ++ Seq("110 ms and 60 ms of jitter" -> wild(110, 60), "150 ms of jitter" -> wild(150, 150))
+      links ++ Seq(
+        "110 ms and 60 ms of jitter" -> wild(110, 60),
+        "150 ms of jitter"           -> wild(150, 150),
+        "a link that changes"        -> AlternatingDelays(wild(150, 150), DelayTable.direct, 1.0, 0.5)
+      )
   do
     test(
       s"$name, $timing, own delays over $linked: every world flies as by the scalar reference, 6 s to 2 mm"
@@ -175,7 +179,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def agreeAlone(
       draw: SplitMix64 => Scenario,
       timing: LoopTiming,
-      over: DelayTable,
+      over: Delays,
       plant: VelocityResponse,
       mostM: Double,
       durationS: Double
