@@ -11,7 +11,9 @@ import skein.vehicle.{Airframe, Setpoint}
   * for the next.
   *
   * Until the first answer physics runs by the clock, for PX4 starts by the sensors' time. From then on, as
-  * long as the answers say that PX4 runs in lockstep, physics waits for each.
+  * long as the answers say that PX4 runs in lockstep, physics waits for the answer to the newest sensors: PX4
+  * tells their time in it. What was sent before the first answer is answered, too, and later; were each answer
+  * taken for the newest sensors', PX4's controls would be late by all of that for the rest of the flight.
   *
   * @param system the number that frames are sent under
   */
@@ -23,6 +25,10 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
   private var controls      = AutopilotInterface.MotorsOff
   private var isLockstep    = false
   private var owes          = false
+  private var sensedUsec    = 0L
+  private var outdated      = 0 // answers since then, to sensors before
+  private var waitedFor     = 0
+  private var hasOwnClock   = false
   private var due           = Period * (from.toNanos / Period.toNanos + 1)
   private var ticks         = 0L
   private var magneticFrd   = Vector3.Zero
@@ -38,8 +44,10 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
     for frame <- reader.read(bytes) do
       frame.message match
         case answer: HilActuatorControls =>
-          owes = false
           isLockstep = (answer.flags & LockstepFlag) != 0
+          val isOutdated = answer.timeUsec < sensedUsec && !hasOwnClock
+          if isOutdated then outdated += 1
+          owes = isLockstep && isOutdated
           controls =
             if (answer.mode & ModeFlag.Armed) == 0 then AutopilotInterface.MotorsOff
             else AutopilotInterface.rotors(answer.controls.map(_.toDouble))
@@ -55,7 +63,15 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
   def isWaiting: Boolean      = owes
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
-  def giveUp(): Unit          = owes = false
+
+  /** While it catches up it is waited for. Where it has nothing more to say, the times that it tells are not
+    * those of the sensors.
+    */
+  def giveUp(): Unit =
+    if outdated > waitedFor then waitedFor = outdated
+    else
+      hasOwnClock ||= outdated > 0
+      owes = false
 
   def damaged: Long =
     val counts = reader.counts
@@ -66,6 +82,9 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
       sensor(truth) +: (state(truth) ++ satellites(truth) ++ systemTime(truth)).toVector
     due = due + Period
     ticks += 1
+    sensedUsec = micros(truth.up)
+    outdated = 0
+    waitedFor = 0
     owes = isLockstep
     Vector(messages.flatMap(writer.write).toArray)
 

@@ -24,7 +24,10 @@ class Px4InterfaceSuite extends munit.FunSuite:
     def ticks(seconds: Double): Vector[Message] = Vector.fill((seconds * 250).toInt)(tick()).flatten
 
   private def controls(mode: Int, flags: Long, values: Float*): Message =
-    HilActuatorControls(4000, values.toVector, mode, flags)
+    answer(Long.MaxValue, mode, flags, values*)
+
+  private def answer(toUsec: Long, mode: Int, flags: Long, values: Float*): Message =
+    HilActuatorControls(toUsec, values.toVector, mode, flags)
 
   test(
     "sensors come every 4 ms of its time, each with accelerometer and gyroscope, a fifth with the slow ones"
@@ -77,6 +80,30 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assert(!peer.interface.isWaiting)
     peer.say(controls(1, 0))
     peer.tick()
+    assert(!peer.interface.isWaiting)
+
+  test("it waits for the answer to the newest sensors, whatever is answered before"):
+    val peer   = Peer()
+    val sensed = peer.ticks(1).collect { case one: HilSensor => one.timeUsec }
+    for at <- sensed.init do
+      peer.say(answer(at, 1, 1))
+      assert(peer.interface.isWaiting, s"answered at $at")
+      peer.interface.giveUp()
+      assert(peer.interface.isWaiting, s"it catches up, at $at")
+    peer.say(answer(sensed.last, 1, 1))
+    assert(!peer.interface.isWaiting)
+
+  test("one that tells other times is waited for once, and then its next answer counts"):
+    val peer = Peer()
+    peer.ticks(1)
+    peer.say(answer(7, 1, 1))
+    peer.interface.giveUp()
+    assert(peer.interface.isWaiting)
+    peer.interface.giveUp()
+    assert(!peer.interface.isWaiting)
+    peer.tick()
+    assert(peer.interface.isWaiting)
+    peer.say(answer(8, 1, 1))
     assert(!peer.interface.isWaiting)
 
   test("rotors turn while it is armed, each between 0 and 1, and stand for what is no number"):

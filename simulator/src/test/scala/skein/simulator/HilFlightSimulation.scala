@@ -6,6 +6,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.ExecutionContext
 import skein.hil.{AutopilotKind, SmallAutopilot}
 import skein.link.*
+import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -24,8 +25,9 @@ object HilFlightSimulation:
   /** The server, PX4's interface and a small autopilot behind it, in virtual time, for so long.
     *
     * @param speed of the simulator's clock against virtual time
+    * @param link between the two
     */
-  def fly(seed: Long, lasting: Span, speed: Double = 1): Flight =
+  def fly(seed: Long, lasting: Span, speed: Double = 1, link: LinkProfile = LinkProfile.none): Flight =
     val began          = System.nanoTime()
     val digest         = MessageDigest.getInstance("SHA-256")
     val autopilot      = SmallAutopilot()
@@ -34,7 +36,7 @@ object HilFlightSimulation:
         given ActorSystem      = system
         given ExecutionContext = system.dispatcher
         val clock              = VirtualClock(system)
-        val network            = MemoryNetwork(NetworkPlan(LinkProfile.none), seed, clock)
+        val network            = MemoryNetwork(NetworkPlan(link), seed, clock)
         val settings           = SimulatorSettings(
           address = Address("simulator", 41451),
           speed = speed,
@@ -74,3 +76,9 @@ class HilFlightSimulation extends munit.FunSuite:
     val again = fly(1, Span.ofSeconds(20))
     assertEquals((again.digest, again.positionNed), (first.digest, first.positionNed))
     assert(fly(2, Span.ofSeconds(1)).digest != fly(3, Span.ofSeconds(1)).digest, "other seeds, other noise")
+
+  test("an autopilot that is far away hovers: physics waits for what it answers to the newest sensors"):
+    val far   = LinkProfile.symmetric(LatencyProfile.parse("constant:400ms", Left(_)).toOption.get)
+    val there = fly(1, Span.ofSeconds(12), link = far)
+    assert((there.positionNed - Vector3(0, 0, -5)).norm < 1.5, there.positionNed.toString)
+    assertEquals(there.stats, PeerStats())
