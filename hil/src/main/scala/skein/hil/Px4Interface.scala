@@ -12,8 +12,9 @@ import skein.vehicle.{Airframe, Setpoint}
   *
   * Until the first answer physics runs by the clock, for PX4 starts by the sensors' time. From then on, as
   * long as the answers say that PX4 runs in lockstep, physics waits for the answer to the newest sensors: PX4
-  * tells their time in it. What was sent before the first answer is answered, too, and later; were each answer
-  * taken for the newest sensors', PX4's controls would be late by all of that for the rest of the flight.
+  * tells their time in it. What was sent before the first answer is answered, too, and later; were each
+  * answer taken for the newest sensors', PX4's controls would be late by all of that for the rest of the
+  * flight.
   *
   * @param system the number that frames are sent under
   */
