@@ -35,7 +35,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
 
   private val workers =
     FunFixture[ThreadedPlanWorkers](
-      _ => ThreadedPlanWorkers(2, Thread.ofPlatform().daemon().name("plan").factory()),
+      _ => ThreadedPlanWorkers(2, Thread.ofPlatform().daemon().name("skein-plan").factory()),
       _.close()
     )
 
@@ -76,7 +76,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   test("threads end when they are no longer wanted"):
     def ours    = Thread.getAllStackTraces.keySet.asScala.filter(_.getName.startsWith("skein-plan")).toSet
     val before  = ours
-    val closing = ThreadedPlanWorkers(2, Thread.ofPlatform().daemon().name("plan").factory())
+    val closing = ThreadedPlanWorkers(2, Thread.ofPlatform().daemon().name("skein-plan").factory())
     val begun   = ours -- before
     assertEquals(begun.size, 2)
     closing.close()
