@@ -110,7 +110,7 @@ final class LaneDelays {
    * The delays of a line at places of each world's own.
    *
    * @param begin what times count from, since the episode's begin, in grains
-   * @param sentAt when each message is sent
+   * @param sentAt when each message is sent; any time where none is
    */
   void draw(LaneVectors vectors, int[] places, int line, long begin, int[] sentAt, int[] into) {
     int[] keys = keysOf(line);
@@ -178,6 +178,6 @@ final class LaneDelays {
   private void chooseTables(LaneVectors vectors, long begin, int[] sentAt) {
     for (int k = 0; k < vectors.count; k++)
       for (int i = vectors.first[k], end = i + LANES; i < end; i++)
-        if (sentAt[i] != LaneOffers.NONE) tableOf[i] = courses[i].tableAt(begin + sentAt[i]);
+        tableOf[i] = courses[i].tableAt(begin + sentAt[i]);
   }
 }

@@ -3,14 +3,14 @@ package skein.lanes;
 import java.util.Arrays;
 import java.util.function.ToIntFunction;
 import skein.forward.DelayTable;
-import skein.forward.Stretch;
+import skein.forward.TableStretch;
 
 /** Which table of delays a world's link has at which time of a flight. Mutable. */
 final class TableCourse {
   private final ToIntFunction<DelayTable> beginOf;
 
   /** The link, as far as it is known. */
-  private Stretch stretch;
+  private TableStretch stretch;
 
   // Of each stretch: where its table begins, and until when it holds, since the flight's begin, in grains.
   private int[] tables = new int[4];
@@ -29,7 +29,7 @@ final class TableCourse {
   }
 
   /** Back to the start of a flight. */
-  void start(Stretch first) {
+  void start(TableStretch first) {
     stretch = first;
     count = 0;
     at = 0;

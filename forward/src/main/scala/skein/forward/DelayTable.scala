@@ -15,7 +15,7 @@ final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
 
   def maxS: Float = delaysS.last
 
-  private[skein] def stretches(worldKey: Int): Stretch = Stretch.Only(this)
+  private[skein] def stretches(worldKey: Int): TableStretch = TableStretch.Only(this)
 
   /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight
     * seconds.
@@ -44,3 +44,28 @@ object DelayTable:
   val none: DelayTable   = of(LatencyDistribution.Constant(Span.Zero))
   val direct: DelayTable = of(LatencyDistribution.Direct)
   val vpn: DelayTable    = of(LatencyDistribution.Vpn)
+
+/** Delays that come from a [[DelayTable]], always or for a while until another takes its place: what kernels
+  * know of links.
+  */
+trait TabledDelays extends Delays:
+  /** The longest, s. */
+  def maxS: Float
+
+  /** The first stretch of a world's flight. */
+  private[skein] def stretches(worldKey: Int): TableStretch
+
+/** A time in which a world's delays come from one table. Mutable: goes on to the next. */
+private[skein] trait TableStretch:
+  def table: DelayTable
+
+  /** What is sent from then on meets the next stretch's delays, ns since the flight's start. */
+  def untilNs: Long
+
+  def next(): Unit
+
+private[skein] object TableStretch:
+  /** One that does not end. */
+  final case class Only(table: DelayTable) extends TableStretch:
+    def untilNs: Long = Long.MaxValue
+    def next(): Unit  = ()

@@ -63,9 +63,9 @@ final case class AlternatingDelays(
     while stretch.untilNs <= timeNs do stretch.next()
     stretch.isBusy
 
-  private[skein] def stretches(worldKey: Int): Stretch = Alternating(worldKey)
+  private[skein] def stretches(worldKey: Int): TableStretch = Alternating(worldKey)
 
-  private final class Alternating(worldKey: Int) extends Stretch:
+  private final class Alternating(worldKey: Int) extends TableStretch:
     private var number = 0
     private var untilS = 0.0
     var isBusy         = uniform(worldKey, number) >= busyLastsS / (busyLastsS + quietLastsS)

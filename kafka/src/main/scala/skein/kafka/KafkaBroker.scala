@@ -1,12 +1,12 @@
 package skein.kafka
 
 import java.io.{OutputStream, PrintStream}
-import java.net.{InetAddress, ServerSocket}
+import java.net.{BindException, InetAddress, ServerSocket}
 import java.nio.file.{Files, Path}
 import java.util.{Comparator, Properties}
 import kafka.server.{KafkaConfig, KafkaRaftServer}
 import org.apache.kafka.common.Uuid
-import org.apache.kafka.common.utils.Time
+import org.apache.kafka.common.utils.{Exit, Time}
 import org.apache.kafka.metadata.storage.Formatter
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
@@ -14,7 +14,8 @@ import scala.util.control.NonFatal
 import skein.link.Address
 
 /** Kafka's own broker in this process, one node that is its own controller: for tests, and for labs that have
-  * no other. What it holds lies in a folder.
+  * no other. What it holds lies in a folder. One that fails while it runs answers no longer, and says why on
+  * standard error; Kafka itself would end the process.
   */
 final class KafkaBroker private (server: KafkaRaftServer, val address: Address) extends AutoCloseable:
 
@@ -38,18 +39,53 @@ object KafkaBroker:
       at: Address,
       certificates: Map[String, String] = Map.empty
   ): Either[String, KafkaBroker] =
+    start(folder, at, certificates, freed, Attempts)
+
+  /** @param free finds a free port where none is asked for
+    * @param attempts another program may have a port that was free by the time the broker listens there
+    */
+  private[kafka] def start(
+      folder: Path,
+      at: Address,
+      certificates: Map[String, String],
+      free: Address => Int,
+      attempts: Int
+  ): Either[String, KafkaBroker] =
+    outlive()
     try
-      val own         = at.copy(port = freed(at))
-      val controllers = freed(Address(Inside, 0))
-      val settings    = Properties()
-      settings.putAll(configuration(folder, own, controllers, certificates).asJava)
+      val own = at.copy(port = free(at))
       if !Files.exists(folder.resolve("meta.properties")) then format(folder)
-      val server = KafkaRaftServer(KafkaConfig.fromProps(settings, false), Time.SYSTEM)
-      server.startup()
-      Right(KafkaBroker(server, own))
+      try Right(KafkaBroker(started(configuration(folder, own, free(Address(Inside, 0)), certificates)), own))
+      catch
+        case NonFatal(error) if attempts > 1 && KafkaTopics.causes(error).exists(_.isInstanceOf[BindException]) =>
+          start(folder, at, certificates, free, attempts - 1)
     catch
       case NonFatal(error) =>
         Left(s"cannot start a broker at $at: ${KafkaTopics.rootOf(error)}")
+
+  private def started(configuration: Map[String, String]): KafkaRaftServer =
+    val settings = Properties()
+    settings.putAll(configuration.asJava)
+    val server = KafkaRaftServer(KafkaConfig.fromProps(settings, false), Time.SYSTEM)
+    try
+      server.startup()
+      server
+    catch
+      case NonFatal(error) =>
+        server.shutdown()
+        throw error
+
+  private val Attempts = 3
+
+  /** Kafka ends the process where it finds a fault, at the start of a broker and later. It goes on behind that
+    * with an exception or with nothing.
+    */
+  private def outlive(): Unit =
+    val told: Exit.Procedure = (code, message) =>
+      val why = Option(message).fold("")(": " + _)
+      System.err.println(s"the Kafka broker in this process has failed, with code $code$why")
+    Exit.setExitProcedure(told)
+    Exit.setHaltProcedure(told)
 
   /** Takes away what a broker that has ended held. */
   def delete(folder: Path): Unit =
@@ -61,7 +97,7 @@ object KafkaBroker:
   /** Where it speaks to itself as its controller. */
   private val Inside = "127.0.0.1"
 
-  private def freed(at: Address): Int =
+  private[kafka] def freed(at: Address): Int =
     Using.resource(ServerSocket(at.port, 1, InetAddress.getByName(at.host)))(_.getLocalPort)
 
   private def format(folder: Path): Unit =

@@ -67,7 +67,7 @@ object KafkaTopics:
           val plain = if topics.security.isEmpty then "; does one listen there, without TLS?" else ""
           Absent(s"no Kafka broker at $at: ${rootOf(error)}$plain", isFinal = false)
 
-  private def causes(error: Throwable): Iterator[Throwable] =
+  private[kafka] def causes(error: Throwable): Iterator[Throwable] =
     Iterator.iterate(error)(_.getCause).takeWhile(_ != null)
 
   /** The words of what began it. */

@@ -1,6 +1,7 @@
 package skein.kafka
 
 import java.nio.file.Files
+import org.apache.kafka.common.utils.Exit
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
@@ -126,6 +127,23 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
     )
     val used = recording.solved.map(one => (one.vehicle, one.question))
     assertEquals(used.distinct, used)
+
+  for (whose, number) <- Seq("clients", "its controller").zipWithIndex do
+    test(s"a broker whose port for $whose is taken while it starts takes another"):
+      val folder            = Files.createTempDirectory("kafka-late")
+      var asked             = 0
+      def free(at: Address) =
+        asked += 1
+        if asked - 1 == number then broker.address.port else KafkaBroker.freed(at)
+      val late = KafkaBroker.start(folder, Address("127.0.0.1", 0), Map.empty, free, attempts = 2)
+      assert(late.isRight, late)
+      assertEquals(asked, 4)
+      late.foreach(_.close())
+      KafkaBroker.delete(folder)
+
+  test("a fault for which Kafka would end the process does not end it"):
+    Exit.exit(1, "of a test")
+    Exit.halt(1, "of a test")
 
   test("a broker whose port is taken is not started, and says so"):
     val at    = broker.address
