@@ -57,7 +57,8 @@ object KafkaBroker:
       if !Files.exists(folder.resolve("meta.properties")) then format(folder)
       try Right(KafkaBroker(started(configuration(folder, own, free(Address(Inside, 0)), certificates)), own))
       catch
-        case NonFatal(error) if attempts > 1 && KafkaTopics.causes(error).exists(_.isInstanceOf[BindException]) =>
+        case NonFatal(error)
+            if attempts > 1 && KafkaTopics.causes(error).exists(_.isInstanceOf[BindException]) =>
           start(folder, at, certificates, free, attempts - 1)
     catch
       case NonFatal(error) =>
@@ -77,8 +78,8 @@ object KafkaBroker:
 
   private val Attempts = 3
 
-  /** Kafka ends the process where it finds a fault, at the start of a broker and later. It goes on behind that
-    * with an exception or with nothing.
+  /** Kafka ends the process where it finds a fault, at the start of a broker and later. It goes on behind
+    * that with an exception or with nothing.
     */
   private def outlive(): Unit =
     val told: Exit.Procedure = (code, message) =>
