@@ -6,8 +6,8 @@ import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
 /** How fast does each loop fly by lanes, beside the scalar engine?
-  * `forward/Test/runMain skein.lanes.timingRates [text]`: on one thread, 60 s over `vpn`, only what contains
-  * the text; processor time. Agent-steps of a period, in millions a second.
+  * `forward/Test/runMain skein.lanes.timingRates [text]`: on one thread, 60 s over `vpn` unless told
+  * otherwise, only what contains the text; processor time. Agent-steps of a period, in millions a second.
   */
 @main def timingRates(only: String*): Unit =
   val times  = java.lang.management.ManagementFactory.getThreadMXBean
@@ -28,9 +28,11 @@ import skein.vehicle.ReducedModel
       LoopTiming.Predictive(predictor = model.predictor)
     )
     sees <- if shared && name == "lag" then Seq(false, true) else Seq(false)
+    mixed = if !shared && name == "lag" then Seq(" over vpn-mixed" -> LinkDelays.vpnMixed) else Nil
+    (linked, over) <- Seq[(String, Delays)]("" -> DelayTable.vpn) ++ mixed
     row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${
         if sees then " by eye" else ""
-      }"
+      }$linked"
     if only.forall(row.contains)
   do
     val duel  = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
@@ -40,10 +42,10 @@ import skein.vehicle.ReducedModel
       override def shareEpisodes: Boolean = shared
       def key(world: Int): Int            =
         WorldRandom.key(3, 1, if shared then from + world / 512 % 8 else from + world)
-      def link(world: Int): Delays    = DelayTable.vpn
+      def link(world: Int): Delays    = over
       def pursuer(world: Int): Policy = PaperPursuer(0.6 + 1e-4 * (world % 512))
       def evader(world: Int): Policy  = PaperEvader()
-    val isFast = batch.fliesByLanes(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+    val isFast = batch.fliesByLanes(PaperPursuer(), PaperEvader(), shared, Seq(over))
 
     /** Processor time of the batch's own threads, which end with each call. */
     def rate(count: Int): Double =
@@ -57,7 +59,7 @@ import skein.vehicle.ReducedModel
     val count = if slow then 64 else if sees || name == "bicycle" then 8192 else 40960
     for _ <- 1 to 4 do rate(count): Unit
     val lanes                        = Vector.fill(5)(rate(count)).max
-    val rollout                      = Rollout(duel, timing, DelayTable.vpn, model)
+    val rollout                      = Rollout(duel, timing, over, model)
     def scalar(flights: Int): Double =
       val from = times.getCurrentThreadCpuTime
       for flight <- 1 to flights do rollout.fly(flight): Unit
