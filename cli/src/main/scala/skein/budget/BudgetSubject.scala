@@ -109,7 +109,7 @@ final class DuelSubject(
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int =
     val isFast = batch.fliesByLanes(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
-    Effort.of(isFast, isFast, flown.vehicle).cellEpisodes
+    Effort.of(isFast, isFast, flown.vehicle, flown.sees).cellEpisodes
 
   def engine(links: Vector[LatencyDistribution]): String =
     batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))

@@ -52,6 +52,9 @@ object Conditions:
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
     def batch(threads: Int): DuelBatch = DuelBatch(duel, timing, vehicle.response, threads)
 
+    /** Whether the pursuer knows of the evader by a sensor alone. */
+    def sees: Boolean = duel.pursuer.eye.isDefined
+
     /** The ground truth with the same vehicles: the same period, a world that waits, and a pursuer that is
       * told.
       */

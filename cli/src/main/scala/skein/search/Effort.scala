@@ -30,13 +30,16 @@ object Effort:
     *
     * @param together whether candidates that share their episodes fly by lanes
     * @param alone whether worlds with delays of their own do
+    * @param sees whether somebody knows of the other by a sensor: images of a world's own cost several times
+    *   what all else does
     */
-  def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice): Effort =
-    def level(byLanes: Boolean) = (byLanes, vehicle.fliesInSteps) match
-      case (true, false)                 => Cheap
-      case (true, true) | (false, false) => Dear
-      case (false, true)                 => Dearer
-    val (candidates, worlds) = (level(together), level(alone))
+  def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice, sees: Boolean): Effort =
+    def level(byLanes: Boolean, isDear: Boolean) = (byLanes, isDear) match
+      case (true, false) => Cheap
+      case (true, true)  => Dear
+      case (false, _)    => if vehicle.fliesInSteps then Dearer else Dear
+    val candidates = level(together, vehicle.fliesInSteps)
+    val worlds     = level(alone, vehicle.fliesInSteps || sees)
     Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
 
   /** Fresh episodes of a team: so few that the scalar engine, too, flies them in seconds. */

@@ -178,7 +178,8 @@ final case class SearchSetup(
 
   def byLanes: Boolean = fliesByLanes(together = true)
 
-  def effort: Effort = Effort.of(byLanes, fliesByLanes(together = false), conditions.vehicle)
+  def effort: Effort =
+    Effort.of(byLanes, fliesByLanes(together = false), conditions.vehicle, conditions.sees)
 
   def engine(candidate: Vector[Double], judge: Judge): String =
     val of                = if judge == Judge.Baseline then paper.family else family

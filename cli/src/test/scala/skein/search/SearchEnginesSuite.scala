@@ -24,19 +24,24 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       seed = 1
     ).setup.fold(fail(_), identity).engines
 
+  private def eyeFile(): String =
+    Files.writeString(temporaryFolder().resolve("eye.conf"), SearchEnginesSuite.Eye).toString
+
   test("where both fly by lanes, each says by which"):
     for
-      loop <- Seq("stream", "predictive")
+      loop <- Seq("sequential", "futures", "stream", "predictive")
       link <- Seq("vpn", "vpn-mixed")
+      eye  <- Seq(None, Some(eyeFile()))
     do
-      val told = engines(loop, link)
-      assert(told.startsWith("SIMD, ") && !told.contains("scalar"), told)
+      val told = engines(loop, link, eye)
+      assert(told.matches("SIMD, .*; fresh episodes: SIMD, .*"), s"$loop, $link, $eye: $told")
 
   test("fresh episodes that fly by the scalar engine are told of, with the reason"):
-    val file = temporaryFolder().resolve("eye.conf")
-    Files.writeString(file, SearchEnginesSuite.Eye)
-    val seeing = engines(eye = Some(file.toString))
-    assert(seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor .*"), seeing)
+    val seeing = engines(loop = "paused", eye = Some(eyeFile()))
+    assert(
+      seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor while the world waits .*"),
+      seeing
+    )
 
   test("a team's fresh episodes fly world by world, side by side"):
     val team = TeamQuestion(

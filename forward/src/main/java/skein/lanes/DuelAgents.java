@@ -15,7 +15,7 @@ final class DuelAgents extends TimetableAgents {
   private final boolean isTold;
 
   /** By which alone it knows of its opponent, or null. */
-  private final CameraTrackerLanes eye;
+  private final TimetableEye eye;
 
   /**
    * @param self the vehicle's number, 0 or 1
@@ -31,7 +31,7 @@ final class DuelAgents extends TimetableAgents {
       float[] effort,
       LaneObservation observation,
       boolean isTold,
-      CameraTrackerLanes eye) {
+      TimetableEye eye) {
     super(model.vehicles(duelist));
     this.isTold = isTold;
     this.eye = eye;

@@ -129,6 +129,14 @@ abstract class LaneAgents {
   }
 
   /**
+   * Whether it takes images until it decides, of what the others fly that were offered the same: {@link
+   * #choose} waits until they have commanded.
+   */
+  boolean sees() {
+    return false;
+  }
+
+  /**
    * Decides, in all worlds: {@link #decidedNow}.
    *
    * @param all by the vehicle's number, with what is read of their vehicles
@@ -162,11 +170,11 @@ abstract class LaneAgents {
     }
   }
 
-  /** Decide where it is their turn, as {@link #choose}. */
+  /** Decide where it is their turn, as {@link #choose}; but those who {@link #sees see}. */
   final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(vectors, offers.joinedAt, offers.nextAt);
     if (forecast != null) forecast.predict(vectors, decides);
-    choose(all, offers, vectors, readAt);
+    if (!sees()) choose(all, offers, vectors, readAt);
   }
 
   /**

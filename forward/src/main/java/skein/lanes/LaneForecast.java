@@ -117,6 +117,11 @@ final class LaneForecast {
     return tracks[vehicle].ageS;
   }
 
+  /** How long it takes until a command acts, s. */
+  float[] actsS() {
+    return delays.toS;
+  }
+
   /**
    * Notes the commands of a period.
    *

@@ -86,6 +86,21 @@ abstract class LaneVehicles {
    */
   abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
 
+  /**
+   * Tells where the vehicles were at moments of the near past, and leaves what was read last as it is.
+   *
+   * @param vectors in which somebody asks
+   * @param at when, from the row's begin, in grains; {@link LaneOffers#NONE} where nobody asks
+   * @param north and {@code east}: positions, m
+   */
+  final void look(int row, LaneVectors vectors, int[] at, float[] north, float[] east) {
+    remember();
+    read(row, vectors, at, at, null, false);
+    System.arraycopy(state, SEEN_X, north, 0, WORLDS);
+    System.arraycopy(state, SEEN_Y, east, 0, WORLDS);
+    System.arraycopy(kept, 0, state, SEEN_X, kept.length);
+  }
+
   /** Keeps what was read before. */
   final void remember() {
     System.arraycopy(state, SEEN_X, kept, 0, kept.length);

@@ -25,6 +25,9 @@ final class LoopDuelAgents extends LaneAgents {
   private final LaneObservation observation = new LaneObservation(elapsedS);
   private final Directions known = new Directions(WORLDS);
 
+  /** By which alone it knows of its opponent, or null. */
+  private LoopEye eye;
+
   /**
    * @param effort where the sums of the decided headings' changes go, rad
    */
@@ -35,6 +38,22 @@ final class LoopDuelAgents extends LaneAgents {
     this.effort = effort;
     startHeading = (float) duelist.startHeadingRad();
     loop.carryForward(self, duelist, vehicles);
+  }
+
+  /** From now on it knows of its opponent by this alone. */
+  void seeBy(LoopEye eye) {
+    this.eye = eye;
+  }
+
+  @Override
+  boolean sees() {
+    return eye != null;
+  }
+
+  @Override
+  void startRow(int row) {
+    super.startRow(row);
+    if (eye != null) eye.startRow(row);
   }
 
   @Override
@@ -57,15 +76,39 @@ final class LoopDuelAgents extends LaneAgents {
 
   @Override
   void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
-    LaneAgents opponents = all[1 - self];
+    if (policy.needsAges()) age(self, readAt, observation.ownAge);
+    if (eye != null) believe(vectors);
+    else see(all[1 - self], offers, vectors, readAt);
+  }
+
+  /** Decides upon what is believed. */
+  private void believe(LaneVectors vectors) {
+    float[] own = seen();
+    int from = seenFrom();
+    eye.look(
+        vectors,
+        decides,
+        own,
+        from + LaneObservation.X * WORLDS,
+        from + LaneObservation.Y * WORLDS,
+        forecast == null ? null : forecast.actsS());
+    observation.seeFromOwn(LaneObservation.X, eye.northM());
+    observation.seeFromOwn(LaneObservation.Y, eye.eastM());
+    if (policy.needsVelocity()) {
+      observation.see(LaneObservation.VX, eye.northMps(), 0, own, from + LaneObservation.VX * WORLDS);
+      observation.see(LaneObservation.VY, eye.eastMps(), 0, own, from + LaneObservation.VY * WORLDS);
+    }
+    if (policy.needsAges()) System.arraycopy(eye.ageS(), 0, observation.opponentAge, 0, WORLDS);
+    policy.decide(observation, decided, 0, eye.heading(), 0, decidedNow, 0);
+  }
+
+  /** Decides upon what is read. */
+  private void see(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     for (int what = 0; what < (policy.needsVelocity() ? LaneObservation.READ : LaneObservation.VX); what++) {
       int from = seenFrom() + what * WORLDS;
       observation.see(what, opponents.seen(), from, seen(), from);
     }
-    if (policy.needsAges()) {
-      age(self, readAt, observation.ownAge);
-      age(1 - self, readAt, observation.opponentAge);
-    }
+    if (policy.needsAges()) age(1 - self, readAt, observation.opponentAge);
     if (!together) know(opponents, vectors, offers.joinedAt);
     policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
   }

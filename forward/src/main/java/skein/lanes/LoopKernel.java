@@ -4,6 +4,8 @@ import static jdk.incubator.vector.VectorOperators.GT;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 
+import java.util.Arrays;
+import java.util.Comparator;
 import jdk.incubator.vector.IntVector;
 import skein.forward.TabledDelays;
 
@@ -22,6 +24,9 @@ final class LoopKernel {
   private final double periodS;
   private final LaneOffers offers;
   private final LaneAgents[] agents;
+
+  /** The same; those who see come last. */
+  private final LaneAgents[] turns;
   private final Scoreboard scores;
   private final boolean withVelocity, withAges;
 
@@ -40,6 +45,8 @@ final class LoopKernel {
    */
   LoopKernel(LoopLanes loop, LaneAgents[] agents, Scoreboard scores) {
     this.agents = agents;
+    turns = agents.clone();
+    Arrays.sort(turns, Comparator.comparing(LaneAgents::sees));
     this.scores = scores;
     offers = loop.offers();
     periodS = loop.periodS();
@@ -81,9 +88,13 @@ final class LoopKernel {
         // Reading them has flown the vehicles to the row's begin, if that is their way.
         if (!isScored) score(row);
         isScored = true;
-        for (LaneAgents each : agents) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);
+        for (LaneAgents each : turns) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);
         int end = grainsToEnd(row);
-        for (LaneAgents each : agents) if (offers.isFor(each.self)) each.command(row, offers, vectors, end);
+        for (LaneAgents each : turns)
+          if (offers.isFor(each.self)) {
+            if (each.sees()) each.choose(agents, offers, vectors, readAt);
+            each.command(row, offers, vectors, end);
+          }
       }
       if (!isScored) score(row);
     }

@@ -112,7 +112,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
         loop.replaced(vehicle, number)
         loop.controllers(vehicle).acknowledged()
       case Wake => loop.controllers(vehicle).goOn()
-      case kind => trackers(vehicle).foreach(Rollout.seeing(kind, number, _))
+      case kind => trackers(vehicle).foreach(_.handle(kind, number))
 
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
@@ -134,13 +134,6 @@ object Rollout:
     (math.floor((durationS - 10 + 1e-9) / periodS) + 1) * periodS
 
   private[skein] val Never: Long = Long.MaxValue
-
-  /** What happens to a vehicle's images. */
-  private def seeing(kind: Int, number: Int, tracker: CameraTracker): Unit = kind match
-    case DuelWorld.Look          => tracker.look(number)
-    case DuelWorld.Exposed       => tracker.exposed(number)
-    case DuelWorld.ImageReceived => tracker.imageReceived(number)
-    case DuelWorld.Recognised    => tracker.recognised(number)
 
 /** Adds up distances as they come. */
 private[skein] final class Score(captureRadiusM: Double = 0.0, last10sFromS: Double = 0.0):

@@ -2,135 +2,119 @@ package skein.lanes
 
 import java.util.Arrays
 import skein.formula.Untraceable
-import skein.forward.{Duelist, CameraTracker}
+import skein.forward.Duelist
 import skein.fusion.{SensorFormulas, SensorModel}
 
-/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same images at
-  * the same times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`.
-  * Mutable.
+/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds. Compiled from
+  * [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. Which images are taken, and
+  * when they enter the belief, [[TimetableEye]] knows where that is the same in all worlds, and [[LoopEye]]
+  * where it is not. Mutable.
   */
-private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist):
+private[lanes] abstract class CameraTrackerLanes(
+    forms: CameraTrackerLanes.Forms,
+    own: Duelist,
+    opponent: Duelist
+):
   import CameraTrackerLanes.*
-  import TimetableAgents.WORLDS
 
-  private val expose = forms.detected.call
-  private val update = forms.joined.call
-  private val decide = forms.decidedUpon.call
+  private val detected     = forms.detected.call
+  private val joined       = forms.joined.call
+  private val decided      = forms.decidedUpon.call
+  private val ownDown      = everywhere(own.altitudeDownM)
+  private val opponentDown = everywhere(opponent.altitudeDownM)
+  private val startX       = everywhere(opponent.startX)
+  private val startY       = everywhere(opponent.startY)
+  private val startAxis    =
+    StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
 
-  private val images         = Array.fill(CameraTracker.Ring)(Array.emptyFloatArray)
-  private val validS         = Array.ofDim[Float](CameraTracker.Ring)
-  private var newest, before = Array.ofDim[Float](Belief * WORLDS)
-  private var replayed       = Array.ofDim[Float](Belief * WORLDS)
-  private val ownDown        = everywhere(own.altitudeDownM)
-  private val opponentDown   = everywhere(opponent.altitudeDownM)
-  private val startX         = everywhere(opponent.startX)
-  private val startY         = everywhere(opponent.startY)
-  private val bearing, range = Array.ofDim[Float](WORLDS)
-  private val nowS, aheadS   = Array.ofDim[Float](WORLDS)
-  private val exposedS       = Array.ofDim[Float](WORLDS)
+  /** The belief, and that before the newest image entered. */
+  protected var newest, before: Array[Float] = Array.ofDim(Belief * WORLDS)
+
+  /** The errors of an image that is taken. */
+  protected val bearing, range: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** When an image was taken that enters the belief, s since the start. */
+  protected val takenS: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** When it is decided, s since the start; and [[SensorFormulas.decidedUpon]]'s `aheadS`. */
+  protected val nowS, aheadS: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** Where the camera looks, rad, and where it would after a decision. */
+  protected val axis, newAxis: Array[Float] = Array.ofDim[Float](WORLDS)
 
   /** What is decided upon; velocities are the opponent's own. */
   val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
   val heading: Directions                                  = Directions(WORLDS)
 
-  /** Where the camera looks, rad. */
-  protected val axis: Array[Float] = Array.ofDim[Float](WORLDS)
-
-  /** By world, whether an image shows the opponent: 1 or 0. */
-  protected def found(image: Int): Array[Float] = Arrays.copyOf(images(image), WORLDS)
-
-  expose.input(0, axis, 0)
-  expose.input(3, ownDown, 0)
-  expose.input(6, opponentDown, 0)
-  expose.input(7, bearing, 0)
-  expose.input(8, range, 0)
-  update.input(Belief + Detection, exposedS, 0)
-  decide.input(Belief, startX, 0)
-  decide.input(Belief + 1, startY, 0)
-  decide.input(Belief + 2, opponentDown, 0)
-  decide.input(Belief + 5, ownDown, 0)
-  decide.input(Belief + 6, nowS, 0)
-  decide.input(Belief + 7, aheadS, 0)
+  detected.input(0, axis, 0)
+  detected.input(3, ownDown, 0)
+  detected.input(6, opponentDown, 0)
+  detected.input(7, bearing, 0)
+  detected.input(8, range, 0)
+  joined.input(Belief + Detection, takenS, 0)
+  decided.input(Belief, startX, 0)
+  decided.input(Belief + 1, startY, 0)
+  decided.input(Belief + 2, opponentDown, 0)
+  decided.input(Belief + 5, ownDown, 0)
+  decided.input(Belief + 6, nowS, 0)
+  decided.input(Belief + 7, aheadS, 0)
   for (array, output) <-
-      Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, axis).zipWithIndex
-  do decide.output(output, array, 0)
+      Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, newAxis).zipWithIndex
+  do decided.output(output, array, 0)
 
-  def start(): Unit =
+  /** Nothing is known but where the opponent starts. */
+  protected def forget(): Unit =
     for state <- Seq(newest, before) do Arrays.fill(state, 0f)
-    Arrays.fill(
-      axis,
-      StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
-    )
+    Arrays.fill(axis, startAxis)
 
-  /** Takes an image.
+  /** What images show that are taken now, with the errors told, if the opponent is found wherever it is in
+    * view.
     *
-    * @param times from `at` on: when; the errors of the bearing and of the range; whether what is in view is
-    *   found
+    * @param oursX the own vehicles' places, from `oursAt` on, m
+    * @param into [[CameraTrackerLanes.Detection]] numbers of each world; first whether the opponent is found,
+    *   1 or 0
     */
-  def expose(
-      image: Int,
-      ours: TimetableVehicles,
+  protected final def detect(
+      oursX: Array[Float],
+      oursY: Array[Float],
       oursAt: Int,
-      theirs: TimetableVehicles,
+      theirsX: Array[Float],
+      theirsY: Array[Float],
       theirsAt: Int,
-      times: Array[Float],
-      at: Int
+      into: Array[Float]
   ): Unit =
-    if images(image).length == 0 then images(image) = Array.ofDim[Float](Detection * WORLDS)
-    validS(image) = times(at)
-    Arrays.fill(bearing, times(at + 1))
-    Arrays.fill(range, times(at + 2))
-    expose.input(1, ours.seenX, oursAt)
-    expose.input(2, ours.seenY, oursAt)
-    expose.input(4, theirs.seenX, theirsAt)
-    expose.input(5, theirs.seenY, theirsAt)
-    expose.outputs(Detection, images(image), 0)
-    expose()
-    if times(at + 3) == 0 then Arrays.fill(images(image), 0, WORLDS, 0f)
+    detected.input(1, oursX, oursAt)
+    detected.input(2, oursY, oursAt)
+    detected.input(4, theirsX, theirsAt)
+    detected.input(5, theirsY, theirsAt)
+    detected.outputs(Detection, into, 0)
+    detected()
 
-  /** What an image showed enters the belief.
+  /** What is believed when images enter that were taken at [[takenS]]. */
+  protected final def join(belief: Array[Float], images: Array[Float], into: Array[Float]): Unit =
+    joined.inputs(0, Belief, belief, 0)
+    joined.inputs(Belief, Detection, images, 0)
+    joined.outputs(Belief, into, 0)
+    joined()
+
+  /** Tells [[northM]] and what follows, and [[newAxis]], at [[nowS]].
     *
-    * @param isOlder whether it was taken before the one that entered last
+    * @param x where the own vehicles are, from `xAt` on, m
     */
-  def join(image: Int, isOlder: Boolean, last: Int): Unit =
-    if isOlder then
-      step(before, image, replayed)
-      step(replayed, last, newest)
-      val free = before
-      before = replayed
-      replayed = free
-    else
-      val free = before
-      before = newest
-      newest = free
-      step(before, image, newest)
-
-  private def step(from: Array[Float], image: Int, into: Array[Float]): Unit =
-    Arrays.fill(exposedS, validS(image))
-    update.inputs(0, Belief, from, 0)
-    update.inputs(Belief, Detection, images(image), 0)
-    update.outputs(Belief, into, 0)
-    update()
-
-  /** Tells [[northM]] and what follows, and turns the camera there.
-    *
-    * @param nowS since the start
-    * @param aheadS see [[SensorFormulas.decidedUpon]]
-    */
-  def look(ours: TimetableVehicles, oursAt: Int, nowS: Float, aheadS: Float): Unit =
-    Arrays.fill(this.nowS, nowS)
-    Arrays.fill(this.aheadS, aheadS)
-    decide.inputs(0, Belief, newest, 0)
-    decide.input(Belief + 3, ours.seenX, oursAt)
-    decide.input(Belief + 4, ours.seenY, oursAt)
-    decide()
+  protected final def decideUpon(x: Array[Float], xAt: Int, y: Array[Float], yAt: Int): Unit =
+    decided.inputs(0, Belief, newest, 0)
+    decided.input(Belief + 3, x, xAt)
+    decided.input(Belief + 4, y, yAt)
+    decided()
 
   private def everywhere(value: Double) = Array.fill(WORLDS)(value.toFloat)
 
 private[lanes] object CameraTrackerLanes:
+  private val WORLDS = LanePolicy.WORLDS
+
   /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
-  private val Belief    = 35
-  private val Detection = 13
+  val Belief    = 35
+  val Detection = 13
 
   /** Below, what floats leave of a covariance is no covariance. */
   private val LeastSd = 2e-4

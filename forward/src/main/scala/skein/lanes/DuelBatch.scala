@@ -10,6 +10,7 @@ import skein.forward.{
 }
 import skein.policy.Policy
 import skein.simd.LaneMath
+import skein.units.Expect
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches
   * and maps.
@@ -51,14 +52,25 @@ final class DuelBatch(
       lanes <- LaneDynamics.under(timing, model, duel)
     yield lanes
 
+  /** The vehicles and who sees, if they fly by lanes where every world has delays of its own. */
+  private val apart: Either[String, (LaneDynamics, DuelEyes)] =
+    for
+      plant <- plant
+      eyes  <- eyes
+      _     <- Expect.that(!sees || plant.fliesAlone):
+        "quadrotors of which one sees by a sensor fly by lanes where candidates share episodes"
+      _ <- Expect.that(!sees || !timing.isInstanceOf[LoopTiming.Paused]):
+        "who sees by a sensor while the world waits flies by lanes where candidates share episodes"
+      _ <- Expect.that(eyes.pursuer.isEmpty || eyes.evader.isEmpty):
+        "two that see one another by sensors fly by lanes where candidates share episodes"
+    yield (plant, eyes)
+
   /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  =
-      if sees then scalar
-      else
-        SteppedRollouts.of(model, vehicles).map(SteppedFlyer(duel, timing, _)).getOrElse:
-          plant.fold(_ => scalar, LoopFlyer(duel, timing, _, scalar))
+      SteppedRollouts.of(model, vehicles).filterNot(_ => sees).map(SteppedFlyer(duel, timing, _)).getOrElse:
+        apart.fold(_ => scalar, LoopFlyer(duel, timing, _, _, scalar))
     val together: DuelFlyer = (lanes, eyes) match
       case (Right(kind), Right(seen)) => TimetableFlyer(duel, timing, kind, seen, timetables, alone)
       case _                          => alone
@@ -95,8 +107,7 @@ final class DuelBatch(
   /** Why no lanes fly over a link. */
   private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] =
     if shareEpisodes && lanes.isRight then None
-    else if sees && !shareEpisodes then Some(SeesAlone)
-    else plant.fold(Some(_), LoopSupport.refusal(timing, 2, link, _))
+    else apart.fold(Some(_), (plant, _) => LoopSupport.refusal(timing, 2, link, plant))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
@@ -140,8 +151,6 @@ final class DuelBatch(
       val flyer = if together then worker.together else worker.alone
       flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
     outcomes
-
-  private inline val SeesAlone = "who sees by a sensor flies by lanes where candidates share episodes"
 
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostBytes = 64L << 20

@@ -2,7 +2,6 @@ package skein.lanes
 
 import skein.formula.Untraceable
 import skein.forward.{Delays, Duel, LoopTiming, Rollout, TabledDelays, VelocityResponse}
-import skein.fusion.SensorModel
 import skein.policy.Policy
 
 /** Flies a batch of worlds on one thread. Mutable. */
@@ -139,8 +138,13 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
 
 /** By [[LoopDuelKernel]], where a world's link allows. */
-private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamics, other: DuelFlyer)
-    extends LaneFlyer(other):
+private final class LoopFlyer(
+    duel: Duel,
+    timing: LoopTiming,
+    model: LaneDynamics,
+    eyes: DuelEyes,
+    other: DuelFlyer
+) extends LaneFlyer(other):
 
   protected def canFly(link: Delays): Boolean = LoopSupport.refusal(timing, 2, link, model).isEmpty
 
@@ -149,8 +153,8 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
       private val keys    = Array.ofDim[Int](batch)
       private val links   = Array.ofDim[TabledDelays](batch)
       private val kernels = BySlowest: maxDelayS =>
-        val loop = LoopLanes(timing, 2, duel.durationS, maxDelayS)
-        LoopDuelKernel(duel, loop, model, pursuers, evaders, asked)
+        val loop = LoopLanes(timing, 2, duel.durationS, maxDelayS, sees = !eyes.isNobody)
+        LoopDuelKernel(duel, loop, model, pursuers, evaders, asked, eyes)
 
       protected def kernel: LoopDuelKernel = kernels(links)
 
@@ -181,8 +185,8 @@ private final class TimetableFlyer(
         pursuers,
         evaders,
         asked,
-        eyes.pursuer.map(CameraTrackerLanes(_, duel.pursuer, duel.evader)).orNull,
-        eyes.evader.map(CameraTrackerLanes(_, duel.evader, duel.pursuer)).orNull
+        eyes.pursuer.map(TimetableEye(_, duel.pursuer, duel.evader)).orNull,
+        eyes.evader.map(TimetableEye(_, duel.evader, duel.pursuer)).orNull
       )
       private var timetable: Timetable = null
 
@@ -204,27 +208,6 @@ private final class TimetableFlyer(
             )
 
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
-
-/** By which alone the two of a duel know of one another, where they are not told. */
-private final case class DuelEyes(
-    evader: Option[CameraTrackerLanes.Forms],
-    pursuer: Option[CameraTrackerLanes.Forms]
-):
-  def isNobody: Boolean = evader.isEmpty && pursuer.isEmpty
-
-private object DuelEyes:
-  /** @return or why they do not see by lanes
-    */
-  def of(duel: Duel): Either[String, DuelEyes] =
-    def forms(eye: Option[SensorModel]) =
-      eye.fold[Either[
-        String,
-        Option[CameraTrackerLanes.Forms]
-      ]](Right(None))(CameraTrackerLanes.of(_).map(Some(_)))
-    for
-      evader  <- forms(duel.evader.eye)
-      pursuer <- forms(duel.pursuer.eye)
-    yield DuelEyes(evader, pursuer)
 
 /** The timetables used last, for all threads.
   *

@@ -123,7 +123,10 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
     loop.timing match
       // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
       case stream: LoopTiming.Stream
-          if stream.periodS >= LagDynamics.LeastPeriodS && LagVehicles.canFly(model, loop.longestS) =>
+          if !loop.sees && stream.periodS >= LagDynamics.LeastPeriodS && LagVehicles.canFly(
+            model,
+            loop.longestS
+          ) =>
         val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
         LagVehicles(duelist, model, stream.periodS, loop.longestS, earliestS)
       case _ => LagFlights(duelist, model, loop)

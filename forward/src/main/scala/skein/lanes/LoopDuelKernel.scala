@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Duel, TabledDelays}
+import skein.forward.{Duel, Duelist, TabledDelays}
 
 /** Duels by [[LoopKernel]].
   *
@@ -8,6 +8,7 @@ import skein.forward.{Duel, TabledDelays}
   * @param model one that [[LoopSupport]] does not refuse
   * @param pursuers take the parameters of each world's pursuer before it flies
   * @param asked what they are judged by
+  * @param eyes of one of the two at most
   */
 private[lanes] final class LoopDuelKernel(
     duel: Duel,
@@ -15,17 +16,20 @@ private[lanes] final class LoopDuelKernel(
     model: LaneDynamics,
     pursuers: LanePolicy,
     evaders: LanePolicy,
-    asked: Set[DuelNumber]
+    asked: Set[DuelNumber],
+    eyes: DuelEyes = DuelEyes.Nobody,
+    newEye: LoopDuelKernel.NewEye = LoopEye(_, _, _, _, _, _)
 ) extends DuelKernel(duel.durationS, loop.periodS, asked):
 
-  private val kernel = LoopKernel(
-    loop,
-    Array(
-      LoopDuelAgents(0, duel.evader, loop, model, evaders, evaderEffortRad),
-      LoopDuelAgents(1, duel.pursuer, loop, model, pursuers, pursuerEffortRad)
-    ),
-    scores
-  )
+  private val evader  = LoopDuelAgents(0, duel.evader, loop, model, evaders, evaderEffortRad)
+  private val pursuer = LoopDuelAgents(1, duel.pursuer, loop, model, pursuers, pursuerEffortRad)
+
+  private val eye: Option[LoopEye] =
+    eyes.evader.map(newEye(_, duel.evader, duel.pursuer, loop, evader, pursuer)).orElse:
+      eyes.pursuer.map(newEye(_, duel.pursuer, duel.evader, loop, pursuer, evader))
+  for seen <- eye do (if eyes.evader.isDefined then evader else pursuer).seeBy(seen)
+
+  private val kernel = LoopKernel(loop, Array(evader, pursuer), scores)
 
   /** Flies one episode in each of [[DuelKernel.WORLDS]] worlds.
     *
@@ -35,4 +39,9 @@ private[lanes] final class LoopDuelKernel(
     */
   def fly(keys: Array[Int], links: Array[TabledDelays], captureRadiusM: Float): Unit =
     captureWithin(captureRadiusM)
+    eye.foreach(_.start(keys, links))
     kernel.fly(keys, links)
+
+private[lanes] object LoopDuelKernel:
+  /** Of an own and an opponent's duelist, and of the agents that fly as they. */
+  type NewEye = (CameraTrackerLanes.Forms, Duelist, Duelist, LoopLanes, LaneAgents, LaneAgents) => LoopEye

@@ -8,6 +8,7 @@ import skein.forward.{Delays, Duelist, LoopTiming, Steering, TabledDelays}
   *
   * @param vehicles how many are asked
   * @param maxDelayS the longest one-way delay of any link flown over
+  * @param sees whether images are taken, for which vehicles are looked at whenever it is
   * @param shortCut whether regular stretches of `stream` are told by lanes; without, the same is told world
   *   by world
   */
@@ -16,6 +17,7 @@ private[lanes] final class LoopLanes(
     vehicles: Int,
     val durationS: Double,
     maxDelayS: Double,
+    val sees: Boolean = false,
     shortCut: Boolean = true
 ):
   /** How the vehicles' readings are carried forward, if they are. */
@@ -55,8 +57,8 @@ private[lanes] final class LoopLanes(
   /** A command is under way for so long at most, s. */
   def longestS: Double = 2 * LoopLanes.MostS
 
-  /** Periods before, of which a reading may ask for the flight: those from a reading to its decision, and
-    * from the decision before that to when its command acts.
+  /** Periods before, of which a reading or an image may ask for the flight: those from a reading to its
+    * decision, and from the decision before that to when its command acts.
     */
   val keptRows: Int =
     val kept = LoopLanes.readingS(timing, vehicles, maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Duelist, Engagement, Vehicle, VelocityResponse}
+import skein.forward.{DelayTable, Delays, Duelist, Engagement, TabledDelays, Vehicle, VelocityResponse}
 import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
 
@@ -29,3 +29,10 @@ private[lanes] object StandingStill:
       def y: Double                                    = 0
       def vx: Double                                   = 0
       def vy: Double                                   = 0
+
+  /** The link of the flight whose times are told. Mutable. */
+  final class Link extends Delays:
+    var delays: TabledDelays = DelayTable.none
+
+    def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+      delays.delayNs(worldKey, line, step, number, sentAtNs)

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.Comparator
-import skein.forward.{CameraTracker, Delays, LoopTiming, Rollout}
+import skein.forward.{Delays, ImageTiming, LoopTiming, Rollout}
 import skein.fusion.SensorModel
 import skein.vehicle.ConstantVelocity
 
@@ -20,8 +20,7 @@ import skein.vehicle.ConstantVelocity
   * @param times of each operation: of what happens to a vehicle, what its [[EventClock]] tells; of a
   *   decision, the time since the one before, and in a duel the ages of the own and of the opponent's
   *   reading; by who sees, the age of the own reading, the time, and until when a belief is carried
-  *   ([[CameraTrackerLanes.look]]); of an image what [[CameraTrackerLanes.expose]] takes; of a score, the
-  *   time; s
+  *   ([[TimetableEye.look]]); of an image what [[TimetableEye.expose]] takes; of a score, the time; s
   * @param views what is decided and scored upon: the places of all vehicles' readings, one view after the
   *   other
   * @param propagations by which readings are carried forward, in loops that predict
@@ -237,7 +236,7 @@ private final class TimetableCompiler(
 
   private def expose(event: Note, at: Int): Unit =
     val view = event.view
-    operation(EXPOSE, event.agent, tell(view), event.number % CameraTracker.Ring)
+    operation(EXPOSE, event.agent, tell(view), event.number % ImageTiming.Ring)
     times(size * numbers + 1) = event.elapsedS.toFloat
     times(size * numbers + 2) = event.ownAgeS.toFloat
     times(size * numbers + 3) = event.opponentAgeS.toFloat
@@ -248,9 +247,9 @@ private final class TimetableCompiler(
     operation(
       JOIN,
       event.agent,
-      event.number % CameraTracker.Ring,
+      event.number % ImageTiming.Ring,
       event.opponent,
-      event.from.max(0) % CameraTracker.Ring
+      event.from.max(0) % ImageTiming.Ring
     )
     size += 1
 

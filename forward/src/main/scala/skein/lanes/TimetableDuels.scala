@@ -17,8 +17,8 @@ private[lanes] final class TimetableDuels(
     pursuerPolicy: LanePolicy,
     evaderPolicy: LanePolicy,
     asked: Set[DuelNumber] = DuelNumber.all,
-    pursuerEye: CameraTrackerLanes = null,
-    evaderEye: CameraTrackerLanes = null
+    pursuerEye: TimetableEye = null,
+    evaderEye: TimetableEye = null
 ) extends DuelKernel(duel.durationS, timing.periodS, asked):
   private val kernel = TimetableKernel(
     Array(

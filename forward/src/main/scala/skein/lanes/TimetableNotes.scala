@@ -3,7 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
-import skein.forward.{Grounds, LoopObserver, CameraTracker}
+import skein.forward.{Grounds, LoopObserver}
 import skein.fusion.{Exposure, SensorModel}
 import skein.units.Instant
 
@@ -97,9 +97,8 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
         val now = Instant.ofNanos(atNs)
         forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
 
-  // By vehicle: when its images were taken, and which of them joined last and before that.
-  private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else CameraTracker.Ring)
-  private val newest, runnerUp = Array.fill(vehicles)(-1)
+  /** Of each vehicle's images. */
+  private val orders = Array.fill(vehicles)(ImageOrder())
 
   override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
     val seen  = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
@@ -108,21 +107,14 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     noted.elapsedS = SensorModel.normal(image.bearing)
     noted.ownAgeS = SensorModel.normal(image.range)
     noted.opponentAgeS = if image.found < eyes(vehicle).detection then 1 else 0
-    exposedNs(vehicle)(number % CameraTracker.Ring) = atNs
+    orders(vehicle).taken(number, atNs)
 
   override def recognised(vehicle: Int, image: Int, atNs: Long): Unit =
-    def takenNs(number: Int) =
-      if number < 0 then Long.MinValue else exposedNs(vehicle)(number % CameraTracker.Ring)
-    val isOlder = takenNs(image) < takenNs(newest(vehicle))
-    // Two are on the way at most, and whichever is overtaken twice is dropped.
-    require(takenNs(image) >= takenNs(runnerUp(vehicle)), s"image $image is older than two others")
+    val order = orders(vehicle)
+    order.known(image)
     val noted = note(JOIN, vehicle, atNs * 1e-9, image)
-    noted.opponent = if isOlder then 1 else 0
-    noted.from = newest(vehicle)
-    if isOlder then runnerUp(vehicle) = image
-    else
-      runnerUp(vehicle) = newest(vehicle)
-      newest(vehicle) = image
+    noted.opponent = if order.isOlder then 1 else 0
+    noted.from = order.last
 
   override def commanded(
       vehicle: Int,

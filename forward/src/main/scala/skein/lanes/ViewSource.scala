@@ -12,7 +12,7 @@ import skein.forward.*
 private[lanes] final class ViewSource private (
     timing: LoopTiming.Stream,
     world: DuelWorld,
-    link: ViewSource.Link,
+    link: StandingStill.Link,
     durationS: Double,
     ahead: Int
 ) extends JoiningRun(timing, world):
@@ -97,7 +97,7 @@ private[lanes] object ViewSource:
       maxDelayS: Double,
       ahead: Int
   ): ViewSource =
-    val link     = Link()
+    val link     = StandingStill.Link()
     val longestS = timing.asking.timeoutS.min(2 * maxDelayS)
     val world    = DuelWorld(
       StandingStill.engagement(vehicles, durationS),
@@ -111,10 +111,3 @@ private[lanes] object ViewSource:
       ring = 2 * (longestS / timing.periodS).ceil.toInt + timing.asking.window + 2
     )
     new ViewSource(timing, world, link, durationS, ahead)
-
-  /** That of the flight. */
-  private final class Link extends Delays:
-    var delays: TabledDelays = DelayTable.none
-
-    def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
-      delays.delayNs(worldKey, line, step, number, sentAtNs)

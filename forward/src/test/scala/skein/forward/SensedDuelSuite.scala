@@ -94,22 +94,40 @@ class SensedDuelSuite extends munit.FunSuite:
 
   private val (pursuer, evader) = (PaperPursuer(), PaperEvader())
 
-  test("a batch flies eyes whose worlds have delays of their own by the scalar engine, and says so"):
-    val batch = DuelBatch(duel(Some(camera)), predictive, Reduced.AirSim, threads = 1)
+  for timing <- Seq(LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.stream(0.1), predictive) do
+    test(s"${timing.productPrefix}: worlds with delays of their own fly by lanes as by the scalar engine"):
+      // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
+      val seeing = duel(Some(camera))
+      val beside = seeing.copy(evader = seeing.evader.copy(startY = 2), durationS = 12)
+      val batch  = DuelBatch(beside, timing, Reduced.AirSim, threads = 1)
+      val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn))
+      assert(engine.startsWith("SIMD, "), engine)
+      val worlds = new DuelWorlds:
+        def size: Int                   = 40
+        def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
+        def link(world: Int): Delays    = DelayTable.vpn
+        def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
+        def evader(world: Int): Policy  = SensedDuelSuite.this.evader
+      val outcomes = batch.fly(worlds)
+      val rollout  = Rollout(beside, timing, DelayTable.vpn, Reduced.AirSim)
+      for world <- 0 until worlds.size by 7 do
+        val alone = rollout.fly(worlds.key(world))
+        assertEqualsDouble(outcomes.meanLast10sM(world), alone.meanLast10sM, 5e-3, s"world $world")
+
+  test("eyes that no lanes know fly by the scalar engine, and are told of"):
+    def told(duel: Duel, model: VelocityResponse) =
+      DuelBatch(duel, predictive, model, threads = 1)
+        .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn))
+    val seeing = duel(Some(camera))
+    val both   = told(seeing.copy(evader = seeing.evader.copy(eye = Some(camera))), Reduced.AirSim)
     assertEquals(
-      batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)),
-      "scalar: who sees by a sensor flies by lanes where candidates share episodes"
+      both,
+      "scalar: two that see one another by sensors fly by lanes where candidates share episodes"
     )
-    val worlds = new DuelWorlds:
-      def size: Int                   = 3
-      def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
-      def link(world: Int): Delays    = DelayTable.vpn
-      def pursuer(world: Int): Policy = PaperPursuer()
-      def evader(world: Int): Policy  = PaperEvader()
-    val outcomes = batch.fly(worlds)
-    for world <- 0 until 3 do
-      val alone = flown(Some(camera), predictive, DelayTable.vpn, world)
-      assertEquals(outcomes.meanLast10sM(world), alone.meanLast10sM.toFloat)
+    assertEquals(
+      told(seeing, VelocityResponses.quadrotor()),
+      "scalar: quadrotors of which one sees by a sensor fly by lanes where candidates share episodes"
+    )
 
   test("a sensor whose errors floats cannot tell from none flies by the scalar engine"):
     val batch  = DuelBatch(duel(Some(exact)), predictive, Reduced.AirSim, threads = 1)

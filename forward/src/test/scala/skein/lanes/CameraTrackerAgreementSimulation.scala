@@ -3,9 +3,11 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.ErrorBound
 import skein.forward.*
+import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Instant
+import skein.vehicle.ReducedModel
 
 /** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader
   * in the same images of every world, and take the same decisions; but where a bearing, a range, or a number
@@ -26,6 +28,37 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     durationS = 12
   )
 
+  private val seeingPursuer = duel.copy(durationS = 6)
+  private val seeingEvader  =
+    seeingPursuer.copy(pursuer = Duel.paper.pursuer, evader = duel.evader.copy(eye = Some(camera)))
+
+  private val plants = Seq[(String, VelocityResponse)](
+    "lag"    -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
+    "no lag" -> VelocityResponses.Ideal,
+    "drag"   -> ReducedResponse(ReducedModel.AirSim),
+    "car"    -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
+  )
+
+  private def ownLoops(model: VelocityResponse) = Seq(
+    LoopTiming.Sequential(),
+    LoopTiming.Futures(),
+    LoopTiming.stream(0.1),
+    LoopTiming.Stream(decideThenPace = true),
+    LoopTiming.Predictive(predictor = model.predictor)
+  )
+
+  private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+
+  private def isWild(name: String) = name.startsWith("300 ms")
+
+  private val links = Seq[(String, DelayTable)](
+    "none"                        -> DelayTable.none,
+    "direct"                      -> DelayTable.direct,
+    "vpn"                         -> DelayTable.vpn,
+    "110 ms and 60 ms of jitter"  -> wild(110, 60),
+    "300 ms and 300 ms of jitter" -> wild(300, 300)
+  )
+
   private def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.004 * (world % 128))
   private def evader(world: Int): Policy  = PaperEvader(7 + 0.01 * (world % 128))
 
@@ -42,7 +75,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     test(s"${timing.productPrefix}, episode $episode: the same is found and decided in each world compared"):
       val key      = WorldRandom.key(5, 0, episode)
       val forms    = CameraTrackerLanes.of(camera).fold(fail(_), identity)
-      val eye      = LoggedEye(forms, duel.pursuer, duel.evader)
+      val eye      = SharedEye(forms, duel.pursuer, duel.evader)
       val lanes    = DuelAgreement.taken(pursuer, evader)
       val vehicles = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
       val flown    = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0), DuelNumber.all, eye, null)
@@ -64,7 +97,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
         flown
       ):
         override def difference(looked: Event.Looked, world: Int): Option[Agreement.Departure] =
-          if looked.k < eye.looks.size then found(looked, eye.looks(looked.k), world) else None
+          if looked.k < eye.looks.size then found(looked, eye.looks(looked.k)(world)) else None
       agreement.check(s"episode $episode", 0 until worlds by 5)
 
   /** What the front of forward simulation flies is this, to the bit. */
@@ -81,19 +114,84 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     assert(told.startsWith("SIMD"), told)
     assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel(DuelNumber.MeanDistance).toSeq)
 
+  for
+    (plant, model) <- plants
+    timing         <- ownLoops(model)
+    (name, link)   <- links
+    (who, seeing)  <- Seq("pursuer" -> seeingPursuer, "evader" -> seeingEvader)
+    isStream = timing.isInstanceOf[LoopTiming.Stream]
+    if (plant, who) match
+      case ("lag", "pursuer") => isStream || name == "vpn" || isWild(name)
+      case ("lag", _)         => name == "vpn"
+      case (_, who)           => who == "pursuer" && name == "vpn" && timing != LoopTiming.Sequential()
+  do
+    test(
+      s"own delays, $plant, $timing over $name, the $who sees: the same is found and decided in each world compared"
+    ):
+      agreeAlone(seeing, timing, model, link)
+
+  for timing <- Seq(LoopTiming.Sequential(2.5), LoopTiming.Futures(0.03), LoopTiming.stream(0.03)) do
+    test(
+      s"own delays, $timing, images every 30 ms: the same is found and decided in each world compared"
+    ):
+      val often = camera.copy(everyS = 1.0 / 30)
+      agreeAlone(
+        seeingPursuer.copy(pursuer = seeingPursuer.pursuer.copy(eye = Some(often))),
+        timing,
+        Reduced.AirSim,
+        DelayTable.vpn
+      )
+
+  /** Worlds with delays of their own. */
+  private def agreeAlone(seeing: Duel, timing: LoopTiming, model: VelocityResponse, link: DelayTable): Unit =
+    val seed            = 8
+    val lanes           = DuelAgreement.taken(pursuer, evader)
+    var eye: OwnEye     = null
+    def key(world: Int) = WorldRandom.key(seed, 0, world)
+    val flown           = DuelAgreement.flownAlone(
+      seeing,
+      timing,
+      model,
+      _ => link,
+      key(_),
+      0,
+      lanes,
+      (forms, own, opponent, loop, ours, theirs) =>
+        eye = OwnEye(forms, own, opponent, loop, ours, theirs)
+        eye
+    )
+    val agreement = new DuelAgreement(
+      seeing,
+      timing,
+      model,
+      _ => link,
+      key(_),
+      0,
+      Vector(evader, pursuer),
+      lanes,
+      flown
+    ):
+      override def difference(looked: Event.Looked, world: Int): Option[Agreement.Departure] =
+        eye.looks(world).lift(looked.k).flatMap: lanes =>
+          assertEquals(lanes.timeS, looked.timeS, s"seed $seed, world $world, image ${looked.k}")
+          found(looked, lanes)
+    agreement.check(s"seed $seed", 0 until worlds by 16, atLeast = 4)
+    for (looks, world) <- eye.looks.zipWithIndex do
+      assert(looks.size > seeing.durationS, s"seed $seed, world $world: ${looks.size} images")
+
   /** Where an image shows an opponent to the one and not to the other. */
-  private def found(event: Event.Looked, lanes: Looked, world: Int): Option[Agreement.Departure] =
+  private def found(event: Event.Looked, lanes: Looked): Option[Agreement.Departure] =
     val scalar  = event.exposure
     val isFound = camera.measured(Instant.Epoch, scalar).isDefined
     val doubles =
       Array(scalar.axisRad, scalar.ownNed.x, scalar.ownNed.y, scalar.ownNed.z) ++
         Array(scalar.opponentNed.x, scalar.opponentNed.y, scalar.opponentNed.z, 0.0, 0.0)
-    val floats = lanes.inputs(world)
+    val floats = lanes.inputs.clone
     floats(0) += 2 * math.Pi * math.rint((doubles(0) - floats(0)) / (2 * math.Pi))
     // Until decisions part, all is where it is in doubles.
     val away = doubles.zip(floats).map((x, y) => math.abs(x - y))
-    assert(away.max < Agreement.mostOff(event.timeS), s"world $world: ${away.mkString(", ")} off")
-    Option.when(isFound != (lanes.found(world) > 0)):
+    assert(away.max < Agreement.mostOff(event.timeS), s"at ${event.timeS} s: ${away.mkString(", ")} off")
+    Option.when(isFound != lanes.isFound):
       val detected = lanes.by.detected
       val shown    = Seq(detected.bound.nodes(0))
       val inputs   = detected.inputsOf(doubles)
@@ -106,23 +204,24 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       Agreement.Departure(1, event.k, event.timeS, Vector(1.0 -> 1.0), near)
 
 private object CameraTrackerAgreementSimulation:
-  /** An image that the lanes took, by world. */
+  /** An image that the lanes took in a world.
+    *
+    * @param inputs as the sensor's formula takes them, without errors
+    */
   final class Looked(
       val by: CameraTrackerLanes.Forms,
-      axis: Array[Float],
-      places: Vector[Array[Float]],
-      down: Double
-  )(
-      val found: Array[Float]
-  ):
-    /** As the sensor's formula takes them, without errors. */
-    def inputs(world: Int): Array[Double] =
-      def at(i: Int) = places(i)(world).toDouble
-      Array(axis(world).toDouble, at(0), at(1), down, at(2), at(3), down, 0, 0)
+      val timeS: Double,
+      val inputs: Array[Double],
+      val isFound: Boolean
+  )
 
-  final class LoggedEye(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist)
-      extends CameraTrackerLanes(forms, own, opponent):
-    val looks: ArrayBuffer[Looked] = ArrayBuffer.empty
+  private def inputs(axis: Double, ownX: Double, ownY: Double, x: Double, y: Double, down: Double) =
+    Array(axis, ownX, ownY, down, x, y, down, 0.0, 0.0)
+
+  final class SharedEye(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist)
+      extends TimetableEye(forms, own, opponent):
+    /** By image, then by world. */
+    val looks: ArrayBuffer[Vector[Looked]] = ArrayBuffer.empty
 
     override def expose(
         image: Int,
@@ -133,12 +232,40 @@ private object CameraTrackerAgreementSimulation:
         times: Array[Float],
         at: Int
     ): Unit =
-      def copied(from: Array[Float], at: Int) = java.util.Arrays.copyOfRange(from, at, at + DuelKernel.WORLDS)
-      val places                              = Vector(
-        copied(ours.seenX, oursAt),
-        copied(ours.seenY, oursAt),
-        copied(theirs.seenX, theirsAt),
-        copied(theirs.seenY, theirsAt)
-      )
       super.expose(image, ours, oursAt, theirs, theirsAt, times, at)
-      looks += Looked(forms, axis.clone, places, own.altitudeDownM)(found(image))
+      val shown = found(image)
+      looks += Vector.tabulate(DuelKernel.WORLDS): world =>
+        val (we, they) = (oursAt + world, theirsAt + world)
+        Looked(
+          forms,
+          times(at),
+          inputs(
+            axis(world),
+            ours.seenX(we),
+            ours.seenY(we),
+            theirs.seenX(they),
+            theirs.seenY(they),
+            own.altitudeDownM
+          ),
+          shown(world) > 0
+        )
+
+  final class OwnEye(
+      forms: CameraTrackerLanes.Forms,
+      own: Duelist,
+      opponent: Duelist,
+      loop: LoopLanes,
+      ours: LaneAgents,
+      theirs: LaneAgents
+  ) extends LoopEye(forms, own, opponent, loop, ours, theirs):
+    /** By world, then by image. */
+    val looks: Vector[ArrayBuffer[Looked]] = Vector.fill(DuelKernel.WORLDS)(ArrayBuffer.empty)
+
+    override def keep(n: Int, world: Int): Unit =
+      super.keep(n, world)
+      looks(world) += Looked(
+        forms,
+        takenNs(n)(world) * 1e-9,
+        inputs(axis(world), ourX(world), ourY(world), theirX(world), theirY(world), own.altitudeDownM),
+        isFound(n)(world) && shown(world) > 0
+      )

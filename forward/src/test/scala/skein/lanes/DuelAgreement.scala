@@ -213,7 +213,24 @@ private[skein] object DuelAgreement:
       key: Int => Int,
       captureM: Float = 0
   )(pursuer: Int => Policy, evader: Int => Policy): DuelAgreement =
-    val lanes    = taken(pursuer, evader)
+    val lanes  = taken(pursuer, evader)
+    val kernel = flownAlone(duel, timing, model, link, key, captureM, lanes)
+    DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
+
+  /** The same kernel, when it has flown.
+    *
+    * @param lanes the evader's and the pursuer's
+    */
+  def flownAlone(
+      duel: Duel,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      link: Int => DelayTable,
+      key: Int => Int,
+      captureM: Float,
+      lanes: Vector[LoggedPolicy],
+      newEye: LoopDuelKernel.NewEye = LoopEye(_, _, _, _, _, _)
+  ): LoopDuelKernel =
     val worlds   = Array.range(0, DuelKernel.WORLDS)
     val links    = worlds.map(link)
     val slowestS = links.map(_.maxS).max
@@ -222,16 +239,19 @@ private[skein] object DuelAgreement:
       links.distinct.flatMap(LoopSupport.refusal(timing, 2, _, vehicles)).toSeq,
       Nil
     )
+    val eyes   = DuelEyes.of(duel).fold(munit.Assertions.fail(_), identity)
     val kernel = LoopDuelKernel(
       duel,
-      LoopLanes(timing, 2, duel.durationS, slowestS),
+      LoopLanes(timing, 2, duel.durationS, slowestS, sees = !eyes.isNobody),
       vehicles,
       lanes(1),
       lanes(0),
-      DuelNumber.all
+      DuelNumber.all,
+      eyes,
+      newEye
     )
     kernel.fly(worlds.map(key), links, captureM)
-    DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
+    kernel
 
   /** Lanes that fly these, the evader's first. */
   def taken(pursuer: Int => Policy, evader: Int => Policy): Vector[LoggedPolicy] =

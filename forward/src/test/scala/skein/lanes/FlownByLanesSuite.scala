@@ -88,6 +88,19 @@ class FlownByLanesSuite extends munit.FunSuite:
         assertEquals(word(engine), expected, s"$kind: $engine")
       if said != "scalar" then agree(batch, timing, model, shared)
 
+  for
+    (plant, model)   <- plants
+    timing           <- loops(model)
+    (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
+  do
+    test(s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine says what is told below the table"):
+      val seeing = duel.copy(pursuer = duel.pursuer.copy(eye = Some(GuideCamera.model)))
+      val engine = DuelBatch(seeing, timing, model, threads = 1)
+        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+      val said    = table((worlds, nameOf(timing)))(plant)
+      val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
+      assertEquals(word(engine), if said == "lanes" && isTimed then "lanes" else "scalar", engine)
+
   private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
     val all = new DuelWorlds:
       def size: Int                       = 24

@@ -27,7 +27,7 @@ import skein.vehicle.ReducedModel
       LoopTiming.Futures(),
       LoopTiming.Predictive(predictor = model.predictor)
     )
-    sees <- if shared && name == "lag" then Seq(false, true) else Seq(false)
+    sees <- if name == "lag" then Seq(false, true) else Seq(false)
     mixed = if !shared && name == "lag" then Seq(" over vpn-mixed" -> LinkDelays.vpnMixed) else Nil
     (linked, over) <- Seq[(String, Delays)]("" -> DelayTable.vpn) ++ mixed
     row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${

@@ -1,0 +1,98 @@
+package skein.forward
+
+import skein.fusion.SensorModel
+import skein.simd.WorldRandom
+
+/** When a vehicle's images are taken, and when it is known what they show, as `skein.flow.Frames` and
+  * `Recognise` have it. Nothing of that depends on where the vehicles are. Mutable.
+  */
+private[skein] abstract class ImageTiming(world: DuelWorld, agent: Int, model: SensorModel, link: Delays):
+  import ImageTiming.*
+
+  private val periodNs   = Nanos.of(model.everyS)
+  private val deadlineNs = Nanos.of(model.deadlineS)
+
+  private var key                       = 0
+  private var onTheWay, busy            = 0
+  private var newest, waiting, reported = -1
+
+  /** Back to the start of an episode. Images are due from then on, unless the world waits for each. */
+  def start(worldKey: Int): Unit =
+    key = WorldRandom.key(worldKey, Stream, agent)
+    onTheWay = 0; busy = 0; newest = -1; waiting = -1; reported = -1
+    if !world.standsStill then world.schedule(0, DuelWorld.Look, agent, 0)
+
+  /** An image is taken now. */
+  protected def taken(number: Int): Unit
+
+  /** It is known now what an image shows; numbers grow. */
+  protected def known(number: Int): Unit
+
+  /** Handles an event of an image.
+    *
+    * @param kind of [[DuelWorld]]
+    */
+  final def handle(kind: Int, number: Int): Unit = kind match
+    case DuelWorld.Look          => look(number)
+    case DuelWorld.Exposed       => exposed(number)
+    case DuelWorld.ImageReceived => received(number)
+    case DuelWorld.Recognised    => recognised(number)
+
+  private def look(number: Int): Unit =
+    world.schedule((number + 1) * periodNs, DuelWorld.Look, agent, number + 1)
+    if onTheWay < MostOnTheWay then
+      onTheWay += 1
+      val delay = link.delayNs(key, Delays.question(0, agent), number, number, world.nowNs)
+      world.schedule(world.nowNs + delay, DuelWorld.Exposed, agent, number)
+
+  private def exposed(number: Int): Unit =
+    taken(number)
+    val delay = link.delayNs(key, Delays.answer(0, agent), number, number, world.nowNs)
+    world.schedule(world.nowNs + delay, DuelWorld.ImageReceived, agent, number)
+
+  /** The newest image waits for whoever recognises. */
+  private def received(number: Int): Unit =
+    onTheWay -= 1
+    if number > newest then
+      newest = number
+      if busy < model.workers then recognise(number) else waiting = number
+
+  private def recognise(number: Int): Unit =
+    busy += 1
+    world.schedule(world.nowNs + takesNs(number), DuelWorld.Recognised, agent, number)
+
+  private def recognised(number: Int): Unit =
+    busy -= 1
+    if number > reported && takesNs(number) <= deadlineNs then
+      reported = number
+      known(number)
+    if waiting >= 0 then
+      recognise(waiting)
+      waiting = -1
+
+  private def takesNs(number: Int) = model.takes.quantile(even(number, Takes)).toNanos
+
+  /** Evenly drawn from 0 to 1 for an image.
+    *
+    * @param what [[ImageTiming.Found]] and so on
+    */
+  protected final def even(number: Int, what: Int): Double =
+    (WorldRandom.bits(key, number * Delays.Lines + Delays.FirstCommand + what) >>> 8) * Step
+
+private[skein] object ImageTiming:
+  /** Images of which anything is remembered. */
+  val Ring = 64
+
+  // What is drawn for each image: whether what is in view is found, the errors, how long recognition takes.
+  val Found         = 0
+  val Bearing       = 1
+  val Range         = 2
+  private val Takes = 3
+
+  /** As `skein.flight.CameraSensor` has them. */
+  private val MostOnTheWay = 2
+
+  /** Apart from the sequence of all other delays. */
+  private val Stream = 0x65796573L
+
+  private val Step = 1.0 / (1 << 24)

@@ -1,0 +1,27 @@
+package skein.lanes
+
+import skein.forward.Duel
+import skein.fusion.SensorModel
+
+/** By which alone the two of a duel know of one another, where they are not told. */
+private[lanes] final case class DuelEyes(
+    evader: Option[CameraTrackerLanes.Forms],
+    pursuer: Option[CameraTrackerLanes.Forms]
+):
+  def isNobody: Boolean = evader.isEmpty && pursuer.isEmpty
+
+private[lanes] object DuelEyes:
+  val Nobody: DuelEyes = DuelEyes(None, None)
+
+  /** @return or why they do not see by lanes
+    */
+  def of(duel: Duel): Either[String, DuelEyes] =
+    def forms(eye: Option[SensorModel]) =
+      eye.fold[Either[
+        String,
+        Option[CameraTrackerLanes.Forms]
+      ]](Right(None))(CameraTrackerLanes.of(_).map(Some(_)))
+    for
+      evader  <- forms(duel.evader.eye)
+      pursuer <- forms(duel.pursuer.eye)
+    yield DuelEyes(evader, pursuer)
