@@ -51,12 +51,13 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
 
   private def isWild(name: String) = name.startsWith("300 ms")
 
-  private val links = Seq[(String, DelayTable)](
+  private val links = Seq[(String, TabledDelays)](
     "none"                        -> DelayTable.none,
     "direct"                      -> DelayTable.direct,
     "vpn"                         -> DelayTable.vpn,
     "110 ms and 60 ms of jitter"  -> wild(110, 60),
-    "300 ms and 300 ms of jitter" -> wild(300, 300)
+    "300 ms and 300 ms of jitter" -> wild(300, 300),
+    "a link that changes"         -> AlternatingDelays(wild(150, 150), DelayTable.direct, 1.0, 0.5)
   )
 
   private def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.004 * (world % 128))
@@ -143,7 +144,12 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       )
 
   /** Worlds with delays of their own. */
-  private def agreeAlone(seeing: Duel, timing: LoopTiming, model: VelocityResponse, link: DelayTable): Unit =
+  private def agreeAlone(
+      seeing: Duel,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      link: TabledDelays
+  ): Unit =
     val seed            = 8
     val lanes           = DuelAgreement.taken(pursuer, evader)
     var eye: OwnEye     = null

@@ -225,7 +225,7 @@ private[skein] object DuelAgreement:
       duel: Duel,
       timing: LoopTiming,
       model: VelocityResponse,
-      link: Int => DelayTable,
+      link: Int => TabledDelays,
       key: Int => Int,
       captureM: Float,
       lanes: Vector[LoggedPolicy],

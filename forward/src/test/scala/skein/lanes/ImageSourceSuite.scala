@@ -22,11 +22,12 @@ class ImageSourceSuite extends munit.FunSuite:
     )
   )
 
-  private val links = Seq(
+  private val links = Seq[(String, TabledDelays)](
     "none"                        -> DelayTable.none,
     "vpn"                         -> DelayTable.vpn,
     "150 ms and 150 ms of jitter" -> DelayTable.of(LatencyBudget.link(150, 150).get),
-    "300 ms and 300 ms of jitter" -> DelayTable.of(LatencyBudget.link(300, 300).get)
+    "300 ms and 300 ms of jitter" -> DelayTable.of(LatencyBudget.link(300, 300).get),
+    "a link that changes"         -> AlternatingDelays(DelayTable.vpn, DelayTable.direct, 1.0, 0.5)
   )
 
   for
@@ -57,7 +58,7 @@ class ImageSourceSuite extends munit.FunSuite:
     )
 
   /** What happens to the images of a flight, in turn. */
-  private def happens(model: SensorModel, agent: Int, link: DelayTable, key: Int): Vector[Happens] =
+  private def happens(model: SensorModel, agent: Int, link: TabledDelays, key: Int): Vector[Happens] =
     val all      = ArrayBuffer.empty[Happens]
     val observer = new LoopObserver:
       override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
