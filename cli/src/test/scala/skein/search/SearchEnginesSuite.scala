@@ -9,7 +9,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
-  private def engines(loop: String = "stream", link: String = "vpn", eye: Option[String] = None): String =
+  private def engines(loop: String, link: String, eye: Option[String]): String =
     SearchQuestion(
       family = "lead-pursuit",
       role = "pursuer",
@@ -37,7 +37,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       assert(told.matches("SIMD, .*; fresh episodes: SIMD, .*"), s"$loop, $link, $eye: $told")
 
   test("fresh episodes that fly by the scalar engine are told of, with the reason"):
-    val seeing = engines(loop = "paused", eye = Some(eyeFile()))
+    val seeing = engines("paused", "vpn", Some(eyeFile()))
     assert(
       seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor while the world waits .*"),
       seeing
