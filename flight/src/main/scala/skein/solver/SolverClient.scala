@@ -1,7 +1,7 @@
 package skein.solver
 
 import org.apache.pekko.Done
-import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.{Future, Promise}
 import skein.loop.{LoopKind, Memory, Solved, Solver, TeamView}
 import skein.record.EventKind
@@ -38,6 +38,8 @@ final class SolverClient(
   private var standing       = Standing.Greeting(Silent)
   private var rehearsals     = link.rehearsals
   private var rehearsedUntil = Option.empty[Instant]
+  private var preparedAt     = Option.empty[Instant]
+  private var late           = Option.empty[Cancellable]
 
   // Other threads that are told of news meanwhile wait for it.
   private lazy val open = link.open(received, told)
@@ -47,15 +49,26 @@ final class SolverClient(
     system.scheduler.scheduleWithFixedDelay(GreetEvery.toDuration, GreetEvery.toDuration)(() => greet())
 
   /** Completes when a solver has welcomed the flight, with how; fails with [[SolverClient.NoSolver]] where
-    * one refuses, or none answers within the patience.
+    * one refuses, or none answers within the patience. While one says that it prepares, it is waited for, for
+    * [[SolverClient.MostPrepared]] at most.
     */
   def ready(patience: Span): Future[Welcomed] =
-    val late = system.scheduler.scheduleOnce(patience.toDuration):
-      val why = lock.synchronized(standing) match
-        case Standing.Greeting(why) => why
-        case other                  => other.toString
-      started.tryFailure(NoSolver(s"no solver within ${patience.toSeconds.round} s: $why")): Unit
-    started.future.andThen(_ => late.cancel())
+    val begun                        = clock.now()
+    def expect(until: Instant): Unit =
+      val timer = system.scheduler.scheduleOnce(until.since(clock.now()).toDuration):
+        val (stands, prepared) = lock.synchronized((standing, preparedAt))
+        prepared.map(at => (at + patience).min(begun + MostPrepared)).filter(_ > until) match
+          case Some(later) => expect(later)
+          case None        =>
+            val why = stands match
+              case Standing.Greeting(why) => why
+              case other                  => other.toString
+            val within = until.since(begun).toSeconds.round
+            started.tryFailure(NoSolver(s"no solver within $within s: $why")): Unit
+      lock.synchronized:
+        late = Some(timer)
+    expect(begun + patience)
+    started.future.andThen(_ => lock.synchronized(late).foreach(_.cancel()))
 
   def delay: Span = lock.synchronized(exchange.delay)
 
@@ -100,6 +113,7 @@ final class SolverClient(
     case Left(mistake)  => note(EventKind.Refused, None, s"from the solver came no message: $mistake")
     case Right(message) =>
       message match
+        case SolverMessage.Preparing(`flight`)                     => prepares()
         case SolverMessage.Welcome(`flight`, _, byVectors)         => welcomed(Welcomed(byVectors))
         case SolverMessage.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
         case SolverMessage.Unknown(`flight`)                       => again("it does not know this flight")
@@ -182,6 +196,10 @@ final class SolverClient(
       lock.synchronized:
         if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(reason)
 
+  private def prepares(): Unit = lock.synchronized:
+    preparedAt = Some(clock.now())
+    if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(StillPreparing)
+
   private def welcomed(how: Welcomed): Unit =
     if rehearses() then greet()
     else
@@ -214,7 +232,11 @@ object SolverClient:
   /** At most; a slow link's code need not be fast. */
   private val RehearsedFor = Span.ofSeconds(3)
 
-  private val Silent = "nobody has answered; is ./skein decide started?"
+  /** A solver that prepares is waited for so long at most. */
+  val MostPrepared: Span = Span.ofSeconds(600)
+
+  private val Silent         = "nobody has answered; is ./skein decide started?"
+  private val StillPreparing = "the solver prepares for the flight, and has not finished"
 
   /** By whom a flight is decided for.
     *

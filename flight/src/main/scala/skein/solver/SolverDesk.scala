@@ -11,7 +11,8 @@ import skein.units.*
   *
   * @param id names this start of it: another number each time
   * @param build of this program, which a flight's must be, too
-  * @param decidersOf who decides by what is told of a flight, or why nobody does; may take its time
+  * @param decidersOf who decides by what is told of a flight, or why nobody does; may take its time, of which
+  *   the flight is told
   * @param clock its own, whatever the controllers' are
   * @param workers what is decided on
   * @param takes by how much an answer is held up, for trials
@@ -107,6 +108,8 @@ final class SolverDesk(
           case Success(Left(reason)) => no(reason)
           case Failure(error)        => no(s"it cannot be decided for: $error")
       }(using workers)
+    // It says hello again until then.
+    else if lock.synchronized(greeting(flight)) then answer(SolverMessage.Preparing(flight))
 
   /** A flight says hello until it is answered; once is enough. */
   private def begins(flight: Long): Boolean = lock.synchronized:

@@ -16,6 +16,9 @@ enum SolverMessage:
   /** A flight would like to be decided for. */
   case Hello(flight: Long, build: String, briefing: Briefing)
 
+  /** The solver prepares to decide for the flight, and will welcome or refuse it. */
+  case Preparing(flight: Long)
+
   /** The flight is decided for from now on.
     *
     * @param byVectors whether what it plans is searched by the JDK's vectors: else some fifty times fewer

@@ -12,7 +12,7 @@ import skein.units.*
 /** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
 object SolverMessageCodec:
   /** Peers of another version are refused. */
-  val Version = 5
+  val Version = 6
 
   /** Of a message, in bytes: what a Kafka broker takes unless told otherwise, less its own share. */
   val MostBytes = 900_000

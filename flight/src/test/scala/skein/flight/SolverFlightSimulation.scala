@@ -105,11 +105,15 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(Briefing.agents(fleet), briefing.agents)
       assertEquals(fleet, plan.fleet(flown))
 
-  /** What a flight is told by a desk of this build for a briefing. */
+  /** What a flight is told by a desk of this build for a briefing.
+    *
+    * @param prepares how long it takes the desk
+    */
   private def welcomed(
       briefing: Briefing,
       build: String = "ours",
-      byVectors: Boolean = true
+      byVectors: Boolean = true,
+      prepares: Span = Span.Zero
   ): Either[String, SolverClient.Welcomed] =
     VirtualTime
       .run(seed = 1): system =>
@@ -123,7 +127,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
           "ours",
           Briefing.plan(_).flatMap(FlightDeciders.of(_, FlightAssembler.threads)),
           clock,
-          system.dispatcher,
+          Later(system, prepares),
           byVectors = byVectors
         )
         for
@@ -170,6 +174,14 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       "no solver within 3 s: nobody listens at solver:7400; is the program there started?"
     )
 
+  test("a solver that prepares for long is waited for, and one that does not come to an end is not"):
+    val briefing = Briefing.of(settings, settings.plans.last)
+    assert(welcomed(briefing, prepares = Span.ofSeconds(200)).isRight)
+    assertEquals(
+      welcomed(briefing, prepares = Span.ofSeconds(2000)).left.map(_.toString),
+      Left("no solver within 600 s: the solver prepares for the flight, and has not finished")
+    )
+
   test("a stranger who speaks garbage at a solver's port loses the connection, and flights fly on"):
     val garbage =
       Seq("GET / HTTP/1.1\r\n\r\n", "\u0000\u0000\u0000\u0004abcd", "\u007f\u007f\u007f\u007f", "\u0000")
@@ -208,3 +220,10 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       yield desk.stats
     assertEquals(run.value.garbled, 1L)
     assertEquals(run.value.refused, 0L)
+
+/** Runs everything so much later. */
+private final class Later(system: ActorSystem, by: Span) extends ExecutionContext:
+  def execute(work: Runnable): Unit =
+    if by == Span.Zero then system.dispatcher.execute(work)
+    else system.scheduler.scheduleOnce(by.toDuration, work)(using system.dispatcher): Unit
+  def reportFailure(cause: Throwable): Unit = system.dispatcher.reportFailure(cause)

@@ -159,6 +159,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(SolverMessage.Welcome(_, _, _)),
     Gen.zip(Gen.long, text).map(SolverMessage.Refused(_, _)),
     Gen.long.map(SolverMessage.Unknown(_)),
+    Gen.long.map(SolverMessage.Preparing(_)),
     question.map(SolverMessage.Ask(_)),
     answer.map(SolverMessage.Tell(_)),
     Gen.long.map(SolverMessage.Goodbye(_))
@@ -192,11 +193,11 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 5 of the solver's protocol, came version 9")
+      Left("expected messages of version 6 of the solver's protocol, came version 9")
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),
-      Left("expected a kind of solver message from 1 to 7, came 42")
+      Left("expected a kind of solver message from 1 to 8, came 42")
     )
     assertEquals(
       SolverMessageCodec.message(new Array[Byte](SolverMessageCodec.MostBytes + 1)),
