@@ -39,7 +39,7 @@ class LagDuelsSuite extends munit.FunSuite:
     val duel = Duel.paper.copy(durationS = durationS)
     LoopDuelKernel(
       duel,
-      LoopLanes(LoopTiming.Stream(), 2, durationS, MaxDelayS, shortCut),
+      LoopLanes(LoopTiming.Stream(), 2, durationS, MaxDelayS, shortCut = shortCut),
       vehicles(lag),
       pursuers,
       evaders,
