@@ -149,7 +149,8 @@ final class LaneDelays {
     }
   }
 
-  private static void add(LaneVectors vectors, int[] spans, int[] times) {
+  /** Adds spans to times, or to other spans. */
+  static void add(LaneVectors vectors, int[] spans, int[] times) {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector.fromArray(INTS, times, i).add(IntVector.fromArray(INTS, spans, i)).intoArray(times, i);

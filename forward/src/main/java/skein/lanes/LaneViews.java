@@ -44,6 +44,7 @@ final class LaneViews {
   private static final int LATEST = 2_000_000_000;
 
   private static final int[] AT_ONCE = new int[WORLDS];
+  private static final LaneVectors ALL = LaneVectors.all();
 
   /** Rows kept: more than are looked ahead. */
   private static final int ROWS = 8;
@@ -260,8 +261,7 @@ final class LaneViews {
     long begin = (long) step * periodGrains;
     delays.draw(place, line, begin, AT_ONCE, to);
     delays.draw(place, line + 1, begin, to, roundTrip);
-    for (int i = 0; i < WORLDS; i += LANES)
-      IntVector.fromArray(INTS, roundTrip, i).add(IntVector.fromArray(INTS, to, i)).intoArray(roundTrip, i);
+    LaneDelays.add(ALL, to, roundTrip);
   }
 
   private void makeIrregular(int world, int step) {

@@ -143,8 +143,8 @@ final class PredictiveOffers extends LaneOffers {
     }
     long begin = (long) row * periodGrains;
     delays.draw(ALL, places[vehicle], line, begin, asks, there);
-    for (int i = 0; i < WORLDS; i += LANES)
-      IntVector.fromArray(INTS, asks, i).add(IntVector.fromArray(INTS, there, i)).intoArray(reads, i);
+    System.arraycopy(asks, 0, reads, 0, WORLDS);
+    LaneDelays.add(ALL, there, reads);
     delays.draw(ALL, places[vehicle], line + 1, begin, reads, back);
     if (mayWait) goOn(vehicle, asks, answers);
     IntVector none = IntVector.broadcast(INTS, NONE), timeout = IntVector.broadcast(INTS, timeoutGrains);

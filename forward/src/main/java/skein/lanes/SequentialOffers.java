@@ -42,8 +42,7 @@ final class SequentialOffers extends LaneOffers {
   private final int[][] drawn;
 
   private final int[] beatPlaces = new int[WORLDS];
-  private int rowPlace;
-  private long rowBegin;
+  private int row;
 
   /** In which some world looks for its next round. */
   private final LaneVectors searching = new LaneVectors();
@@ -63,16 +62,15 @@ final class SequentialOffers extends LaneOffers {
     delays.start(worldKeys, links);
     Arrays.fill(tick, 0);
     Arrays.fill(tickPlace, 0);
-    rowBegin = 0;
+    row = 0;
     Arrays.fill(end, NONE);
     Arrays.fill(laterEnd, NONE);
     find();
   }
 
   @Override
-  void startRow(int row) {
-    rowPlace = row * STEP;
-    rowBegin = (long) row * periodGrains;
+  void startRow(int number) {
+    row = number;
     if (row > 0) {
       IntVector period = IntVector.broadcast(INTS, periodGrains), none = IntVector.broadcast(INTS, NONE);
       for (int i = 0; i < WORLDS; i += LANES) {
@@ -93,7 +91,7 @@ final class SequentialOffers extends LaneOffers {
     if (!isBefore(end, periodGrains)) return false;
     IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
         none = IntVector.broadcast(INTS, NONE),
-        here = IntVector.broadcast(INTS, rowPlace);
+        here = IntVector.broadcast(INTS, row * STEP);
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector ends = IntVector.fromArray(INTS, end, i);
       VectorMask<Integer> due = ends.compare(LT, horizon);
@@ -110,7 +108,7 @@ final class SequentialOffers extends LaneOffers {
   /** Fills up what each world knows of its next two rounds. */
   private void find() {
     while (shift()) {
-      delays.drawInTurn(searching, tickPlace, 0, rowBegin, tick, drawn);
+      delays.drawInTurn(searching, tickPlace, 0, (long) row * periodGrains, tick, drawn);
       flyRound();
     }
   }
