@@ -8,6 +8,7 @@ import skein.forward.{
   QuadrotorResponse,
   VelocityResponse
 }
+import skein.gpu.Gpu
 import skein.policy.Policy
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -22,12 +23,15 @@ import skein.units.Expect
   * depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param duel start, speeds and duration; the policies come from the worlds
+  * @param gpu on which candidates that share episodes fly, where it knows them; outcomes are the same, to the
+  *   bit
   */
 final class DuelBatch(
     duel: Duel,
     timing: LoopTiming,
     model: VelocityResponse,
-    threads: Int = Runtime.getRuntime.availableProcessors
+    threads: Int = Runtime.getRuntime.availableProcessors,
+    gpu: Option[Gpu] = None
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
@@ -44,13 +48,13 @@ final class DuelBatch(
   /** Whether somebody knows of the other by a sensor alone. */
   private val sees = duel.pursuer.eye.isDefined || duel.evader.eye.isDefined
 
-  /** The vehicles under the loop, if it flies by timetables. */
-  private val lanes: Either[String, LaneDynamics] =
+  /** The episodes, if they fly by timetables. */
+  private val lanes: Either[String, DuelEpisodes] =
     for
       _     <- plant
-      _     <- eyes
+      eyes  <- eyes
       lanes <- LaneDynamics.under(timing, model, duel)
-    yield lanes
+    yield DuelEpisodes(duel, timing, lanes, eyes)
 
   /** The vehicles and who sees, if they fly by lanes where every world has delays of its own. */
   private val apart: Either[String, (LaneDynamics, DuelEyes)] =
@@ -71,12 +75,18 @@ final class DuelBatch(
     val alone: DuelFlyer  =
       SteppedRollouts.of(model, vehicles).filterNot(_ => sees).map(SteppedFlyer(duel, timing, _)).getOrElse:
         apart.fold(_ => scalar, LoopFlyer(duel, timing, _, _, scalar))
-    val together: DuelFlyer = (lanes, eyes) match
-      case (Right(kind), Right(seen)) => TimetableFlyer(duel, timing, kind, seen, timetables, alone)
-      case _                          => alone
+    val together: DuelFlyer = lanes.fold(_ => alone, TimetableFlyer(_, timetables, alone))
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
+
+  /** The GPU, if there is one, and if it knows the loop. */
+  private val onGpu: Option[Either[String, GpuDuels]] = gpu.map: gpu =>
+    for
+      episodes <- lanes
+      _        <- Expect.that(!sees)("the GPU flies nobody who sees by a sensor")
+      _ <- Expect.that(!timing.isInstanceOf[LoopTiming.Predictive])("the GPU flies loops that do not predict")
+    yield GpuDuels(gpu, episodes, threads)
 
   /** What is told where vehicles are flown side by side. */
   private val stepped: Option[String] = SteppedRollouts.told(model, vehicles).filterNot(_ => sees)
@@ -92,9 +102,13 @@ final class DuelBatch(
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
-      case Left(reason) => stepped.getOrElse(s"scalar: $reason")
-      case Right(lanes) =>
-        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _)))
+      case Left(reason)                                    => stepped.getOrElse(s"scalar: $reason")
+      case Right(_) if shares(shareEpisodes) && fliesOnGpu => s"GPU, ${gpu.get.name}: a thread a candidate"
+      case Right(lanes)                                    =>
+        val instead = gpu.map(_ => onGpu.get.swap.getOrElse("the GPU flies candidates that share episodes"))
+        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) + instead.fold("")(": " + _)
+
+  private def fliesOnGpu = onGpu.exists(_.isRight)
 
   /** Whether all worlds of these policies fly by lanes, or AirSim's quadrotors do at least, over any of the
     * links.
@@ -139,7 +153,30 @@ final class DuelBatch(
   ): DuelOutcomes =
     val outcomes = DuelOutcomes(worlds.size, worlds.asked)
     val together = shares(worlds.shareEpisodes)
-    val batches  =
+    onGpu match
+      case Some(Right(gpu)) if together && areFormulas(worlds) =>
+        outcomes.flown = gpu.fly(worlds, captureRadiusM.toFloat, outcomes, onProgress, isCancelled)
+      case _ => fly(worlds, together, captureRadiusM, onProgress, isCancelled, outcomes)
+    outcomes
+
+  private def areFormulas(worlds: DuelWorlds) =
+    var last, before = null: Policy
+    (0 until worlds.size).forall: world =>
+      val both = Seq(worlds.pursuer(world), worlds.evader(world))
+      val same = (both(0) eq last) && (both(1) eq before)
+      last = both(0)
+      before = both(1)
+      same || both.forall(PolicyLanes.of(_).isRight)
+
+  private def fly(
+      worlds: DuelWorlds,
+      together: Boolean,
+      captureRadiusM: Double,
+      onProgress: Int => Unit,
+      isCancelled: () => Boolean,
+      outcomes: DuelOutcomes
+  ): Unit =
+    val batches =
       if worlds.shareEpisodes then
         WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, workers.head.together.batch)
       else
@@ -150,7 +187,6 @@ final class DuelBatch(
     outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
       val flyer = if together then worker.together else worker.alone
       flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
-    outcomes
 
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostBytes = 64L << 20

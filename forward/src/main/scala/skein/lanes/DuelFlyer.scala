@@ -165,14 +165,9 @@ private final class LoopFlyer(
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 
 /** By [[TimetableKernel]]. All worlds of a batch have one key and one link, or meet no delays. */
-private final class TimetableFlyer(
-    duel: Duel,
-    timing: LoopTiming,
-    model: LaneDynamics,
-    eyes: DuelEyes,
-    timetables: Timetables,
-    other: DuelFlyer
-) extends LaneFlyer(other):
+private final class TimetableFlyer(episodes: DuelEpisodes, timetables: Timetables, other: DuelFlyer)
+    extends LaneFlyer(other):
+  import episodes.{duel, eyes}
 
   protected def canFly(link: Delays): Boolean = true
 
@@ -180,8 +175,8 @@ private final class TimetableFlyer(
     new Lanes(pursuer, evader, asked):
       protected val kernel: TimetableDuels = TimetableDuels(
         duel,
-        timing,
-        model,
+        episodes.timing,
+        episodes.model,
         pursuers,
         evaders,
         asked,
@@ -193,19 +188,7 @@ private final class TimetableFlyer(
       protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
         if lane == 0 then
           val (link, key) = (worlds.link(world), worlds.key(world))
-          val isAlways    = timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody
-          val episode     = if isAlways then () else (link, key)
-          val sensors     = Seq(0 -> duel.evader.eye, 1 -> duel.pursuer.eye)
-          timetable = timetables.getOrMake(episode):
-            Timetable.of(
-              2,
-              duel.durationS,
-              timing,
-              link,
-              key,
-              model,
-              sensors.collect { case (self, Some(eye)) => self -> eye }.toMap
-            )
+          timetable = timetables.getOrMake(episodes.of(link, key))(episodes.timetable(link, key))
 
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 

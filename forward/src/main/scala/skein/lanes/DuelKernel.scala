@@ -10,16 +10,8 @@ import skein.scenario.Reduction
 private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, asked: Set[DuelNumber]):
   import DuelKernel.*
 
-  private val judged = DuelNumber.values.toVector.filter(asked).flatMap: number =>
-    (number match
-      case DuelNumber.MinDistance  => Some(Reduction.Least -> 0.0)
-      case DuelNumber.MeanDistance => Some(Reduction.Mean -> 0.0)
-      case DuelNumber.MeanLast10s  => Some(Reduction.Mean -> Rollout.last10sFromS(durationS, periodS))
-      case DuelNumber.Capture      => Some(OfMoment.FirstWithin(0) -> 0.0)
-      case _                       => None
-    ).map(number -> _)
-
-  private val place = judged.map(_._1).zipWithIndex.toMap
+  private val judged = DuelKernel.judged(durationS, periodS, asked)
+  private val place  = judged.map(_._1).zipWithIndex.toMap
 
   protected val scores: Scoreboard = Scoreboard.ofDistance(judged.map(_._2)*)
 
@@ -44,3 +36,18 @@ private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, ask
 private[lanes] object DuelKernel:
   /** Worlds flown together. */
   val WORLDS: Int = LanePolicy.WORLDS
+
+  /** What the vehicles' distance comes to, of the numbers that are asked for. */
+  def judged(
+      durationS: Double,
+      periodS: Double,
+      asked: Set[DuelNumber]
+  ): Vector[(DuelNumber, (Reduction | OfMoment, Double))] =
+    DuelNumber.values.toVector.filter(asked).flatMap: number =>
+      (number match
+        case DuelNumber.MinDistance  => Some(Reduction.Least -> 0.0)
+        case DuelNumber.MeanDistance => Some(Reduction.Mean -> 0.0)
+        case DuelNumber.MeanLast10s  => Some(Reduction.Mean -> Rollout.last10sFromS(durationS, periodS))
+        case DuelNumber.Capture      => Some(OfMoment.FirstWithin(0) -> 0.0)
+        case _                       => None
+      ).map(number -> _)

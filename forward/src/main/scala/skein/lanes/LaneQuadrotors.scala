@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.forward.SteppedVehicles
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{Environment, Quadrotor}
+import skein.vehicle.Quadrotor
 
 /** Quadrotors with their flight controllers, [[LaneQuadrotors.VEHICLES]] at a time, in floats, under
   * `moveByVelocityZ`. The scalar [[Quadrotor]] is what is compiled ([[QuadrotorLanes]]), and the reference.
@@ -53,8 +53,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   def hover(place: Int, downM: Double): Unit = hover(place, holdingAt(downM))
 
   /** What a vehicle above its start is to hold, to settle at this altitude. */
-  def holdingAt(downM: Double): Vector3 =
-    Vector3(0, 0, downM - lanes.quadrotor.hoverSagM(downM, Environment.Calm))
+  def holdingAt(downM: Double): Vector3 = lanes.holdingAt(downM)
 
   def command(place: Int, northMps: Float, eastMps: Float, downM: Float): Unit =
     goal(place) = northMps

@@ -94,6 +94,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
   // But how far the decided heading is from the one before.
   private def course = outputs.patch(2, Nil, 1)
 
+  /** What is computed at a decision. */
+  private[lanes] def nodes(withEffort: Boolean): Vector[Node] = if withEffort then outputs else course
+
   /** The same but how far the decided heading is from the one before. */
   lazy val functionWithoutEffort: LaneFunction =
     LaneCompiler.compile(inputs, course, LaneObservation.READ, parameters)

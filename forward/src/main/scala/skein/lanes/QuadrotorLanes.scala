@@ -1,6 +1,8 @@
 package skein.lanes
 
 import skein.formula.{Formula, Untraceable}
+import skein.gpu.{Ptx, PtxExpressions}
+import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
 /** How quadrotors of one form fly many at a time: [[Quadrotor.stepInAir]] itself, compiled, for
@@ -22,6 +24,10 @@ private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, for
     field.setAccessible(true)
     field
 
+  /** What a vehicle above its start is to hold, to settle at this altitude. */
+  def holdingAt(downM: Double): Vector3 =
+    Vector3(0, 0, downM - quadrotor.hoverSagM(downM, Environment.Calm))
+
   /** One step.
     *
     * @param from rows of the states before it, and of those after it
@@ -34,6 +40,19 @@ private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, for
       else call.input(place, goal, (input - rows.size) * TimetableVehicles.WORLDS)
     call.output(0, to, 0)
     call
+
+  /** One step in a kernel.
+    *
+    * @param goal what is commanded, as in the other
+    */
+  def step(code: Ptx, state: GpuVehicle.Variables, goal: GpuVehicle.Variables): Unit =
+    state.take(PtxExpressions.write(code, formula.bound.nodes)(
+      place =>
+        val input = formula.bound.inputs(place)
+        if input < rows.size then state(input) else goal(input - rows.size)
+      ,
+      number => code.constant(formula.parameters(number).toFloat)
+    ))
 
 private[lanes] object QuadrotorLanes:
   private val State = "state."

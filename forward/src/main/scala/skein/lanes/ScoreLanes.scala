@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
-import skein.scenario.{Positions, Quantity, Reduction}
+import skein.scenario.{Positions, Quantity, Reduction, Separation}
 import skein.units.Expect
 
 /** What flights are judged by, in many worlds at once: the quantities, compiled from their methods
@@ -113,7 +113,9 @@ private[lanes] object ScoreLanes:
   /** @param judged numbers of what is judged now
     * @param places of what the function computes, by its outputs
     */
-  final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction)
+  final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
+    /** Times after this count. */
+    def afterS: Float = Judged.afterS(fromS).toFloat
 
   private def initially(judged: Judged): Vector[Float] = judged.reduction match
     case Reduction.Least | OfMoment.FirstWithin(_) => Vector(Float.PositiveInfinity)
@@ -129,6 +131,24 @@ private[lanes] object ScoreLanes:
   /** How flights of so many vehicles are judged by lanes, or why they are not. Compiled once for each form.
     */
   def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
+
+  /** What a number comes to; no number where nothing counted.
+    *
+    * @param kept last of it
+    * @param count how often it counted
+    */
+  def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
+    case Reduction.Rms | Reduction.Sd                   => math.sqrt(kept / count).toFloat
+    case Reduction.Mean                                 => kept / count
+    case Reduction.Least | Reduction.Most if count == 0 => Float.NaN
+    case _                                              => kept
+
+  /** By the distance of two vehicles.
+    *
+    * @param by what its values come to, from a time on, s
+    */
+  def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
+    of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
     // Who writes a quantity may call its argument as they like.

@@ -2,7 +2,7 @@ package skein.lanes
 
 import java.util.Arrays
 import skein.forward.Duelist
-import skein.scenario.{Reduction, Separation}
+import skein.scenario.Reduction
 
 /** Judges the flights of many worlds, once a period. Mutable. */
 private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores:
@@ -19,11 +19,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
     Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
   private val stages = lanes.stages.map(Stage(_)).toArray
 
-  private def are(some: Reduction*) = judged.map(each => some.contains(each.reduction)).toArray
-  private val hasShare              = are(Reduction.Sd)
-  private val isMean                = are(Reduction.Mean, Reduction.Rms, Reduction.Sd)
-  private val isRoot                = are(Reduction.Rms, Reduction.Sd)
-  private val isExtreme             = are(Reduction.Least, Reduction.Most)
+  private val hasShare = judged.map(_.reduction == Reduction.Sd).toArray
 
   for case (Judged(_, OfMoment.FirstWithin(limit), _), number) <- judged.zipWithIndex do
     this.limit(number, limit.toFloat)
@@ -108,19 +104,14 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
 
   /** The same of one world; no number where nothing counted. */
   def value(number: Int, world: Int): Float =
-    val (last, count) = (soFar(number, world), counts(number))
-    if isRoot(number) then math.sqrt(last / count).toFloat
-    else if isMean(number) then last / count
-    else if isExtreme(number) && count == 0 then Float.NaN
-    else last
+    ScoreLanes.value(judged(number).reduction, soFar(number, world), counts(number))
 
 private[lanes] object Scoreboard:
   /** By the distance of two vehicles.
     *
     * @param by what its values come to, from a time on, s
     */
-  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
-    Scoreboard(ScoreLanes.of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity))
+  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard = Scoreboard(ScoreLanes.ofDistance(by*))
 
   /** What learners are told: the newest distance, the sum and the least. */
   def ofLearners: Scoreboard = ofDistance((OfMoment.Newest, 0), (Reduction.Mean, 0), (Reduction.Least, 0))

@@ -49,8 +49,10 @@ final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fro
     case reduction: Reduction => reduction.of(values.map(_._2))
 
 object Judged:
+  private[lanes] def counts(timeS: Double, fromS: Double): Boolean = timeS > afterS(fromS)
+
   /** Times may be known as Floats alone, and the shortest period is a millisecond. */
-  private[lanes] def counts(timeS: Double, fromS: Double): Boolean = timeS > fromS - 3e-4
+  private[lanes] def afterS(fromS: Double): Double = fromS - 3e-4
 
 /** What the values of a quantity come to, where it is told of one moment. */
 enum OfMoment:

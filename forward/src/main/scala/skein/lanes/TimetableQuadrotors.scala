@@ -53,16 +53,16 @@ private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuad
     flown.fly(times(at).toInt)
     flown.command(commanded, from, duelist.speed.toFloat, duelist.altitudeDownM.toFloat)
 
-private object TimetableQuadrotors:
+private[lanes] object TimetableQuadrotors:
   private val trace = Trace()
   import trace.{add, input, mul, param}
 
   /** Acceleration, velocity, place and start; parameters are the time since the last step and half its
     * square.
     */
-  private val placed: BoundFunction = BoundFunction.of(
+  val placed: BoundFunction = BoundFunction.of(
     Vector(add(add(add(mul(input(0), param(1)), mul(input(1), param(0))), input(2)), input(3)))
   )
 
   /** Acceleration and velocity. */
-  private val moved: BoundFunction = BoundFunction.of(Vector(add(mul(input(0), param(0)), input(1))))
+  val moved: BoundFunction = BoundFunction.of(Vector(add(mul(input(0), param(0)), input(1))))

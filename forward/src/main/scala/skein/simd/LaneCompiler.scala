@@ -5,7 +5,7 @@ import java.lang.constant.{ClassDesc, ConstantDescs, MethodTypeDesc}
 import java.lang.invoke.MethodHandles
 import java.lang.reflect.AccessFlag
 import scala.collection.mutable
-import skein.formula.{Node, Op, Untraceable}
+import skein.formula.{Node, Op}
 
 /** Compiles expressions to a [[LaneFunction]]: straight passes over blocks of worlds, in which a number stays
   * in a register from where it is computed to where it is used. Elementary functions are the polynomials of
@@ -118,13 +118,11 @@ private final class PassCompiler(
     subtrahends: Int,
     parameters: Int,
     places: Vector[(Int, Int)]
-):
+) extends ExpressionCompiler:
   import Names.*
   private val count          = LaneFunction.COUNT
-  private val slots          = mutable.HashMap.empty[Node, Int]
   private val floatConstants = mutable.HashMap.empty[Int, Int]
-  private val intConstants   = mutable.HashMap.empty[Int, Int]
-  private val pairs          = mutable.HashMap.empty[Node, (Int, Int)]
+  private val bitConstants   = mutable.HashMap.empty[Int, Int]
   private val arrays         = mutable.HashMap.empty[Int, (Int, Int)]
   private val end            = 4
   private val world          = 5
@@ -154,7 +152,7 @@ private final class PassCompiler(
             other.return_()
             for array <- first.arrays.keys.toVector.sorted do arrays(array) = (fresh(), fresh())
             for bits <- first.floatConstants.keys.toVector.sorted do floatConstants(bits) = fresh()
-            for value <- first.intConstants.keys.toVector.sorted do intConstants(value) = fresh()
+            for value <- first.bitConstants.keys.toVector.sorted do bitConstants(value) = fresh()
         ): Unit
     ): Unit
     for (array, (place, offset)) <- arrays.toVector.sortBy(_._1) do
@@ -165,7 +163,7 @@ private final class PassCompiler(
       code.loadConstant(java.lang.Float.intBitsToFloat(bits))
       code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
       code.astore(place)
-    for (value, place) <- intConstants do
+    for (value, place) <- bitConstants do
       code.getstatic(math, "INTS", species)
       code.loadConstant(value)
       code.invokestatic(int, "broadcast", MethodTypeDesc.of(int, species, ConstantDescs.CD_int))
@@ -187,215 +185,61 @@ private final class PassCompiler(
     case Op.Const | Op.Input | Op.Param | Op.Always => true
     case _                                          => false
 
-  /** Where a node's vector or mask is. */
-  private def of(node: Node): Int = node.op match
-    case Op.Const => constant(node.value.toFloat)
-    case _        => slots.getOrElseUpdate(node, computed(node))
-
-  private def computed(node: Node): Int =
-    slots.getOrElse(
-      node, {
-        val place = write(node)
-        slots(node) = place
-        place
-      }
-    )
-
-  private def write(node: Node): Int =
-    def a = of(node.args(0))
-    def b = of(node.args(1))
-    node.op match
-      case Op.Const => constant(node.value.toFloat)
-      case Op.Input =>
-        val number = node.index
-        if number < differences then two("sub", input(number), input(subtrahends + number)) else input(number)
-      case Op.Param =>
-        if parameters == 0 then shared(node.index) else parameter(node.index)
-      case Op.Neg  => unary("neg", a)
-      case Op.Abs  => unary("abs", a)
-      case Op.Sqrt => unary("sqrt", a)
-      case Op.Add  =>
-        Passes.factor(node) match
-          case Some(product) if !slots.contains(product) =>
-            val other = if node.args(0) == product then node.args(1) else node.args(0)
-            fma(of(product.args(0)), of(product.args(1)), of(other))
-          case _ => two("add", a, b)
-      case Op.Sub   => two("sub", a, b)
-      case Op.Mul   => two("mul", a, b)
-      case Op.Div   => two("div", a, b)
-      case Op.Min   => extreme("LT", node)
-      case Op.Max   => extreme("GT", node)
-      case Op.Where => blend(of(node.args(2)), b, a)
-      case Op.Lt    => compare("LT", a, b)
-      case Op.Le    => compare("LE", a, b)
-      case Op.Eq    => compare("EQ", a, b)
-      case Op.Not   => maskUnary("not", a)
-      case Op.And   => maskTwo("and", a, b)
-      case Op.Or    => maskTwo("or", a, b)
-      case Op.Sin   => sinCos(node.args(0))._1
-      case Op.Cos   => sinCos(node.args(0))._2
-      case Op.Atan2 => atan2(a, b)
-      case Op.Atan  => atan2(a, constant(1f))
-      case Op.Hypot =>
-        val (x, y) = (a, b)
-        unary("sqrt", fma(x, x, two("mul", y, y)))
-      case Op.Exp   => exp(limited("GT", limited("LT", a, constant(88f)), constant(-87f)))
-      case Op.Tanh  => tanh(a)
-      case Op.Acos  => acos(node.args(0))
-      case Op.Asin  => two("sub", constant(1.57079633f), acos(node.args(0)))
-      case Op.Rint  => rint(a)
-      case Op.Floor =>
-        val x       = a
-        val nearest = rint(x)
-        blend(nearest, two("sub", nearest, constant(1f)), compare("GT", nearest, x))
-      case Op.Ceil =>
-        val x       = a
-        val nearest = rint(x)
-        blend(nearest, two("add", nearest, constant(1f)), compare("LT", nearest, x))
-      case Op.Signum =>
-        val x    = a
-        val zero = constant(0f)
-        blend(blend(x, constant(-1f), compare("LT", x, zero)), constant(1f), compare("GT", x, zero))
-      case Op.Remainder =>
-        val (x, y) = (a, node.args(1))
-        val times  =
-          if y.isConst then
-            two("sub", fma(x, constant((1 / y.value).toFloat), constant(Round)), constant(Round))
-          else rint(two("div", x, of(y)))
-        if y.isConst then fma(times, constant(-y.value.toFloat), x)
-        else fma(unary("neg", times), of(y), x)
-      case Op.Always => throw Untraceable("a condition that always holds")
-
-  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has those of the last two for passes written
-  // by hand.
-
-  private def sinCos(of: Node): (Int, Int) = pairs.getOrElseUpdate(
-    of, {
-      val angle    = this.of(of)
-      val rounded  = fma(angle, constant(0.63661977f), constant(Round))
-      val quarters = two("sub", rounded, constant(Round))
-      val rest     = fma(
-        quarters,
-        constant(-7.549789948768648e-8f),
-        fma(quarters, constant(-4.837512969970703e-4f), fma(quarters, constant(-1.5703125f), angle))
-      )
-      val square = two("mul", rest, rest)
-      val sin    = fma(
-        two("mul", series(square, -1.9515295891e-4f, 8.3321608736e-3f, -1.6666654611e-1f), square),
-        rest,
-        rest
-      )
-      val cos =
-        series(square, 2.443315711809948e-5f, -1.388731625493765e-3f, 4.166664568298827e-2f, -0.5f, 1f)
-      val quadrant = reinterpret(rounded, "Ints")
-      val odd      = toFloatMask(intCompare("LT", shift("LSHL", quadrant, 31), intConstant(0)))
-      val sinSign  = shift("LSHL", intTwo("and", quadrant, intConstant(2)), 30)
-      val cosSign  =
-        shift("LSHL", intTwo("and", intTwo("add", quadrant, intConstant(1)), intConstant(2)), 30)
-      (signed(blend(sin, cos, odd), sinSign), signed(blend(cos, sin, odd), cosSign))
-    }
-  )
-
-  private def atan2(y: Int, x: Int): Int =
-    val (ax, ay) = (unary("abs", x), unary("abs", y))
-    val steep    = compare("GT", ay, ax)
-    val large    = two("add", blend(ax, ay, steep), constant(1e-30f))
-    val small    = blend(ay, ax, steep)
-    val beyond   = compare("GT", small, two("mul", large, constant(0.41421356f)))
-    val ratio    = two(
-      "div",
-      blend(small, two("sub", small, large), beyond),
-      blend(large, two("add", large, small), beyond)
-    )
-    val square = two("mul", ratio, ratio)
-    val rise   = two(
-      "mul",
-      series(square, 8.05374449538e-2f, -1.38776856032e-1f, 1.99777106478e-1f, -3.33329491539e-1f),
-      square
-    )
-    val first  = fma(rise, ratio, ratio)
-    val second = blend(first, two("add", first, constant(0.785398163f)), beyond)
-    val third  = blend(second, two("sub", constant(1.57079633f), second), steep)
-    val angle  = blend(third, two("sub", constant(3.14159265f), third), compare("LT", x, constant(0f)))
-    val sign   = intTwo("and", reinterpret(y, "Ints"), intConstant(Int.MinValue))
-    reinterpret(intTwo("or", reinterpret(angle, "Ints"), sign), "Floats")
-
-  private def exp(x: Int): Int =
-    val rounded = fma(x, constant(1.44269504f), constant(Round))
-    val power   = two("sub", rounded, constant(Round))
-    val rest    = fma(power, constant(2.12194440e-4f), fma(power, constant(-0.693359375f), x))
-    val tail    = series(
-      rest,
-      1.9875691500e-4f,
-      1.3981999507e-3f,
-      8.3334519073e-3f,
-      4.1665795894e-2f,
-      1.6666665459e-1f,
-      5.0000001201e-1f
-    )
-    val fraction = reinterpret(fma(tail, two("mul", rest, rest), two("add", rest, constant(1f))), "Ints")
-    reinterpret(intTwo("add", fraction, shift("LSHL", reinterpret(rounded, "Ints"), 23)), "Floats")
-
-  private def tanh(x: Int): Int =
-    val within = limited("GT", limited("LT", x, constant(9f)), constant(-9f))
-    val power  = exp(two("add", within, within))
-    two("div", two("sub", power, constant(1f)), two("add", power, constant(1f)))
-
-  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. */
-  private def acos(of: Node): Int =
-    val x     = this.of(of)
-    val plain = isPositive(of)
-    val size  = limited("LT", if plain then x else unary("abs", x), constant(1f))
-    val rise  = series(
-      size,
-      -0.0012624911f,
-      0.0066700901f,
-      -0.0170881256f,
-      0.0308918810f,
-      -0.0501743046f,
-      0.0889789874f,
-      -0.2145988016f,
-      1.5707963050f
-    )
-    val angle = two("mul", unary("sqrt", two("sub", constant(1f), size)), rise)
-    if plain then angle
-    else blend(angle, two("sub", constant(3.14159265f), angle), compare("LT", x, constant(0f)))
-
-  private def isPositive(node: Node): Boolean = node.op match
-    case Op.Sqrt | Op.Abs | Op.Exp | Op.Hypot => true
-    case Op.Const                             => node.value >= 0
-    case Op.Min                               => node.args.forall(isPositive)
-    case Op.Max                               => node.args.exists(isPositive)
-    case _                                    => false
-
-  private def rint(x: Int): Int = two("sub", two("add", x, constant(Round)), constant(Round))
-
-  /** By Horner's rule, the highest power's coefficient first. */
-  private def series(x: Int, coefficients: Float*): Int =
-    coefficients.tail.foldLeft(constant(coefficients.head))((sum, each) => fma(sum, x, constant(each)))
-
-  private def signed(x: Int, sign: Int): Int =
-    load(reinterpret(x, "Ints"))
-    code.getstatic(operators, "XOR", associative)
-    load(sign)
-    code.invokevirtual(int, "lanewise", MethodTypeDesc.of(int, binary, any))
-    reinterpret(stored(), "Floats")
-
   // Single operations.
 
-  private def constant(value: Float): Int =
+  protected def constant(value: Float): Int =
     floatConstants.getOrElseUpdate(java.lang.Float.floatToRawIntBits(value), fresh())
+  protected def bitConstant(value: Int): Int = bitConstants.getOrElseUpdate(value, fresh())
 
-  private def intConstant(value: Int): Int = intConstants.getOrElseUpdate(value, fresh())
+  protected def neg(a: Int): Int                 = one("neg", a)
+  protected def abs(a: Int): Int                 = one("abs", a)
+  protected def sqrt(a: Int): Int                = one("sqrt", a)
+  protected def add(a: Int, b: Int): Int         = two("add", a, b)
+  protected def sub(a: Int, b: Int): Int         = two("sub", a, b)
+  protected def mul(a: Int, b: Int): Int         = two("mul", a, b)
+  protected def div(a: Int, b: Int): Int         = two("div", a, b)
+  protected def fma(a: Int, b: Int, c: Int): Int =
+    load(a); load(b); load(c)
+    code.invokevirtual(float, "fma", MethodTypeDesc.of(float, any, any))
+    stored()
+  protected def choose(otherwise: Int, where: Int, condition: Int): Int =
+    load(otherwise); load(where); load(condition)
+    code.invokevirtual(float, "blend", MethodTypeDesc.of(float, any, mask))
+    stored()
 
-  private def load(place: Int): Unit = code.aload(place): Unit
+  protected def isLess(a: Int, b: Int): Int   = compare(float, "LT", a, b)
+  protected def isAtMost(a: Int, b: Int): Int = compare(float, "LE", a, b)
+  protected def isEqual(a: Int, b: Int): Int  = compare(float, "EQ", a, b)
+  protected def not(a: Int): Int              =
+    load(a)
+    code.invokevirtual(mask, "not", MethodTypeDesc.of(mask))
+    stored()
+  protected def and(a: Int, b: Int): Int = masks("and", a, b)
+  protected def or(a: Int, b: Int): Int  = masks("or", a, b)
 
-  private def stored(): Int =
-    val place = fresh()
-    code.astore(place)
-    place
+  protected def bitsOf(a: Int): Int          = reinterpret(a, float, "reinterpretAsInts", int)
+  protected def ofBits(a: Int): Int          = reinterpret(a, int, "reinterpretAsFloats", float)
+  protected def addBits(a: Int, b: Int): Int = bits("add", a, b)
+  protected def andBits(a: Int, b: Int): Int = bits("and", a, b)
+  protected def orBits(a: Int, b: Int): Int  = bits("or", a, b)
+  protected def xorBits(a: Int, b: Int): Int =
+    load(a)
+    code.getstatic(operators, "XOR", associative)
+    load(b)
+    code.invokevirtual(int, "lanewise", MethodTypeDesc.of(int, binary, any))
+    stored()
+  protected def shiftLeft(a: Int, by: Int): Int =
+    load(a)
+    code.getstatic(operators, "LSHL", binary).loadConstant(by)
+    code.invokevirtual(int, "lanewise", MethodTypeDesc.of(int, binary, ConstantDescs.CD_int))
+    stored()
+  protected def isHighest(a: Int): Int =
+    load(compare(int, "LT", a, bitConstant(0)))
+    code.getstatic(math, "SPECIES", species)
+    code.invokevirtual(mask, "cast", MethodTypeDesc.of(mask, species))
+    stored()
 
-  private def unary(name: String, a: Int): Int =
+  private def one(name: String, a: Int): Int =
     load(a)
     code.invokevirtual(float, name, MethodTypeDesc.of(float))
     stored()
@@ -405,72 +249,34 @@ private final class PassCompiler(
     code.invokevirtual(float, name, MethodTypeDesc.of(float, any))
     stored()
 
-  private def fma(a: Int, b: Int, c: Int): Int =
-    load(a); load(b); load(c)
-    code.invokevirtual(float, "fma", MethodTypeDesc.of(float, any, any))
-    stored()
-
-  private def extreme(how: String, node: Node): Int =
-    val Vector(a, b) = node.args
-    if b.isConst || b.op == Op.Param then limited(how, of(a), of(b)) else limited(how, of(b), of(a))
-
-  /** The limit where it is less (`LT`) or more (`GT`) than the value: in two instructions, where the vector
-    * API's own `min` and `max` take six on most machines. What is no number stays so within limits that are.
-    */
-  private def limited(how: String, value: Int, limit: Int): Int =
-    blend(value, limit, compare(how, limit, value))
-
-  private def blend(otherwise: Int, where: Int, condition: Int): Int =
-    load(otherwise); load(where); load(condition)
-    code.invokevirtual(float, "blend", MethodTypeDesc.of(float, any, mask))
-    stored()
-
-  private def compare(how: String, a: Int, b: Int): Int =
-    load(a)
-    code.getstatic(operators, how, comparison)
-    load(b)
-    code.invokevirtual(float, "compare", MethodTypeDesc.of(mask, comparison, any))
-    stored()
-
-  private def maskUnary(name: String, a: Int): Int =
-    load(a)
-    code.invokevirtual(mask, name, MethodTypeDesc.of(mask))
-    stored()
-
-  private def maskTwo(name: String, a: Int, b: Int): Int =
-    load(a); load(b)
-    code.invokevirtual(mask, name, MethodTypeDesc.of(mask, mask))
-    stored()
-
-  private def reinterpret(a: Int, as: String): Int =
-    val (from, to) = if as == "Ints" then (float, int) else (int, float)
-    load(a)
-    code.invokevirtual(from, s"reinterpretAs$as", MethodTypeDesc.of(to))
-    stored()
-
-  private def intTwo(name: String, a: Int, b: Int): Int =
+  private def bits(name: String, a: Int, b: Int): Int =
     load(a); load(b)
     code.invokevirtual(int, name, MethodTypeDesc.of(int, any))
     stored()
 
-  private def shift(how: String, a: Int, by: Int): Int =
-    load(a)
-    code.getstatic(operators, how, binary).loadConstant(by)
-    code.invokevirtual(int, "lanewise", MethodTypeDesc.of(int, binary, ConstantDescs.CD_int))
+  private def masks(name: String, a: Int, b: Int): Int =
+    load(a); load(b)
+    code.invokevirtual(mask, name, MethodTypeDesc.of(mask, mask))
     stored()
 
-  private def intCompare(how: String, a: Int, b: Int): Int =
+  private def compare(of: ClassDesc, how: String, a: Int, b: Int): Int =
     load(a)
     code.getstatic(operators, how, comparison)
     load(b)
-    code.invokevirtual(int, "compare", MethodTypeDesc.of(mask, comparison, any))
+    code.invokevirtual(of, "compare", MethodTypeDesc.of(mask, comparison, any))
     stored()
 
-  private def toFloatMask(a: Int): Int =
+  private def reinterpret(a: Int, from: ClassDesc, how: String, to: ClassDesc): Int =
     load(a)
-    code.getstatic(math, "SPECIES", species)
-    code.invokevirtual(mask, "cast", MethodTypeDesc.of(mask, species))
+    code.invokevirtual(from, how, MethodTypeDesc.of(to))
     stored()
+
+  private def load(place: Int): Unit = code.aload(place): Unit
+
+  private def stored(): Int =
+    val place = fresh()
+    code.astore(place)
+    place
 
   /** From an array of the arguments, the worlds' numbers from an index on. */
   private def loaded(argument: Int, from: Int): Int =
@@ -478,21 +284,22 @@ private final class PassCompiler(
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
 
-  /** The same in all worlds. Fetched where it is used: registers are few. */
-  private def shared(number: Int): Int =
-    code.getstatic(math, "SPECIES", species)
-    code.aload(2).loadConstant(number).faload()
-    code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
-    stored()
-
-  /** See [[LaneFunction.place]]. */
-  private def parameter(number: Int): Int =
+  protected def parameter(number: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(2)
-    code.iload(world).loadConstant(parameters).imul().loadConstant(number * LaneMath.LANES).iadd()
-    code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
+    if parameters == 0 then
+      // The same in all worlds. Fetched where it is used: registers are few.
+      code.loadConstant(number).faload()
+      code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
+    else
+      // See LaneFunction.place.
+      code.iload(world).loadConstant(parameters).imul().loadConstant(number * LaneMath.LANES).iadd()
+      code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
 
-  private def input(number: Int): Int =
+  protected def input(number: Int): Int =
+    if number < differences then sub(row(number), row(subtrahends + number)) else row(number)
+
+  private def row(number: Int): Int =
     code.getstatic(math, "SPECIES", species)
     locate(number)
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
@@ -521,5 +328,3 @@ private final class PassCompiler(
       "intoArray",
       MethodTypeDesc.of(ConstantDescs.CD_void, floats, ConstantDescs.CD_int)
     ): Unit
-
-  private val Round = 12582912f

@@ -1,7 +1,7 @@
 package skein.simd
 
 import scala.collection.mutable
-import skein.formula.{Node, Op, Trace}
+import skein.formula.{Node, Op}
 
 /** One loop over the worlds.
   *
@@ -42,19 +42,8 @@ private object Passes:
     */
   def of(outputs: Vector[Node], ofRows: Boolean): Vector[Pass] =
     val (most, mostConstants) = if ofRows then (MostOfRows, MostConstantsOfRows) else (Most, MostConstants)
-    val order                 = Trace.needed(outputs)
-    val fused                 = order.iterator
-      .filter(_.op == Op.Add)
-      .flatMap(sum => Passes.factor(sum))
-      .toSet
-    val usedPlainly = order.iterator
-      .flatMap(node => node.args.filterNot(arg => Passes.factor(node).contains(arg)))
-      .toSet ++ outputs
-    val computed = order.filterNot(node => node.op == Op.Mul && fused(node) && !usedPlainly(node))
-    def argsOf(node: Node): Vector[Node] =
-      node.args.flatMap(arg =>
-        if arg.op == Op.Mul && fused(arg) && !usedPlainly(arg) then arg.args else Vector(arg)
-      )
+    val products              = Products(outputs)
+    import products.{argsOf, computed}
     val ends   = cut(computed, argsOf, most, mostConstants)
     val number = ends.size - 1
     val passOf = mutable.HashMap.empty[Node, Int]
@@ -162,10 +151,6 @@ private object Passes:
   private def isLeaf(node: Node) = node.op match
     case Op.Const | Op.Input | Op.Param | Op.Always => true
     case _                                          => false
-
-  /** The product that a sum is fused with. */
-  def factor(sum: Node): Option[Node] =
-    if sum.op == Op.Add then sum.args.find(_.op == Op.Mul) else None
 
 /** What an operation costs by lanes. */
 private object LaneCosts:

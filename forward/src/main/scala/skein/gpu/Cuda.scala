@@ -1,0 +1,67 @@
+package skein.gpu
+
+import java.lang.foreign.ValueLayout.{ADDRESS, JAVA_INT, JAVA_LONG}
+import java.lang.foreign.{Arena, FunctionDescriptor, Linker, MemoryLayout, SymbolLookup}
+import java.lang.invoke.MethodHandle
+import scala.util.control.NonFatal
+
+/** NVIDIA's driver (CUDA driver API 10.2 and later), which every machine with such a GPU has; no toolkit is
+  * needed. Names are those of the API.
+  *
+  * @throws GpuFailure where the driver refuses a call, with what it says
+  */
+private[gpu] final class Cuda private (library: SymbolLookup):
+  private val linker = Linker.nativeLinker
+
+  private def function(name: String, arguments: MemoryLayout*): MethodHandle =
+    val symbol = library.find(name).orElseThrow(() => GpuFailure(s"the driver has no $name; a newer one has"))
+    linker.downcallHandle(symbol, FunctionDescriptor.of(JAVA_INT, arguments*))
+
+  val init: MethodHandle             = function("cuInit", JAVA_INT)
+  val deviceGetCount: MethodHandle   = function("cuDeviceGetCount", ADDRESS)
+  val deviceGet: MethodHandle        = function("cuDeviceGet", ADDRESS, JAVA_INT)
+  val deviceGetName: MethodHandle    = function("cuDeviceGetName", ADDRESS, JAVA_INT, JAVA_INT)
+  val primaryCtxRetain: MethodHandle = function("cuDevicePrimaryCtxRetain", ADDRESS, JAVA_INT)
+  val ctxSetCurrent: MethodHandle    = function("cuCtxSetCurrent", ADDRESS)
+  val ctxSynchronize: MethodHandle   = function("cuCtxSynchronize")
+  val memGetInfo: MethodHandle       = function("cuMemGetInfo_v2", ADDRESS, ADDRESS)
+  val memAlloc: MethodHandle         = function("cuMemAlloc_v2", ADDRESS, JAVA_LONG)
+  val memFree: MethodHandle          = function("cuMemFree_v2", JAVA_LONG)
+  val memcpyHtoD: MethodHandle       = function("cuMemcpyHtoD_v2", JAVA_LONG, ADDRESS, JAVA_LONG)
+  val memcpyDtoH: MethodHandle       = function("cuMemcpyDtoH_v2", ADDRESS, JAVA_LONG, JAVA_LONG)
+  val moduleLoadDataEx: MethodHandle =
+    function("cuModuleLoadDataEx", ADDRESS, ADDRESS, JAVA_INT, ADDRESS, ADDRESS)
+  val moduleGetFunction: MethodHandle = function("cuModuleGetFunction", ADDRESS, ADDRESS, ADDRESS)
+  val launchKernel: MethodHandle      = function(
+    "cuLaunchKernel",
+    Vector(ADDRESS) ++ Vector.fill(7)(JAVA_INT) ++ Vector.fill(3)(ADDRESS)*
+  )
+  private val getErrorString = function("cuGetErrorString", JAVA_INT, ADDRESS)
+
+  def call(function: MethodHandle, arguments: Any*): Unit =
+    val status = function.invokeWithArguments(arguments.map(_.asInstanceOf[AnyRef])*).asInstanceOf[Int]
+    if status != 0 then throw GpuFailure(reasonOf(status))
+
+  private def reasonOf(status: Int): String =
+    val arena = Arena.ofConfined()
+    try
+      val text = arena.allocate(ADDRESS)
+      val told = getErrorString.invokeWithArguments(status, text).asInstanceOf[Int] == 0
+      val name = text.get(ADDRESS, 0)
+      if told && name.address != 0 then s"${name.reinterpret(Cuda.MostChars).getString(0)} (error $status)"
+      else s"error $status"
+    finally arena.close()
+
+private[gpu] object Cuda:
+  private val MostChars = 4096L
+
+  /** @return or why there is none */
+  def load(): Either[String, Cuda] =
+    val names = if scala.util.Properties.isWin then Seq("nvcuda.dll") else Seq("libcuda.so.1", "libcuda.so")
+    names.iterator
+      .map: name =>
+        try Right(Cuda(SymbolLookup.libraryLookup(name, Arena.global)))
+        catch
+          case failure: GpuFailure => Left(failure.getMessage)
+          case NonFatal(_)         => Left(s"no NVIDIA driver: the library $name is not found")
+      .reduce((first, second) => if first.isRight then first else second)

@@ -1,0 +1,106 @@
+package skein.gpu
+
+import java.lang.foreign.ValueLayout.{ADDRESS, JAVA_BYTE, JAVA_FLOAT, JAVA_INT, JAVA_LONG}
+import java.lang.foreign.{Arena, MemorySegment}
+
+/** An NVIDIA GPU, by its driver.
+  *
+  * @param name as the driver tells it
+  */
+private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val name: String) extends Gpu:
+  import CudaGpu.*
+
+  private[skein] def kernel(module: String, name: String): GpuKernel = within: arena =>
+    val log             = arena.allocate(MostLog)
+    val options         = arena.allocateFrom(JAVA_INT, JitErrorLog, JitErrorLogBytes)
+    val values          = arena.allocate(ADDRESS, 2)
+    val loaded, located = arena.allocate(ADDRESS)
+    values.setAtIndex(ADDRESS, 0, log)
+    values.setAtIndex(ADDRESS, 1, MemorySegment.ofAddress(MostLog))
+    try cuda.call(cuda.moduleLoadDataEx, loaded, arena.allocateFrom(module), 2, options, values)
+    catch
+      case refused: GpuFailure =>
+        throw GpuFailure(s"${refused.getMessage.stripPrefix("the GPU: ")} ${log.getString(0).trim}")
+    cuda.call(cuda.moduleGetFunction, located, loaded.get(ADDRESS, 0), arena.allocateFrom(name))
+    Kernel(located.get(ADDRESS, 0))
+
+  private var ran = 0L
+  def ranNs: Long = ran
+
+  def freeBytes: Long = within: arena =>
+    val free, total = arena.allocate(JAVA_LONG)
+    cuda.call(cuda.memGetInfo, free, total)
+    free.get(JAVA_LONG, 0)
+
+  private[skein] def buffer(words: Long): Buffer = within: arena =>
+    val address = arena.allocate(JAVA_LONG)
+    cuda.call(cuda.memAlloc, address, (words * 4).max(4))
+    Buffer(address.get(JAVA_LONG, 0), words)
+
+  private[skein] def buffer(numbers: Array[Float]): Buffer =
+    val made = buffer(numbers.length)
+    within(arena => made.write(arena.allocateFrom(JAVA_FLOAT, numbers*)))
+    made
+
+  private[skein] def buffer(numbers: Array[Int]): Buffer =
+    val made = buffer(numbers.length)
+    within(arena => made.write(arena.allocateFrom(JAVA_INT, numbers*)))
+    made
+
+  final class Buffer(val address: Long, words: Long) extends GpuBuffer:
+    def write(from: MemorySegment): Unit = cuda.call(cuda.memcpyHtoD, address, from, from.byteSize)
+
+    def floats(): Array[Float] = within: arena =>
+      val here = arena.allocate(JAVA_FLOAT, words)
+      cuda.call(cuda.memcpyDtoH, here, address, 4 * words)
+      here.toArray(JAVA_FLOAT)
+
+    def close(): Unit = within(_ => cuda.call(cuda.memFree, address))
+
+  private final class Kernel(function: MemorySegment) extends GpuKernel:
+    def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit = within: arena =>
+      val places = arena.allocate(ADDRESS, arguments.size.max(1))
+      for (argument, i) <- arguments.zipWithIndex do
+        val value = argument match
+          case buffer: GpuBuffer     => arena.allocateFrom(JAVA_LONG, buffer.address)
+          case whole: Int            => arena.allocateFrom(JAVA_INT, whole)
+          case number: Float         => arena.allocateFrom(JAVA_FLOAT, number)
+          case numbers: Array[Float] => arena.allocateFrom(JAVA_FLOAT, numbers*)
+          case other                 => throw IllegalArgumentException(s"no kernel takes $other")
+        places.setAtIndex(ADDRESS, i, value)
+      val none  = MemorySegment.NULL
+      val start = System.nanoTime()
+      cuda.call(cuda.launchKernel, function, blocks, 1, 1, threadsOfBlock, 1, 1, 0, none, places, none)
+      cuda.call(cuda.ctxSynchronize)
+      ran += System.nanoTime() - start
+
+  private def within[A](body: Arena => A): A =
+    val arena = Arena.ofConfined()
+    try
+      cuda.call(cuda.ctxSetCurrent, context)
+      body(arena)
+    finally arena.close()
+
+private object CudaGpu:
+  private val MostLog          = 8192L
+  private val JitErrorLog      = 5
+  private val JitErrorLogBytes = 6
+  private val MostName         = 256
+
+  /** The first of this machine, or why there is none. */
+  lazy val first: Either[String, Gpu] = Cuda.load().flatMap: cuda =>
+    val arena = Arena.ofConfined()
+    try
+      val number, device = arena.allocate(JAVA_INT)
+      val name           = arena.allocate(JAVA_BYTE, MostName)
+      val context        = arena.allocate(ADDRESS)
+      cuda.call(cuda.init, 0)
+      cuda.call(cuda.deviceGetCount, number)
+      if number.get(JAVA_INT, 0) == 0 then Left("the NVIDIA driver knows of no GPU")
+      else
+        cuda.call(cuda.deviceGet, device, 0)
+        cuda.call(cuda.deviceGetName, name, MostName, device.get(JAVA_INT, 0))
+        cuda.call(cuda.primaryCtxRetain, context, device.get(JAVA_INT, 0))
+        Right(new CudaGpu(cuda, context.get(ADDRESS, 0), name.getString(0)))
+    catch case refused: GpuFailure => Left(refused.getMessage)
+    finally arena.close()

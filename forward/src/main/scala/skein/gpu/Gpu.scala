@@ -1,0 +1,51 @@
+package skein.gpu
+
+/** A processor that runs one program in many threads at once, for flights by the thousand. Kernels are texts
+  * in PTX ([[Ptx]]). One caller at a time.
+  */
+trait Gpu:
+  /** As its driver tells it. */
+  def name: String
+
+  /** Bytes of its memory that are free. */
+  def freeBytes: Long
+
+  /** How long kernels ran so far, ns. */
+  def ranNs: Long
+
+  /** Translates a kernel for this GPU.
+    *
+    * @throws GpuFailure with the translator's complaint
+    */
+  private[skein] def kernel(module: String, name: String): GpuKernel
+
+  /** Memory for so many numbers of 4 bytes, until it is closed.
+    *
+    * @throws GpuFailure if there is not so much
+    */
+  private[skein] def buffer(words: Long): GpuBuffer
+  private[skein] def buffer(numbers: Array[Float]): GpuBuffer
+  private[skein] def buffer(numbers: Array[Int]): GpuBuffer
+
+object Gpu:
+  /** The first NVIDIA GPU of this machine; the same object each time.
+    *
+    * @return or why there is none
+    */
+  def find(): Either[String, Gpu] = CudaGpu.first
+
+/** Memory of a GPU. */
+private[skein] trait GpuBuffer extends AutoCloseable:
+  def address: Long
+  def floats(): Array[Float]
+  def close(): Unit
+
+private[skein] trait GpuKernel:
+  /** Runs it to its end.
+    *
+    * @param arguments in the kernel's order: a [[GpuBuffer]], an Int, a Float or an array of floats each
+    */
+  def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit
+
+/** What a GPU's driver refuses. */
+final class GpuFailure(message: String) extends RuntimeException(s"the GPU: $message")

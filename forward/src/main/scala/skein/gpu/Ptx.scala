@@ -1,0 +1,150 @@
+package skein.gpu
+
+/** The text of one kernel in PTX, the instructions that NVIDIA's driver translates for whatever GPU is there
+  * (PTX ISA 6.4). Each operation takes registers by number and leaves its result in a new one, unless told to
+  * leave it in a variable. Floats are rounded to nearest and never flushed to zero or fused unasked, so that
+  * they are those of a CPU to the bit. Mutable.
+  *
+  * @param parameters of the kernel, by name
+  * @param localBytes memory of each thread's own
+  */
+final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: Int = 0):
+  import Ptx.*
+
+  private val text      = StringBuilder()
+  private var registers = 0
+  private var labels    = 0
+
+  def fresh(): Int =
+    registers += 1
+    registers - 1
+
+  def label(): String =
+    labels += 1
+    s"L$labels"
+
+  def place(label: String): Unit = text.append(label).append(":\n"): Unit
+
+  /** One instruction. */
+  def apply(instruction: String): Unit = text.append('\t').append(instruction).append(";\n"): Unit
+
+  // Floats.
+
+  def constant(value: Float, into: Int = fresh()): Int =
+    result(into)(r => s"mov.f32 %f$r, 0f${hex(java.lang.Float.floatToRawIntBits(value))}")
+  def move(from: Int, into: Int): Unit            = this(s"mov.f32 %f$into, %f$from")
+  def one(operation: String, a: Int): Int         = result()(r => s"$operation.f32 %f$r, %f$a")
+  def two(operation: String, a: Int, b: Int): Int = result()(r => s"$operation.f32 %f$r, %f$a, %f$b")
+  def fma(a: Int, b: Int, c: Int): Int            = result()(r => s"fma.rn.f32 %f$r, %f$a, %f$b, %f$c")
+  def choose(condition: Int, a: Int, b: Int): Int = result()(r => s"selp.f32 %f$r, %f$a, %f$b, %p$condition")
+  def compare(how: String, a: Int, b: Int): Int   = result()(r => s"setp.$how.f32 %p$r, %f$a, %f$b")
+  def fromWhole(a: Int): Int                      = result()(r => s"cvt.rn.f32.s32 %f$r, %r$a")
+
+  def wholeOf(a: Int): Int = result()(r => s"cvt.rzi.s32.f32 %r$r, %f$a")
+
+  // Conditions.
+
+  def conditions(how: String, a: Int, b: Int): Int = result()(r => s"$how.pred %p$r, %p$a, %p$b")
+  def not(a: Int): Int                             = result()(r => s"not.pred %p$r, %p$a")
+
+  // Whole numbers and bits.
+
+  def whole(value: Int, into: Int = fresh()): Int     = result(into)(r => s"mov.b32 %r$r, $value")
+  def wholes(how: String, a: Int, b: Int): Int        = result()(r => s"$how %r$r, %r$a, %r$b")
+  def wholes(how: String, a: Int, b: String): Int     = result()(r => s"$how %r$r, %r$a, $b")
+  def compareWholes(how: String, a: Int, b: Int): Int = result()(r => s"setp.$how.s32 %p$r, %r$a, %r$b")
+  def compareWhole(how: String, a: Int, b: Int): Int  = result()(r => s"setp.$how.s32 %p$r, %r$a, $b")
+  def bitsOf(a: Int): Int                             = result()(r => s"mov.b32 %r$r, %f$a")
+  def ofBits(a: Int): Int                             = result()(r => s"mov.b32 %f$r, %r$a")
+  def special(register: String): Int                  = result()(r => s"mov.u32 %r$r, %$register")
+
+  /** The number of this thread among all. */
+  def thread(): Int =
+    val (block, size, own) = (special("ctaid.x"), special("ntid.x"), special("tid.x"))
+    result()(r => s"mad.lo.s32 %r$r, %r$block, %r$size, %r$own")
+
+  // Addresses.
+
+  /** The address of a number in an array of words of 4 bytes. */
+  def address(base: Int, index: Int, words: Int = 1): Int =
+    result()(r => s"mad.wide.s32 %rd$r, %r$index, ${4 * words}, %rd$base")
+
+  /** A whole number times a factor, as wide as an address. */
+  def wide(a: Int, factor: Int): Int = result()(r => s"mul.wide.s32 %rd$r, %r$a, $factor")
+  def sum(a: Int, b: Int): Int       = result()(r => s"add.s64 %rd$r, %rd$a, %rd$b")
+
+  def argument(parameter: String): Int = parameters.collectFirst {
+    case (`parameter`, Kind.Address) => result()(r => s"ld.param.u64 %rd$r, [$parameter]")
+    case (`parameter`, Kind.Whole)   => result()(r => s"ld.param.u32 %r$r, [$parameter]")
+    case (`parameter`, Kind.Float)   => result()(r => s"ld.param.f32 %f$r, [$parameter]")
+  }.getOrElse(throw new NoSuchElementException(s"$name has no parameter $parameter"))
+
+  /** One of the floats of a parameter. */
+  def argument(parameter: String, number: Int): Int =
+    result()(r => s"ld.param.f32 %f$r, [$parameter+${4 * number}]")
+
+  def load(base: Int, word: Int = 0, into: Int = fresh()): Int =
+    result(into)(r => s"ld.global.nc.f32 %f$r, [%rd$base+${4 * word}]")
+  def loadWhole(base: Int, word: Int = 0, into: Int = fresh()): Int =
+    result(into)(r => s"ld.global.nc.u32 %r$r, [%rd$base+${4 * word}]")
+  def loadAddress(base: Int, word: Int): Int =
+    result()(r => s"ld.global.nc.u64 %rd$r, [%rd$base+${4 * word}]")
+  def store(value: Int, base: Int, word: Int = 0): Unit =
+    this(s"st.global.f32 [%rd$base+${4 * word}], %f$value")
+
+  // This thread's own memory, from a place on that is told in bytes.
+
+  def own(bytes: Int): Int =
+    val wide = result()(r => s"cvt.u64.u32 %rd$r, %r$bytes")
+    result()(r => s"add.u64 %rd$r, %rd$wide, %rd${ownBase()}")
+
+  private var base = None: Option[Int]
+
+  /** Must be called before any branch, if own memory is used. */
+  def ownBase(): Int =
+    if base.isEmpty then base = Some(result()(r => s"mov.u64 %rd$r, own"))
+    base.get
+
+  def loadOwn(at: Int, word: Int): Int = result()(r => s"ld.local.f32 %f$r, [%rd$at+${4 * word}]")
+  def storeOwn(value: Int, at: Int, word: Int): Unit = this(s"st.local.f32 [%rd$at+${4 * word}], %f$value")
+
+  // Branches.
+
+  def go(to: String): Unit                                          = this(s"bra.uni $to")
+  def goIf(condition: Int, to: String, holds: Boolean = true): Unit =
+    this(s"@${if holds then "" else "!"}%p$condition bra $to")
+
+  /** To the label of this number: all threads of a block to the same. */
+  def goTo(number: Int, labels: Seq[String]): Unit =
+    val table = label()
+    text.append(s"$table:\t.branchtargets ${labels.mkString(", ")};\n")
+    this(s"brx.idx.uni %r$number, $table")
+
+  private def result(into: Int = fresh())(instruction: Int => String): Int =
+    this(instruction(into))
+    into
+
+  /** The whole module. */
+  def module: String =
+    val arguments = parameters.map((name, kind) => s"\t${kind.declared(name)}").mkString(",\n")
+    val own       = if localBytes > 0 then s"\t.local .align 16 .b8 own[$localBytes];\n" else ""
+    val declared  = Seq("f32 %f", "pred %p", "b32 %r", "b64 %rd")
+      .map(kind => s"\t.reg .$kind<${registers + 1}>;\n")
+      .mkString
+    s".version 6.4\n.target sm_75\n.address_size 64\n\n.visible .entry $name(\n$arguments\n)\n{\n$declared$own$text}\n"
+
+  private def hex(bits: Int) = String.format("%08X", bits)
+
+object Ptx:
+  /** What a kernel takes. */
+  enum Kind:
+    case Address, Whole, Float
+
+    /** So many floats, the same for all threads. */
+    case Floats(count: Int)
+
+    private[gpu] def declared(name: String): String = this match
+      case Address       => s".param .u64 $name"
+      case Whole         => s".param .u32 $name"
+      case Float         => s".param .f32 $name"
+      case Floats(count) => s".param .align 4 .b8 $name[${4 * count}]"

@@ -1,0 +1,24 @@
+package skein.lanes
+
+import skein.forward.{Delays, Duel, LoopTiming}
+
+/** The episodes of duels that fly by timetables.
+  *
+  * @param duel start, speeds and duration
+  */
+private[lanes] final class DuelEpisodes(
+    val duel: Duel,
+    val timing: LoopTiming,
+    val model: LaneDynamics,
+    val eyes: DuelEyes
+):
+  private val sensors = Seq(0 -> duel.evader.eye, 1 -> duel.pursuer.eye).collect { case (self, Some(eye)) =>
+    self -> eye
+  }.toMap
+
+  /** What tells an episode from others: worlds that wait meet no delays. */
+  def of(link: Delays, key: Int): Any =
+    if timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody then () else (link, key)
+
+  def timetable(link: Delays, key: Int): Timetable =
+    Timetable.of(2, duel.durationS, timing, link, key, model, sensors)

@@ -1,0 +1,70 @@
+package skein.lanes
+
+import skein.gpu.{Gpu, GpuKernel, Ptx}
+import skein.units.Vector3
+import skein.vehicle.Quadrotor
+
+/** [[LaneQuadrotors]] on a GPU: each thread flies one quadrotor with its flight controller under
+  * `moveByVelocityZ`, and ends with the same bits.
+  */
+private[skein] final class GpuQuadrotors private (gpu: Gpu, lanes: QuadrotorLanes):
+  private lazy val kernel: GpuKernel = gpu.kernel(GpuQuadrotors.text(lanes), GpuQuadrotors.Name)
+
+  /** Lets vehicles that hover, settled, fly so many steps under a command.
+    *
+    * @param goalNed what each holds at first
+    * @param commanded velocity north and east, m/s, and down, m
+    * @return positions, world NED, m
+    */
+  def fly(goalNed: Array[Vector3], commanded: Array[Vector3], steps: Int): Array[Vector3] =
+    import GpuQuadrotors.BlockVehicles
+    val count  = goalNed.length
+    val states = goalNed.map(goal => lanes.numbersOf(lanes.quadrotor.hovering(goal)).map(_.toFloat))
+    val rows   = lanes.rows.size
+    val state  = gpu.buffer(Array.tabulate(rows * count)(i => states(i % count)(i / count)))
+    val after  = gpu.buffer(rows.toLong * count)
+    val goal   = gpu.buffer(Array.tabulate(3 * count): i =>
+      val each = commanded(i % count)
+      Vector(each.x, each.y, each.z)(i / count).toFloat)
+    try
+      kernel((count + BlockVehicles - 1) / BlockVehicles, BlockVehicles, state, after, goal, count, steps)
+      val flown                         = after.floats()
+      def of(row: String)(vehicle: Int) = flown(lanes.row(row) * count + vehicle).toDouble
+      Array.tabulate(count)(i => Vector3(of("x")(i), of("y")(i), of("z")(i)))
+    finally
+      for each <- Seq(state, after, goal) do each.close()
+
+private[skein] object GpuQuadrotors:
+  private val Name          = "quadrotors"
+  private val BlockVehicles = 128
+
+  /** @return or why such quadrotors do not fly by lanes */
+  def of(gpu: Gpu, quadrotor: Quadrotor): Either[String, GpuQuadrotors] =
+    QuadrotorLanes.of(quadrotor).map(new GpuQuadrotors(gpu, _))
+
+  private[lanes] def text(lanes: QuadrotorLanes): String =
+    val code = Ptx(
+      Name,
+      Seq(
+        "state" -> Ptx.Kind.Address,
+        "after" -> Ptx.Kind.Address,
+        "goal"  -> Ptx.Kind.Address,
+        "count" -> Ptx.Kind.Whole,
+        "steps" -> Ptx.Kind.Whole
+      )
+    )
+    val state   = GpuVehicle.Variables(code, lanes.rows.map(_ => 0f))
+    val goal    = GpuVehicle.Variables(code, Seq.fill(3)(0f))
+    val end     = code.label()
+    val vehicle = code.thread()
+    val count   = code.argument("count")
+    code.goIf(code.compareWholes("ge", vehicle, count), end)
+    def places(of: String, rows: Int) =
+      Iterator.iterate(code.address(code.argument(of), vehicle))(code.address(_, count)).take(rows).toVector
+    for (at, row) <- places("state", lanes.rows.size).zipWithIndex do code.load(at, 0, state(row)): Unit
+    for (at, row) <- places("goal", 3).zipWithIndex do code.load(at, 0, goal(row)): Unit
+    GpuVehicle.repeat(code, code.argument("steps"))(lanes.step(code, state, goal))
+    for (at, row) <- places("after", lanes.rows.size).zipWithIndex do code.store(state(row), at)
+    code.place(end)
+    code("ret")
+    code.module

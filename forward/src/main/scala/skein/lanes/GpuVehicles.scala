@@ -1,0 +1,172 @@
+package skein.lanes
+
+import skein.forward.{Duelist, Reduced}
+import skein.gpu.{Ptx, PtxExpressions}
+
+/** One vehicle of a team in the world of each thread. Its state stands in variables. */
+private[lanes] trait GpuVehicle:
+  /** Begins where the vehicle starts, at rest. */
+  def start(): Unit
+
+  /** @return position north and east, m, and, if asked for, velocity, m/s
+    */
+  def look(record: GpuRecord, withVelocity: Boolean): Vector[Int]
+
+  /** Lets a command act, over the vehicle's speed. */
+  def act(record: GpuRecord, north: Int, east: Int): Unit
+
+private[lanes] object GpuVehicle:
+  /** Variables of a vehicle. */
+  final class Variables(code: Ptx, initial: Seq[Float]):
+    private val registers       = initial.map(_ => code.fresh()).toArray
+    def apply(number: Int): Int = registers(number)
+    def start(): Unit           = for (value, i) <- initial.zipWithIndex do code.constant(value, registers(i))
+
+    /** All take their values at once: one may be what another was. */
+    def take(values: Seq[Int]): Unit =
+      val kept = values.map: value =>
+        if registers.contains(value) then
+          val copy = code.fresh()
+          code.move(value, copy)
+          copy
+        else value
+      for (value, i) <- kept.zipWithIndex do code.move(value, registers(i))
+
+  /** Does something so many times. */
+  def repeat(code: Ptx, times: Int)(body: => Unit): Unit =
+    val (again, over) = (code.label(), code.label())
+    val left          = code.wholes("add.s32", times, "0")
+    code.place(again)
+    code.goIf(code.compareWhole("le", left, 0), over)
+    body
+    code(s"add.s32 %r$left, %r$left, -1")
+    code.go(again)
+    code.place(over)
+
+/** By [[LagExpressions]]. */
+private[lanes] final class GpuLagVehicle(code: Ptx, duelist: Duelist, model: Reduced) extends GpuVehicle:
+  import LagExpressions.State
+  private val state = GpuVehicle.Variables(
+    code,
+    Seq(duelist.startX.toFloat, duelist.startY.toFloat) ++ Seq.fill(State - 2)(0f)
+  )
+
+  def start(): Unit = state.start()
+
+  def look(record: GpuRecord, withVelocity: Boolean): Vector[Int] =
+    val asked = LagExpressions.position ++ (if withVelocity then LagExpressions.velocity else Nil)
+    PtxExpressions.write(code, asked)(state(_), parameter(record))
+
+  def act(record: GpuRecord, north: Int, east: Int): Unit =
+    state.take(PtxExpressions.write(code, LagExpressions.act)(
+      input => if input < State then state(input) else if input == State then north else east,
+      parameter(record)
+    ))
+
+  private def parameter(record: GpuRecord)(number: Int): Int =
+    if number == LagExpressions.Speed then code.constant((duelist.speed * model.gain).toFloat)
+    else record.time(number)
+
+/** By [[PlantStages]]. */
+private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuVehicle:
+  import PlantStages.{East, Kept, North, StartX, StartY, State}
+  private val stages      = lanes.stages
+  private val own         = stages.parametersOf(lanes.plant, duelist.speed)
+  private val wholeStep   = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
+  private val kept        = GpuVehicle.Variables(code, Seq.fill(stages.kept)(0f))
+  private val isCommanded = code.fresh()
+
+  def start(): Unit =
+    kept.start()
+    code.whole(0, isCommanded): Unit
+
+  def look(record: GpuRecord, withVelocity: Boolean): Vector[Int] =
+    val (atRest, over) = (code.label(), code.label())
+    val resting        = lanes.resting
+    val seen           = Vector.fill(if withVelocity then 4 else 2)(code.fresh())
+    code.goIf(code.compareWhole("eq", isCommanded, 0), atRest)
+    flyTo(record)
+    val flown = write(if withVelocity then stages.look else stages.position, 0, 0, timed(record))
+    for (into, value) <- seen.zip(flown) do code.move(value, into)
+    code.go(over)
+    code.place(atRest)
+    val rests = Seq(
+      duelist.startX.toFloat + resting.northM.toFloat,
+      duelist.startY.toFloat + resting.eastM.toFloat,
+      resting.northMps.toFloat,
+      resting.eastMps.toFloat
+    )
+    for (into, value) <- seen.zip(rests) do code.constant(value, into)
+    code.place(over)
+    seen
+
+  def act(record: GpuRecord, north: Int, east: Int): Unit =
+    val (first, over) = (code.label(), code.label())
+    code.goIf(code.compareWhole("eq", isCommanded, 0), first)
+    flyTo(record)
+    kept.take(write(stages.act, north, east, timed(record)))
+    code.go(over)
+    code.place(first)
+    kept.take(write(stages.begin, north, east, constantTime(_)))
+    code.whole(1, isCommanded): Unit
+    code.place(over)
+
+  private def flyTo(record: GpuRecord): Unit =
+    val steps = code.wholeOf(record.time(0))
+    GpuVehicle.repeat(code, steps)(kept.take(write(stages.goOn, 0, 0, constantTime(_))))
+
+  private def timed(record: GpuRecord)(number: Int) = record.time(1 + number)
+  private def constantTime(number: Int)             = code.constant(wholeStep(number))
+
+  private def write(of: BoundFunction, north: Int, east: Int, time: Int => Int): Vector[Int] =
+    PtxExpressions.write(code, of.nodes)(
+      of.inputs(_) match
+        case StartX                 => code.constant(duelist.startX.toFloat)
+        case StartY                 => code.constant(duelist.startY.toFloat)
+        case North                  => north
+        case East                   => east
+        case input if input >= Kept => kept(input - Kept)
+        case input                  => code.constant(lanes.initial(input - State)),
+      number =>
+        if number < stages.firstOfTime then code.constant(own(number)) else time(number - stages.firstOfTime)
+    )
+
+/** By the steps of [[QuadrotorLanes]], as [[TimetableQuadrotors]] are. */
+private[lanes] final class GpuQuadrotor(code: Ptx, duelist: Duelist, lanes: QuadrotorLanes)
+    extends GpuVehicle:
+  private val hovering = lanes.numbersOf(lanes.quadrotor.hovering(lanes.holdingAt(duelist.altitudeDownM)))
+  private val state    = GpuVehicle.Variables(code, hovering.map(_.toFloat))
+  private val goal = GpuVehicle.Variables(code, Seq(0f, 0f, lanes.holdingAt(duelist.altitudeDownM).z.toFloat))
+
+  def start(): Unit =
+    state.start()
+    goal.start()
+
+  def look(record: GpuRecord, withVelocity: Boolean): Vector[Int] =
+    fly(record)
+    val since                 = record.time(1)
+    val half                  = code.two("mul.rn", code.two("mul.rn", since, since), code.constant(0.5f))
+    def numbers(row: String*) = row.map(name => state(lanes.row(name))).toVector
+    def carried(of: BoundFunction, by: Vector[Int]) =
+      PtxExpressions.write(code, of.nodes)(input => by(of.inputs(input)), Vector(since, half))
+    val starts   = Vector(duelist.startX, duelist.startY).map(each => code.constant(each.toFloat))
+    val position = Vector("x", "y").zip(starts).map((axis, start) =>
+      carried(TimetableQuadrotors.placed, numbers(s"a$axis", s"v$axis", axis) :+ start).head
+    )
+    val velocity =
+      if withVelocity then
+        Vector("x", "y").map(axis => carried(TimetableQuadrotors.moved, numbers(s"a$axis", s"v$axis")).head)
+      else Vector.empty
+    position ++ velocity
+
+  def act(record: GpuRecord, north: Int, east: Int): Unit =
+    fly(record)
+    val speed = code.constant(duelist.speed.toFloat)
+    goal.take(Seq(
+      code.two("mul.rn", north, speed),
+      code.two("mul.rn", east, speed),
+      code.constant(duelist.altitudeDownM.toFloat)
+    ))
+
+  private def fly(record: GpuRecord): Unit =
+    GpuVehicle.repeat(code, code.wholeOf(record.time(0)))(lanes.step(code, state, goal))

@@ -1,0 +1,256 @@
+package skein.simd
+
+import scala.collection.mutable
+import skein.formula.{Node, Op, Untraceable}
+
+/** Writes the code that computes expressions, in whatever instructions a machine has. What decides the bits
+  * of a result stands here, for every machine: elementary functions are the polynomials of [[LaneMath]],
+  * written out; products are fused with sums; a limit is chosen by comparing. So machines whose single
+  * operations round as IEEE 754 says agree to the bit.
+  *
+  * What an operation leaves is given by the number of its place: of a float, of a condition, or of the 32
+  * bits of a float. Mutable: for one stretch of code.
+  */
+private[skein] abstract class ExpressionCompiler:
+  import ExpressionCompiler.Round
+
+  /** Where what is computed already stands. */
+  protected final val slots   = mutable.HashMap.empty[Node, Int]
+  private val sinesAndCosines = mutable.HashMap.empty[Node, (Int, Int)]
+
+  // What a machine has.
+
+  protected def input(number: Int): Int
+  protected def parameter(number: Int): Int
+  protected def constant(value: Float): Int
+  protected def neg(a: Int): Int
+  protected def abs(a: Int): Int
+  protected def sqrt(a: Int): Int
+  protected def add(a: Int, b: Int): Int
+  protected def sub(a: Int, b: Int): Int
+  protected def mul(a: Int, b: Int): Int
+  protected def div(a: Int, b: Int): Int
+
+  /** a · b + c, rounded once. */
+  protected def fma(a: Int, b: Int, c: Int): Int
+  protected def choose(otherwise: Int, where: Int, condition: Int): Int
+
+  // What is no number compares as false.
+  protected def isLess(a: Int, b: Int): Int
+  protected def isAtMost(a: Int, b: Int): Int
+  protected def isEqual(a: Int, b: Int): Int
+  protected def not(a: Int): Int
+  protected def and(a: Int, b: Int): Int
+  protected def or(a: Int, b: Int): Int
+
+  protected def bitsOf(a: Int): Int
+  protected def ofBits(a: Int): Int
+  protected def bitConstant(value: Int): Int
+  protected def addBits(a: Int, b: Int): Int
+  protected def andBits(a: Int, b: Int): Int
+  protected def orBits(a: Int, b: Int): Int
+  protected def xorBits(a: Int, b: Int): Int
+  protected def shiftLeft(a: Int, by: Int): Int
+
+  /** Whether the highest bit is set. */
+  protected def isHighest(a: Int): Int
+
+  /** Where a node's number or condition is. */
+  protected final def of(node: Node): Int = node.op match
+    case Op.Const => constant(node.value.toFloat)
+    case _        => slots.getOrElseUpdate(node, computed(node))
+
+  protected final def computed(node: Node): Int =
+    slots.getOrElse(
+      node, {
+        val place = write(node)
+        slots(node) = place
+        place
+      }
+    )
+
+  private def write(node: Node): Int =
+    def a = of(node.args(0))
+    def b = of(node.args(1))
+    node.op match
+      case Op.Const => constant(node.value.toFloat)
+      case Op.Input => input(node.index)
+      case Op.Param => parameter(node.index)
+      case Op.Neg   => neg(a)
+      case Op.Abs   => abs(a)
+      case Op.Sqrt  => sqrt(a)
+      case Op.Add   =>
+        Products.factor(node) match
+          case Some(product) if !slots.contains(product) =>
+            val other = if node.args(0) == product then node.args(1) else node.args(0)
+            fma(of(product.args(0)), of(product.args(1)), of(other))
+          case _ => add(a, b)
+      case Op.Sub   => sub(a, b)
+      case Op.Mul   => mul(a, b)
+      case Op.Div   => div(a, b)
+      case Op.Min   => extreme(node)((limit, value) => isLess(limit, value))
+      case Op.Max   => extreme(node)((limit, value) => isLess(value, limit))
+      case Op.Where => choose(of(node.args(2)), b, a)
+      case Op.Lt    => isLess(a, b)
+      case Op.Le    => isAtMost(a, b)
+      case Op.Eq    => isEqual(a, b)
+      case Op.Not   => not(a)
+      case Op.And   => and(a, b)
+      case Op.Or    => or(a, b)
+      case Op.Sin   => sinCos(node.args(0))._1
+      case Op.Cos   => sinCos(node.args(0))._2
+      case Op.Atan2 => atan2(a, b)
+      case Op.Atan  => atan2(a, constant(1f))
+      case Op.Hypot =>
+        val (x, y) = (a, b)
+        sqrt(fma(x, x, mul(y, y)))
+      case Op.Exp   => exp(within(a, constant(-87f), constant(88f)))
+      case Op.Tanh  => tanh(a)
+      case Op.Acos  => acos(node.args(0))
+      case Op.Asin  => sub(constant(1.57079633f), acos(node.args(0)))
+      case Op.Rint  => rint(a)
+      case Op.Floor =>
+        val x       = a
+        val nearest = rint(x)
+        choose(nearest, sub(nearest, constant(1f)), isLess(x, nearest))
+      case Op.Ceil =>
+        val x       = a
+        val nearest = rint(x)
+        choose(nearest, add(nearest, constant(1f)), isLess(nearest, x))
+      case Op.Signum =>
+        val x    = a
+        val zero = constant(0f)
+        choose(choose(x, constant(-1f), isLess(x, zero)), constant(1f), isLess(zero, x))
+      case Op.Remainder =>
+        val (x, y) = (a, node.args(1))
+        val times  =
+          if y.isConst then
+            sub(fma(x, constant((1 / y.value).toFloat), constant(Round)), constant(Round))
+          else rint(div(x, of(y)))
+        if y.isConst then fma(times, constant(-y.value.toFloat), x)
+        else fma(neg(times), of(y), x)
+      case Op.Always => throw Untraceable("a condition that always holds")
+
+  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has those of the last two for passes written
+  // by hand.
+
+  private def sinCos(of: Node): (Int, Int) = sinesAndCosines.getOrElseUpdate(
+    of, {
+      val angle    = this.of(of)
+      val rounded  = fma(angle, constant(0.63661977f), constant(Round))
+      val quarters = sub(rounded, constant(Round))
+      val rest     = fma(
+        quarters,
+        constant(-7.549789948768648e-8f),
+        fma(quarters, constant(-4.837512969970703e-4f), fma(quarters, constant(-1.5703125f), angle))
+      )
+      val square = mul(rest, rest)
+      val sin    = fma(
+        mul(series(square, -1.9515295891e-4f, 8.3321608736e-3f, -1.6666654611e-1f), square),
+        rest,
+        rest
+      )
+      val cos =
+        series(square, 2.443315711809948e-5f, -1.388731625493765e-3f, 4.166664568298827e-2f, -0.5f, 1f)
+      val quadrant = bitsOf(rounded)
+      val odd      = isHighest(shiftLeft(quadrant, 31))
+      val sinSign  = shiftLeft(andBits(quadrant, bitConstant(2)), 30)
+      val cosSign  = shiftLeft(andBits(addBits(quadrant, bitConstant(1)), bitConstant(2)), 30)
+      (signed(choose(sin, cos, odd), sinSign), signed(choose(cos, sin, odd), cosSign))
+    }
+  )
+
+  private def atan2(y: Int, x: Int): Int =
+    val (ax, ay) = (abs(x), abs(y))
+    val steep    = isLess(ax, ay)
+    val large    = add(choose(ax, ay, steep), constant(1e-30f))
+    val small    = choose(ay, ax, steep)
+    val beyond   = isLess(mul(large, constant(0.41421356f)), small)
+    val ratio    = div(choose(small, sub(small, large), beyond), choose(large, add(large, small), beyond))
+    val square   = mul(ratio, ratio)
+    val rise     =
+      mul(
+        series(square, 8.05374449538e-2f, -1.38776856032e-1f, 1.99777106478e-1f, -3.33329491539e-1f),
+        square
+      )
+    val first  = fma(rise, ratio, ratio)
+    val second = choose(first, add(first, constant(0.785398163f)), beyond)
+    val third  = choose(second, sub(constant(1.57079633f), second), steep)
+    val angle  = choose(third, sub(constant(3.14159265f), third), isLess(x, constant(0f)))
+    ofBits(orBits(bitsOf(angle), andBits(bitsOf(y), bitConstant(Int.MinValue))))
+
+  private def exp(x: Int): Int =
+    val rounded = fma(x, constant(1.44269504f), constant(Round))
+    val power   = sub(rounded, constant(Round))
+    val rest    = fma(power, constant(2.12194440e-4f), fma(power, constant(-0.693359375f), x))
+    val tail    = series(
+      rest,
+      1.9875691500e-4f,
+      1.3981999507e-3f,
+      8.3334519073e-3f,
+      4.1665795894e-2f,
+      1.6666665459e-1f,
+      5.0000001201e-1f
+    )
+    val fraction = bitsOf(fma(tail, mul(rest, rest), add(rest, constant(1f))))
+    ofBits(addBits(fraction, shiftLeft(bitsOf(rounded), 23)))
+
+  private def tanh(x: Int): Int =
+    val inside = within(x, constant(-9f), constant(9f))
+    val power  = exp(add(inside, inside))
+    div(sub(power, constant(1f)), add(power, constant(1f)))
+
+  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. */
+  private def acos(of: Node): Int =
+    val x     = this.of(of)
+    val plain = isPositive(of)
+    val one   = constant(1f)
+    val whole = if plain then x else abs(x)
+    val size  = choose(whole, one, isLess(one, whole))
+    val rise  = series(
+      size,
+      -0.0012624911f,
+      0.0066700901f,
+      -0.0170881256f,
+      0.0308918810f,
+      -0.0501743046f,
+      0.0889789874f,
+      -0.2145988016f,
+      1.5707963050f
+    )
+    val angle = mul(sqrt(sub(one, size)), rise)
+    if plain then angle
+    else choose(angle, sub(constant(3.14159265f), angle), isLess(x, constant(0f)))
+
+  private def isPositive(node: Node): Boolean = node.op match
+    case Op.Sqrt | Op.Abs | Op.Exp | Op.Hypot => true
+    case Op.Const                             => node.value >= 0
+    case Op.Min                               => node.args.forall(isPositive)
+    case Op.Max                               => node.args.exists(isPositive)
+    case _                                    => false
+
+  private def rint(x: Int): Int = sub(add(x, constant(Round)), constant(Round))
+
+  /** By Horner's rule, the highest power's coefficient first. */
+  private def series(x: Int, coefficients: Float*): Int =
+    coefficients.tail.foldLeft(constant(coefficients.head))((sum, each) => fma(sum, x, constant(each)))
+
+  private def signed(x: Int, sign: Int): Int = ofBits(xorBits(bitsOf(x), sign))
+
+  /** The limit where it is beyond the value: in two instructions, where a machine's own `min` and `max` take
+    * up to six. What is no number stays so within limits that are.
+    *
+    * @param isBeyond whether a limit is, of a limit and a value
+    */
+  private def extreme(node: Node)(isBeyond: (Int, Int) => Int): Int =
+    val Vector(a, b)   = node.args
+    val (value, limit) = if b.isConst || b.op == Op.Param then (of(a), of(b)) else (of(b), of(a))
+    choose(value, limit, isBeyond(limit, value))
+
+  private def within(value: Int, least: Int, most: Int): Int =
+    val low = choose(value, most, isLess(most, value))
+    choose(low, least, isLess(low, least))
+
+private object ExpressionCompiler:
+  /** 1.5·2²³: adding it leaves a float's nearest integer in its lowest bits. */
+  private val Round = LaneMath.ROUND

@@ -1,0 +1,24 @@
+package skein.lanes
+
+import java.nio.file.{Files, Path}
+import skein.forward.{Duel, LoopTiming, Reduced, ReducedResponse, VelocityResponse, VelocityResponses}
+import skein.gpu.InterpretedGpu
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.vehicle.{Quadrotor, ReducedModel}
+
+/** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
+@main def gpuKernels(folder: String): Unit =
+  val layout                                                        = GpuLayout(2, 4, 4)
+  def duels(name: String, model: VelocityResponse, pursuer: Policy) =
+    val lanes  = LaneDynamics.of(model, Duel.paper).fold(sys.error, identity)
+    val forms  = GpuDuelKernel.Forms(PolicyLanes.get(PaperEvader()), PolicyLanes.get(pursuer))
+    val asked  = Set(DuelNumber.MeanLast10s)
+    val kernel =
+      GpuDuelKernel(InterpretedGpu(), Duel.paper, LoopTiming.Stream().periodS, lanes, forms, asked, layout)
+    Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
+  duels("lag", Reduced.AirSim, PaperPursuer())
+  duels("drag", ReducedResponse(ReducedModel.AirSim), PaperPursuer())
+  duels("quadrotors", VelocityResponses.quadrotor(), PaperPursuer())
+  duels("network", Reduced.AirSim, RectifiedNetwork(Array.fill(RectifiedNetwork.Weights)(0.1), 1))
+  val lanes = QuadrotorLanes.of(Quadrotor.AirSim).fold(sys.error, identity)
+  Files.writeString(Path.of(folder, "hover.ptx"), GpuQuadrotors.text(lanes)): Unit
