@@ -82,6 +82,7 @@ object GpuRates:
     private val evader                  = PaperEvader()
     def size: Int                       = candidates * Episodes
     override def shareEpisodes: Boolean = true
+    override def episodesOfEach: Int    = Episodes
     override def asked: Set[DuelNumber] = GpuRates.asked
     def key(world: Int): Int            = WorldRandom.key(3, 0, world % Episodes)
     def link(world: Int): DelayTable    = DelayTable.vpn

@@ -1,6 +1,7 @@
 package skein.cli
 
 import java.nio.file.Path
+import skein.gpu.GpuFailure
 import skein.optimise.Evaluator
 import skein.search.*
 
@@ -48,7 +49,7 @@ private[cli] object EpisodeRunner:
   )(body: EpisodeRunner => Either[String, Unit]): Either[String, Unit] = options match
     case None =>
       try body(here(ready, threads))
-      catch case failed: BlocksFailed => Left(failed.getMessage)
+      catch case failed: (BlocksFailed | GpuFailure) => Left(failed.getMessage)
     case Some(asked) =>
       val posed = QuestionKind.Search.of(VerifiedQuestion.bytes(question, ready))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>

@@ -2,6 +2,7 @@ package skein.cli
 
 import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
+import skein.gpu.Gpu
 import skein.optimise.{CmaEs, SearchState}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
@@ -48,6 +49,8 @@ final case class SearchOptions(
     @arg(doc = "a setting of the scenario to search; can be repeated")
     vary: Seq[String],
     forward: ForwardOptions,
+    @arg(doc = "candidates fly on this machine's NVIDIA GPU; does not change the result")
+    gpu: Flag,
     cluster: ClusterOptions,
     @arg(doc = "folder for state, policy and pictures; without it, searches/DATE-TIME")
     out: Option[String],
@@ -79,9 +82,13 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
+      gpu   <- if options.gpu.value then Gpu.find().map(Some(_)).left.map("--gpu: " + _) else Right(None)
       ready <- question match
-        case duel: SearchQuestion => duel.setup
-        case team: TeamQuestion   => team.setup
+        case duel: SearchQuestion => duel.setup.map(_.copy(gpu = gpu))
+        case team: TeamQuestion   =>
+          Expect.that(gpu.isEmpty)("--gpu: expected a duel's policy to search, came a scenario").flatMap(_ =>
+            team.setup
+          )
       _ <- OutFolder.alone(folder):
         options.view.serving("search"): task =>
           EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>
@@ -92,7 +99,8 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
-    val may = Seq(options.cluster, options.view).flatMap(Arguments.told).toSet ++ Set("--threads", "--json")
+    val may =
+      Seq(options.cluster, options.view).flatMap(Arguments.told).toSet ++ Set("--threads", "--gpu", "--json")
     for
       _    <- Arguments.resumed(options, may, "--threads and who computes")
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)

@@ -2,6 +2,7 @@ package skein.search
 
 import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
+import skein.gpu.Gpu
 import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.scenario.{PaperDuel, Scenarios}
@@ -50,7 +51,8 @@ final case class Conditions(
 object Conditions:
 
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
-    def batch(threads: Int): DuelBatch = DuelBatch(duel, timing, vehicle.response, threads)
+    def batch(threads: Int, gpu: Option[Gpu] = None): DuelBatch =
+      DuelBatch(duel, timing, vehicle.response, threads, gpu)
 
     /** Whether the pursuer knows of the evader by a sensor alone. */
     def sees: Boolean = duel.pursuer.eye.isDefined

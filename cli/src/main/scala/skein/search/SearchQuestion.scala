@@ -1,6 +1,7 @@
 package skein.search
 
 import skein.forward.Delays
+import skein.gpu.Gpu
 import skein.lanes.DuelBatch
 import skein.optimise.{
   DuelEvaluator,
@@ -102,7 +103,10 @@ object SearchQuestion:
         case other => Left(s"--method: expected one of $Methods, came '$other'")
     yield method
 
-/** A search for a duel's policy, ready to run. */
+/** A search for a duel's policy, ready to run.
+  *
+  * @param gpu on which candidates fly, if that is asked for
+  */
 final case class SearchSetup(
     question: SearchQuestion,
     family: PolicyFamily,
@@ -111,7 +115,8 @@ final case class SearchSetup(
     conditions: Conditions.Resolved,
     delays: Delays,
     opponent: PolicyFile,
-    by: SearchMethod
+    by: SearchMethod,
+    gpu: Option[Gpu] = None
 ) extends ReadySearch:
   def space: SearchSpace                       = family.space
   def name: String                             = family.name
@@ -138,7 +143,7 @@ final case class SearchSetup(
 
   private def policy(candidate: Vector[Double]) = PolicyFile(role, family, candidate)
 
-  def batch(threads: Int): DuelBatch = conditions.batch(threads)
+  def batch(threads: Int): DuelBatch = conditions.batch(threads, gpu)
 
   /** @param many whether many candidates will meet the same episodes
     */

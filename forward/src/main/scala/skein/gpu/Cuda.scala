@@ -36,7 +36,10 @@ private[gpu] final class Cuda private (library: SymbolLookup):
     "cuLaunchKernel",
     Vector(ADDRESS) ++ Vector.fill(7)(JAVA_INT) ++ Vector.fill(3)(ADDRESS)*
   )
-  private val getErrorString = function("cuGetErrorString", JAVA_INT, ADDRESS)
+  val eventCreate: MethodHandle      = function("cuEventCreate", ADDRESS, JAVA_INT)
+  val eventRecord: MethodHandle      = function("cuEventRecord", ADDRESS, ADDRESS)
+  val eventElapsedTime: MethodHandle = function("cuEventElapsedTime", ADDRESS, ADDRESS, ADDRESS)
+  private val getErrorString         = function("cuGetErrorString", JAVA_INT, ADDRESS)
 
   def call(function: MethodHandle, arguments: Any*): Unit =
     val status = function.invokeWithArguments(arguments.map(_.asInstanceOf[AnyRef])*).asInstanceOf[Int]

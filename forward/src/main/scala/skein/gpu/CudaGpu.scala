@@ -24,7 +24,12 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
     cuda.call(cuda.moduleGetFunction, located, loaded.get(ADDRESS, 0), arena.allocateFrom(name))
     Kernel(located.get(ADDRESS, 0))
 
-  private var ran = 0L
+  private var ran               = 0L
+  private lazy val begins, ends = within: arena =>
+    val event = arena.allocate(ADDRESS)
+    cuda.call(cuda.eventCreate, event, 0)
+    event.get(ADDRESS, 0)
+
   def ranNs: Long = ran
 
   def freeBytes: Long = within: arena =>
@@ -68,11 +73,14 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
           case numbers: Array[Float] => arena.allocateFrom(JAVA_FLOAT, numbers*)
           case other                 => throw IllegalArgumentException(s"no kernel takes $other")
         places.setAtIndex(ADDRESS, i, value)
-      val none  = MemorySegment.NULL
-      val start = System.nanoTime()
+      val none = MemorySegment.NULL
+      cuda.call(cuda.eventRecord, begins, none)
       cuda.call(cuda.launchKernel, function, blocks, 1, 1, threadsOfBlock, 1, 1, 0, none, places, none)
+      cuda.call(cuda.eventRecord, ends, none)
       cuda.call(cuda.ctxSynchronize)
-      ran += System.nanoTime() - start
+      val tookMs = arena.allocate(JAVA_FLOAT)
+      cuda.call(cuda.eventElapsedTime, tookMs, begins, ends)
+      ran += (tookMs.get(JAVA_FLOAT, 0) * 1e6).toLong
 
   private def within[A](body: Arena => A): A =
     val arena = Arena.ofConfined()

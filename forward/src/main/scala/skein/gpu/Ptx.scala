@@ -120,6 +120,17 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
     text.append(s"$table:\t.branchtargets ${labels.mkString(", ")};\n")
     this(s"brx.idx.uni %r$number, $table")
 
+  /** Does something so many times. */
+  def repeat(times: Int)(body: => Unit): Unit =
+    val (again, over) = (label(), label())
+    val left          = wholes("add.s32", times, "0")
+    place(again)
+    goIf(compareWhole("le", left, 0), over)
+    body
+    this(s"add.s32 %r$left, %r$left, -1")
+    go(again)
+    place(over)
+
   private def result(into: Int = fresh())(instruction: Int => String): Int =
     this(instruction(into))
     into

@@ -86,7 +86,8 @@ final class DuelBatch(
       episodes <- lanes
       _        <- Expect.that(!sees)("the GPU flies nobody who sees by a sensor")
       _ <- Expect.that(!timing.isInstanceOf[LoopTiming.Predictive])("the GPU flies loops that do not predict")
-    yield GpuDuels(gpu, episodes, threads)
+      vehicle <- GpuVehicle.of(model)
+    yield GpuDuels(gpu, episodes, vehicle, threads)
 
   /** What is told where vehicles are flown side by side. */
   private val stepped: Option[String] = SteppedRollouts.told(model, vehicles).filterNot(_ => sees)
@@ -107,6 +108,12 @@ final class DuelBatch(
       case Right(lanes)                                    =>
         val instead = gpu.map(_ => onGpu.get.swap.getOrElse("the GPU flies candidates that share episodes"))
         LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) + instead.fold("")(": " + _)
+
+  /** How many candidates that share episodes take no longer than one. */
+  def sideBySide(pursuer: Policy, evader: Policy, link: Delays): Int =
+    if !fliesByLanes(pursuer, evader, shareEpisodes = true, Seq(link)) then 1
+    else if fliesOnGpu then GpuDuels.SideBySide
+    else LaneMath.LANES
 
   private def fliesOnGpu = onGpu.exists(_.isRight)
 
@@ -153,20 +160,12 @@ final class DuelBatch(
   ): DuelOutcomes =
     val outcomes = DuelOutcomes(worlds.size, worlds.asked)
     val together = shares(worlds.shareEpisodes)
-    onGpu match
-      case Some(Right(gpu)) if together && areFormulas(worlds) =>
-        outcomes.flown = gpu.fly(worlds, captureRadiusM.toFloat, outcomes, onProgress, isCancelled)
-      case _ => fly(worlds, together, captureRadiusM, onProgress, isCancelled, outcomes)
+    val flown    = onGpu
+      .flatMap(_.toOption)
+      .filter(_ => together && worlds.episodesOfEach > 0)
+      .flatMap(_.fly(worlds, captureRadiusM.toFloat, outcomes, onProgress, isCancelled))
+    outcomes.flown = flown.getOrElse(fly(worlds, together, captureRadiusM, onProgress, isCancelled, outcomes))
     outcomes
-
-  private def areFormulas(worlds: DuelWorlds) =
-    var last, before = null: Policy
-    (0 until worlds.size).forall: world =>
-      val both = Seq(worlds.pursuer(world), worlds.evader(world))
-      val same = (both(0) eq last) && (both(1) eq before)
-      last = both(0)
-      before = both(1)
-      same || both.forall(PolicyLanes.of(_).isRight)
 
   private def fly(
       worlds: DuelWorlds,
@@ -175,16 +174,16 @@ final class DuelBatch(
       onProgress: Int => Unit,
       isCancelled: () => Boolean,
       outcomes: DuelOutcomes
-  ): Unit =
+  ): Int =
     val batches =
       if worlds.shareEpisodes then
-        WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, workers.head.together.batch)
+        WorldBatches.byEpisode(worlds, workers.head.together.batch)
       else
         WorldBatches.inOrder(
           worlds.size,
           (if together then workers.head.together else workers.head.alone).batch
         )
-    outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
+    LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
       val flyer = if together then worker.together else worker.alone
       flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
 

@@ -16,9 +16,11 @@ private[lanes] final class DuelEpisodes(
     self -> eye
   }.toMap
 
-  /** What tells an episode from others: worlds that wait meet no delays. */
-  def of(link: Delays, key: Int): Any =
-    if timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody then () else (link, key)
+  /** Whether all worlds meet the same: those that wait meet no delays. */
+  val areOne: Boolean = timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody
+
+  /** What tells an episode from others. */
+  def of(link: Delays, key: Int): Any = if areOne then () else (link, key)
 
   def timetable(link: Delays, key: Int): Timetable =
     Timetable.of(2, duel.durationS, timing, link, key, model, sensors)

@@ -1,30 +1,19 @@
 package skein.lanes
 
-import skein.forward.{Delays, DuelOutcome}
+import skein.forward.DuelOutcome
 import skein.policy.Policy
 
-/** The worlds of one call of [[DuelBatch]], by number from 0. Pure functions of the number, called from any
-  * thread.
-  *
-  * Neighbours that share a link should return the same object: it is copied into the first-level cache once
-  * for all of them. Otherwise the order is free.
-  */
-trait DuelWorlds:
-  def size: Int
-
-  /** Whether many worlds have the same key and the same link, as candidates that meet the same episodes do.
-    * Then they fly together through one [[Timetable]], several times as fast.
+/** The worlds of one call of [[DuelBatch]]. */
+trait DuelWorlds extends Worlds:
+  /** Where every candidate flies through the same episodes, how many these are: then a world's number over
+    * this is its candidate's, which alone decides its policies, and the rest is its episode's, which alone
+    * decides its key and link. Otherwise 0. Only such worlds fly on a GPU.
     */
-  def shareEpisodes: Boolean = false
+  def episodesOfEach: Int = 0
 
   /** What worlds are judged by. Nothing else is computed. */
   def asked: Set[DuelNumber] = DuelNumber.all
 
-  /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same
-    * delays.
-    */
-  def key(world: Int): Int
-  def link(world: Int): Delays
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 
@@ -48,7 +37,10 @@ object DuelNumber:
   * @param flown how many worlds were flown: all, unless the call was cancelled. The others' numbers are 0.
   */
 final class DuelOutcomes private[skein] (size: Int, asked: Set[DuelNumber] = DuelNumber.all):
-  private val came = DuelNumber.values.map(number => Array.fill(size)(if asked(number) then 0 else Float.NaN))
+  private val came = DuelNumber.values.map: number =>
+    val numbers = Array.ofDim[Float](size)
+    if !asked(number) then java.util.Arrays.fill(numbers, Float.NaN)
+    numbers
 
   def apply(number: DuelNumber): Array[Float] = came(number.ordinal)
 

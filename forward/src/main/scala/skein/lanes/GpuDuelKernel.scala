@@ -1,8 +1,9 @@
 package skein.lanes
 
-import skein.forward.Duel
-import skein.gpu.{Gpu, GpuBuffer, GpuKernel, Ptx, PtxExpressions}
+import skein.forward.{Duel, Duelist}
+import skein.gpu.{Gpu, GpuBuffer, GpuKernel, Ptx, PtxExpressions, Variables}
 import skein.policy.Policy
+import skein.scenario.Reduction
 
 /** [[TimetableKernel]] on a GPU, for duels: a thread flies one candidate through one episode, and the threads
   * of a block fly candidates of the same. So no two threads of a block part ways. What is computed are the
@@ -15,7 +16,7 @@ private[lanes] final class GpuDuelKernel(
     gpu: Gpu,
     duel: Duel,
     periodS: Double,
-    model: LaneDynamics,
+    vehicle: (Ptx, Duelist) => GpuVehicle,
     forms: GpuDuelKernel.Forms,
     asked: Set[DuelNumber],
     layout: GpuLayout
@@ -52,7 +53,7 @@ private[lanes] final class GpuDuelKernel(
     *   the first world, how many
     * @param stride words of an operation
     * @param numbers of evaders and of pursuers, see [[numbersOf]]
-    * @param flownBy which of them a world's fly by
+    * @param flownBy which of them candidates fly by
     * @param into what a number comes to in all worlds, number by number
     */
   def apply(
@@ -68,15 +69,17 @@ private[lanes] final class GpuDuelKernel(
     val read = Vector(blocks, stride, numbers(0), numbers(1), flownBy(0), flownBy(1))
     kernel(count, BlockWorlds, (read ++ Vector(captureRadiusM, worlds, into))*)
 
-  /** Of what a world came to, where a number is, and what it tells, given how often it counted. */
-  def outcome(number: DuelNumber, scoredAtS: Array[Float]): (Int, Float => Float) = number match
-    case DuelNumber.EvaderEffort  => (scores.initial.size, identity)
-    case DuelNumber.PursuerEffort => (outcomes - 1, identity)
+  /** What an episode's worlds came to.
+    *
+    * @param scoredAtS when the episode was scored
+    */
+  def outcome(number: DuelNumber, scoredAtS: Array[Float]): Outcome = number match
+    case DuelNumber.EvaderEffort  => Outcome(scores.initial.size, OfMoment.Newest, 1)
+    case DuelNumber.PursuerEffort => Outcome(outcomes - 1, OfMoment.Newest, 1)
     case _                        =>
       val place = judged.indexWhere(_._1 == number)
       val of    = scores.judged(place)
-      val count = scoredAtS.count(of.counts(_))
-      (scores.places(place + 1) - 1, ScoreLanes.value(of.reduction, _, count))
+      Outcome(scores.places(place + 1) - 1, of.reduction, scoredAtS.count(of.counts(_)))
 
   /** The kernel. */
   lazy val text: String = Writer().module
@@ -98,23 +101,24 @@ private[lanes] final class GpuDuelKernel(
       layout.bytes
     )
     private val end, loop, next = code.label()
-    private val vehicles        = duelists.map(model.onGpu(code, _))
-    private val kept            = GpuVehicle.Variables(code, scores.initial)
-    private val effort          = Vector.fill(2)(GpuVehicle.Variables(code, Seq(0f)))
-    private val heading = duelists.map(each => GpuVehicle.Variables(code, Seq(each.startHeadingRad.toFloat)))
-    private val memory  = policies.map(form => GpuVehicle.Variables(code, Seq.fill(form.memories)(0f)))
+    private val vehicles        = duelists.map(vehicle(code, _))
+    private val kept            = Variables(code, scores.initial)
+    private val effort          = Vector.fill(2)(Variables(code, Seq(0f)))
+    private val heading         = duelists.map(each => Variables(code, Seq(each.startHeadingRad.toFloat)))
+    private val memory          = policies.map(form => Variables(code, Seq.fill(form.memories)(0f)))
 
     def module: String =
       code.ownBase(): Unit
       val block = code.address(code.argument("blocks"), code.special("ctaid.x"), BlockWords)
       val own   = code.special("tid.x")
       code.goIf(code.compareWholes("ge", own, code.loadWhole(block, 4)), end)
-      val world   = code.wholes("add.s32", code.loadWhole(block, 3), own)
-      val record  = code.loadAddress(block, 0)
-      val left    = code.loadWhole(block, 2)
-      val bytes   = code.wide(code.argument("stride"), 4)
-      val numbers = Vector.tabulate(2)(self => numbersAt(self, world))
-      val loaded  = Vector.tabulate(2)(self => loadedAhead(self, numbers(self)))
+      val world     = code.wholes("add.s32", code.loadWhole(block, 3), own)
+      val candidate = code.wholes("add.s32", code.loadWhole(block, 5), own)
+      val record    = code.loadAddress(block, 0)
+      val left      = code.loadWhole(block, 2)
+      val bytes     = code.wide(code.argument("stride"), 4)
+      val numbers   = Vector.tabulate(2)(self => numbersAt(self, candidate))
+      val loaded    = Vector.tabulate(2)(self => loadedAhead(self, numbers(self)))
       start(numbers)
       val radius   = code.argument("radius")
       val kind     = code.loadWhole(record)
@@ -151,8 +155,8 @@ private[lanes] final class GpuDuelKernel(
       code.go(next)
 
     /** The address of what this thread's policy flies by. */
-    private def numbersAt(self: Int, world: Int): Int =
-      val policy = code.loadWhole(code.address(code.argument(s"flownBy$self"), world))
+    private def numbersAt(self: Int, candidate: Int): Int =
+      val policy = code.loadWhole(code.address(code.argument(s"flownBy$self"), candidate))
       val tile   = code.wholes("shr.s32", policy, TileBits.toString)
       val within = code.wholes("and.b32", policy, (Tile - 1).toString)
       code.address(code.address(code.argument(s"numbers$self"), tile, countOf(self) * Tile), within)
@@ -245,6 +249,14 @@ private[lanes] final class GpuDuelKernel(
 
 private[lanes] object GpuDuelKernel:
   private val Name = "duels"
+
+  /** A number that worlds of one episode come to.
+    *
+    * @param place of the number that is kept of it
+    * @param count how often it counted
+    */
+  final class Outcome(val place: Int, reduction: Reduction | OfMoment, count: Int):
+    def apply(kept: Float): Float = ScoreLanes.value(reduction, kept, count)
 
   /** How both decide. */
   final case class Forms(evader: PolicyLanes, pursuer: PolicyLanes)

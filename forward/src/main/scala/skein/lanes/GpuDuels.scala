@@ -2,7 +2,8 @@ package skein.lanes
 
 import java.util.IdentityHashMap
 import scala.collection.mutable
-import skein.gpu.{Gpu, GpuBuffer}
+import skein.forward.Duelist
+import skein.gpu.{Gpu, GpuBuffer, Ptx}
 import skein.policy.Policy
 
 /** Flies candidates that share episodes on a GPU, by [[GpuDuelKernel]]. The operations of an episode stay
@@ -10,7 +11,12 @@ import skein.policy.Policy
   *
   * @param threads that make timetables
   */
-private[lanes] final class GpuDuels(gpu: Gpu, episodes: DuelEpisodes, threads: Int):
+private[lanes] final class GpuDuels(
+    gpu: Gpu,
+    episodes: DuelEpisodes,
+    vehicle: (Ptx, Duelist) => GpuVehicle,
+    threads: Int
+):
   import GpuDuelKernel.{BlockWords, BlockWorlds, Forms}
   import GpuDuels.*
 
@@ -27,9 +33,10 @@ private[lanes] final class GpuDuels(gpu: Gpu, episodes: DuelEpisodes, threads: I
     val stride: Int             = timetable.stride
     val scoredAtS: Array[Float] = timetable.scoredAtS
 
-  /** Flies all worlds, unless it is cancelled. All policies must be formulas.
+  /** Flies all worlds, unless it is cancelled.
     *
-    * @return how many worlds were flown
+    * @param worlds with [[DuelWorlds.episodesOfEach]]
+    * @return how many worlds were flown, if all policies are formulas
     */
   def fly(
       worlds: DuelWorlds,
@@ -37,50 +44,55 @@ private[lanes] final class GpuDuels(gpu: Gpu, episodes: DuelEpisodes, threads: I
       into: DuelOutcomes,
       onProgress: Int => Unit,
       isCancelled: () => Boolean
-  ): Int =
-    val evaders  = Policies(worlds.size, worlds.evader)
-    val pursuers = Policies(worlds.size, worlds.pursuer)
-    val byForms  = Array.range(0, worlds.size).groupBy(i => Forms(evaders.formOf(i), pursuers.formOf(i)))
-    var done     = 0
-    for (forms, some) <- byForms do
-      val flownBy = Vector(evaders, pursuers).map(_.of(some))
+  ): Option[Int] =
+    val each       = worlds.episodesOfEach
+    val candidates = worlds.size / each
+    val sides      = Vector(
+      Policies(candidates, threads, candidate => worlds.evader(candidate * each)),
+      Policies(candidates, threads, candidate => worlds.pursuer(candidate * each))
+    )
+    Option.when(sides.forall(_.areFormulas)):
+      var done = 0
       for
-        part <- Part.of(some, mostEpisodes)(world => episodes.of(worlds.link(world), worlds.key(world)))
+        alike <-
+          Array.range(0, candidates).groupBy(candidate => sides.map(_.formOf(candidate))).valuesIterator
+        some <- alike.grouped((MostWorlds / each).max(1))
+        part <- Array.range(0, each).grouped(mostEpisodes)
         if !isCancelled() && prepare(part, worlds, isCancelled)
       do
-        fly(part, forms, flownBy, worlds.asked, captureRadiusM, into)
-        done += part.worlds.length
+        fly(Part(worlds, some, part, sides), captureRadiusM, into)
+        done += some.length * part.length
         onProgress(done)
-    done
+      done
 
   private def mostEpisodes = (MostMinutes * 60 / episodes.duel.durationS).toInt.max(1)
 
-  /** Brings a part's episodes to the GPU.
+  private def episodeOf(worlds: DuelWorlds, number: Int) =
+    episodes.of(worlds.link(number), worlds.key(number))
+
+  /** Brings episodes to the GPU.
     *
     * @return whether they are there: not if it was cancelled
     */
-  private def prepare(part: Part, worlds: DuelWorlds, isCancelled: () => Boolean): Boolean =
+  private def prepare(some: Array[Int], worlds: DuelWorlds, isCancelled: () => Boolean): Boolean =
     // Whoever is used now is forgotten last.
-    val missing = part.stretches.filter(each => held.get(each.episode) == null).distinctBy(_.episode)
-    val made    = Array.ofDim[Timetable](missing.size)
-    val ready   =
-      LaneThreads.run(Vector.fill(threads)(()), WorldBatches.inOrder(missing.size, 1), isCancelled):
-        (_, some) =>
-          for i <- some do
-            val world = part.worlds(missing(i).first)
-            made(i) = episodes.timetable(worlds.link(world), worlds.key(world))
-    if ready < missing.size then false
+    val missing =
+      some.filter(number => held.get(episodeOf(worlds, number)) == null).distinctBy(episodeOf(worlds, _))
+    val made  = Array.ofDim[Timetable](missing.length)
+    val ready = inParallel(missing.length, 1, threads, isCancelled): i =>
+      made(i) = episodes.timetable(worlds.link(missing(i)), worlds.key(missing(i)))
+    if ready < missing.length then false
     else
       val needed = made.foldLeft(layout)(_.holding(_))
       if needed != layout then
         layout = needed
         forget(most = 0)
-        prepare(part, worlds, isCancelled)
+        prepare(some, worlds, isCancelled)
       else
         forget(most = MostBytes)
-        for (stretch, timetable) <- missing.zip(made) do
+        for (number, timetable) <- missing.zip(made) do
           val now = Held(GpuTimetable(timetable, layout))
-          held.put(stretch.episode, now): Unit
+          held.put(episodeOf(worlds, number), now): Unit
           bytes += now.bytes
         true
 
@@ -93,58 +105,81 @@ private[lanes] final class GpuDuels(gpu: Gpu, episodes: DuelEpisodes, threads: I
       old.buffer.close()
       eldest.remove()
 
-  private def fly(
-      part: Part,
-      forms: Forms,
-      flownBy: Vector[FlownBy],
-      asked: Set[DuelNumber],
-      captureRadiusM: Float,
-      into: DuelOutcomes
-  ): Unit =
+  /** Candidates of one form, and episodes through which each flies: an episode's worlds are neighbours on the
+    * GPU.
+    */
+  private final class Part(
+      val worlds: DuelWorlds,
+      val candidates: Array[Int],
+      numbers: Array[Int],
+      sides: Vector[Policies]
+  ):
+    val forms: Forms           = Forms(sides(0).formOf(candidates(0)), sides(1).formOf(candidates(0)))
+    val episodes: Vector[Held] = numbers.iterator.map(number => held.get(episodeOf(worlds, number))).toVector
+    def size: Int              = candidates.length * numbers.length
+    val flownBy: Vector[FlownBy] = sides.map(_.of(candidates))
+
+    /** Of the first candidate in one of the episodes. */
+    def worldOf(candidate: Int, episode: Int): Int =
+      candidates(candidate) * worlds.episodesOfEach + numbers(episode)
+
+    /** See [[GpuDuelKernel.apply]]. */
+    def blocks: Array[Int] =
+      for
+        (episode, number) <- episodes.toArray.zipWithIndex
+        first             <- candidates.indices by BlockWorlds
+        address = episode.buffer.address
+        count   = BlockWorlds.min(candidates.length - first)
+        word <- Array(
+          address.toInt,
+          (address >>> 32).toInt,
+          episode.size,
+          number * candidates.length + first,
+          count,
+          first
+        )
+      yield word
+
+  private def fly(part: Part, captureRadiusM: Float, into: DuelOutcomes): Unit =
+    val asked  = part.worlds.asked
     val kernel = kernels.getOrElseUpdate(
-      (forms, asked, layout),
-      GpuDuelKernel(gpu, episodes.duel, episodes.timing.periodS, episodes.model, forms, asked, layout)
+      (part.forms, asked, layout),
+      GpuDuelKernel(gpu, episodes.duel, episodes.timing.periodS, vehicle, part.forms, asked, layout)
     )
-    val count  = part.worlds.length
-    val blocks = Array.newBuilder[Int]
-    for stretch <- part.stretches; first <- stretch.first until stretch.end by BlockWorlds do
-      val of = held.get(stretch.episode)
-      blocks ++= Array(
-        of.buffer.address.toInt,
-        (of.buffer.address >>> 32).toInt,
-        of.size,
-        first,
-        BlockWorlds.min(stretch.end - first),
-        0
-      )
-    val told                  = blocks.result()
+    val blocks                = part.blocks
     val buffers               = mutable.ArrayBuffer.empty[GpuBuffer]
     def here(made: GpuBuffer) =
       buffers += made
       made
     try
-      val came = here(gpu.buffer(kernel.outcomes.toLong * count))
+      val came = here(gpu.buffer(kernel.outcomes.toLong * part.size))
       kernel(
-        told.length / BlockWords,
-        here(gpu.buffer(told)),
-        held.get(part.stretches.head.episode).stride,
-        flownBy.zipWithIndex.map((each, self) => here(gpu.buffer(kernel.numbersOf(self, each.policies)))),
-        flownBy.map(each => here(gpu.buffer(part.worlds.map(each.numberOf)))),
+        blocks.length / BlockWords,
+        here(gpu.buffer(blocks)),
+        part.episodes.head.stride,
+        part.flownBy.zipWithIndex.map((each, self) =>
+          here(gpu.buffer(kernel.numbersOf(self, each.policies)))
+        ),
+        part.flownBy.map(each => here(gpu.buffer(each.numberOf))),
         captureRadiusM,
-        count,
+        part.size,
         came
       )
       val all = came.floats()
-      for number <- asked; stretch <- part.stretches do
-        val (place, tell) = kernel.outcome(number, held.get(stretch.episode).scoredAtS)
-        val told          = into(number)
-        var i             = stretch.first
-        while i < stretch.end do
-          told(part.worlds(i)) = tell(all(place * count + i))
-          i += 1
+      for number <- asked; (episode, at) <- part.episodes.zipWithIndex do
+        val outcome   = kernel.outcome(number, episode.scoredAtS)
+        val told      = into(number)
+        val first     = outcome.place * part.size + at * part.candidates.length
+        var candidate = 0
+        while candidate < part.candidates.length do
+          told(part.worldOf(candidate, at)) = outcome(all(first + candidate))
+          candidate += 1
     finally buffers.foreach(_.close())
 
-private object GpuDuels:
+private[lanes] object GpuDuels:
+  /** Candidates of some episodes that keep a GPU busy. */
+  val SideBySide: Int = 1 << 14
+
   /** Of some 250 kB for a minute each. */
   private val MostBytes = 1L << 30
 
@@ -152,60 +187,44 @@ private object GpuDuels:
   private val MostWorlds  = 1 << 22
   private val MostMinutes = 1024
 
-  /** Worlds that fly through one episode: those of a part from the first on. */
-  private final case class Stretch(episode: Any, first: Int, end: Int)
+  /** Candidates whose policies a thread looks at at a time. */
+  private val Chunk = 256
 
-  /** Worlds that one launch flies, those of an episode side by side. */
-  private final class Part(val worlds: Array[Int], val stretches: Vector[Stretch])
+  /** @return how many were done: all, unless it was cancelled */
+  private def inParallel(count: Int, chunk: Int, threads: Int, isCancelled: () => Boolean = () => false)(
+      work: Int => Unit
+  ): Int =
+    LaneThreads.run(Vector.fill(threads)(()), WorldBatches.inOrder(count, chunk), isCancelled): (_, some) =>
+      some.foreach(work)
 
-  private object Part:
-    def of(worlds: Array[Int], mostEpisodes: Int)(episodeOf: Int => Any): Iterator[Part] =
-      val byEpisode = mutable.LinkedHashMap.empty[Any, mutable.ArrayBuilder[Int]]
-      for world <- worlds do byEpisode.getOrElseUpdate(episodeOf(world), Array.newBuilder[Int]) += world
-      val stretches =
-        byEpisode.iterator.flatMap((episode, some) => some.result().grouped(MostWorlds).map((episode, _)))
-      Iterator.unfold(stretches.buffered): left =>
-        Option.when(left.hasNext):
-          val taken           = Vector.newBuilder[Stretch]
-          val all             = Array.newBuilder[Int]
-          var count, episodes = 0
-          while left.hasNext && episodes < mostEpisodes && count + left.head._2.length <= MostWorlds do
-            val (episode, some) = left.next()
-            taken += Stretch(episode, count, count + some.length)
-            all ++= some
-            count += some.length
-            episodes += 1
-          (Part(all.result(), taken.result()), left)
-
-  /** Which policies fly some worlds, each once.
+  /** Which policies fly some candidates, each once.
     *
-    * @param numberOf a world's among them
+    * @param numberOf a candidate's among them
     */
-  private final class FlownBy(val policies: Vector[Policy], val numberOf: Int => Int)
+  private final class FlownBy(val policies: Vector[Policy], val numberOf: Array[Int])
 
-  /** Who flies one side of many worlds. */
-  private final class Policies(worlds: Int, of: Int => Policy):
-    private val known    = IdentityHashMap[Policy, Integer]()
-    private val policies = mutable.ArrayBuffer.empty[Policy]
-    private val forms    = mutable.ArrayBuffer.empty[PolicyLanes]
-    private val numberOf = Array.tabulate(worlds): world =>
-      val policy = of(world)
-      known.computeIfAbsent(
-        policy,
-        _ =>
-          policies += policy
-          forms += PolicyLanes.get(policy)
-          policies.size - 1
-      ).intValue
+  /** Who flies one side of many candidates.
+    *
+    * @param threads that find out how policies fly
+    */
+  private final class Policies(candidates: Int, threads: Int, of: Int => Policy):
+    private val policies = Array.tabulate(candidates)(of)
+    private val forms    = Array.ofDim[PolicyLanes](candidates)
+    // Nearly always all fly against the very same.
+    inParallel(candidates, Chunk, threads): i =>
+      forms(i) = if i % Chunk > 0 && (policies(i) eq policies(i - 1)) then forms(i - 1)
+      else PolicyLanes.of(policies(i)).getOrElse(null)
 
-    def formOf(world: Int): PolicyLanes = forms(numberOf(world))
+    def areFormulas: Boolean                = !forms.contains(null)
+    def formOf(candidate: Int): PolicyLanes = forms(candidate)
 
     def of(some: Array[Int]): FlownBy =
-      val renumbered = Array.fill(policies.size)(-1)
-      val used       = Vector.newBuilder[Policy]
-      var count      = 0
-      for world <- some if renumbered(numberOf(world)) < 0 do
-        renumbered(numberOf(world)) = count
-        used += policies(numberOf(world))
-        count += 1
-      FlownBy(used.result(), world => renumbered(numberOf(world)))
+      val numbers  = IdentityHashMap[Policy, Integer]()
+      val used     = Vector.newBuilder[Policy]
+      val numberOf = some.map: candidate =>
+        val known = numbers.putIfAbsent(policies(candidate), numbers.size)
+        if known != null then known.intValue
+        else
+          used += policies(candidate)
+          numbers.size - 1
+      FlownBy(used.result(), numberOf)

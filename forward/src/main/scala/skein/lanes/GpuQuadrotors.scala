@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.gpu.{Gpu, GpuKernel, Ptx}
+import skein.gpu.{Gpu, GpuKernel, Ptx, Variables}
 import skein.units.Vector3
 import skein.vehicle.Quadrotor
 
@@ -18,8 +18,11 @@ private[skein] final class GpuQuadrotors private (gpu: Gpu, lanes: QuadrotorLane
     */
   def fly(goalNed: Array[Vector3], commanded: Array[Vector3], steps: Int): Array[Vector3] =
     import GpuQuadrotors.BlockVehicles
-    val count  = goalNed.length
-    val states = goalNed.map(goal => lanes.numbersOf(lanes.quadrotor.hovering(goal)).map(_.toFloat))
+    val count = goalNed.length
+    val known = goalNed.distinct.map(goal =>
+      goal -> lanes.numbersOf(lanes.quadrotor.hovering(goal)).map(_.toFloat).toArray
+    ).toMap
+    val states = goalNed.map(known)
     val rows   = lanes.rows.size
     val state  = gpu.buffer(Array.tabulate(rows * count)(i => states(i % count)(i / count)))
     val after  = gpu.buffer(rows.toLong * count)
@@ -53,8 +56,8 @@ private[skein] object GpuQuadrotors:
         "steps" -> Ptx.Kind.Whole
       )
     )
-    val state   = GpuVehicle.Variables(code, lanes.rows.map(_ => 0f))
-    val goal    = GpuVehicle.Variables(code, Seq.fill(3)(0f))
+    val state   = Variables(code, lanes.rows.map(_ => 0f))
+    val goal    = Variables(code, Seq.fill(3)(0f))
     val end     = code.label()
     val vehicle = code.thread()
     val count   = code.argument("count")
@@ -63,7 +66,7 @@ private[skein] object GpuQuadrotors:
       Iterator.iterate(code.address(code.argument(of), vehicle))(code.address(_, count)).take(rows).toVector
     for (at, row) <- places("state", lanes.rows.size).zipWithIndex do code.load(at, 0, state(row)): Unit
     for (at, row) <- places("goal", 3).zipWithIndex do code.load(at, 0, goal(row)): Unit
-    GpuVehicle.repeat(code, code.argument("steps"))(lanes.step(code, state, goal))
+    code.repeat(code.argument("steps"))(lanes.step(code, state, goal))
     for (at, row) <- places("after", lanes.rows.size).zipWithIndex do code.store(state(row), at)
     code.place(end)
     code("ret")

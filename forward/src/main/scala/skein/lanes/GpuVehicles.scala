@@ -1,7 +1,14 @@
 package skein.lanes
 
-import skein.forward.{Duelist, Reduced}
-import skein.gpu.{Ptx, PtxExpressions}
+import skein.forward.{
+  Duelist,
+  PlantResponse,
+  QuadrotorResponse,
+  Reduced,
+  ReducedResponse,
+  VelocityResponse
+}
+import skein.gpu.{Ptx, PtxExpressions, Variables}
 
 /** One vehicle of a team in the world of each thread. Its state stands in variables. */
 private[lanes] trait GpuVehicle:
@@ -16,37 +23,22 @@ private[lanes] trait GpuVehicle:
   def act(record: GpuRecord, north: Int, east: Int): Unit
 
 private[lanes] object GpuVehicle:
-  /** Variables of a vehicle. */
-  final class Variables(code: Ptx, initial: Seq[Float]):
-    private val registers       = initial.map(_ => code.fresh()).toArray
-    def apply(number: Int): Int = registers(number)
-    def start(): Unit           = for (value, i) <- initial.zipWithIndex do code.constant(value, registers(i))
-
-    /** All take their values at once: one may be what another was. */
-    def take(values: Seq[Int]): Unit =
-      val kept = values.map: value =>
-        if registers.contains(value) then
-          val copy = code.fresh()
-          code.move(value, copy)
-          copy
-        else value
-      for (value, i) <- kept.zipWithIndex do code.move(value, registers(i))
-
-  /** Does something so many times. */
-  def repeat(code: Ptx, times: Int)(body: => Unit): Unit =
-    val (again, over) = (code.label(), code.label())
-    val left          = code.wholes("add.s32", times, "0")
-    code.place(again)
-    code.goIf(code.compareWhole("le", left, 0), over)
-    body
-    code(s"add.s32 %r$left, %r$left, -1")
-    code.go(again)
-    code.place(over)
+  /** One that responds so.
+    *
+    * @return or why none flies on a GPU
+    */
+  def of(response: VelocityResponse): Either[String, (Ptx, Duelist) => GpuVehicle] = response match
+    case lag: Reduced                 => Right(GpuLagVehicle(_, _, lag))
+    case ReducedResponse(drag)        => PlantLanes.of(drag).map(lanes => GpuPlant(_, _, lanes))
+    case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, lanes))
+    case quadrotor: QuadrotorResponse =>
+      QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, lanes))
+    case _ => Left("the GPU does not know the vehicle")
 
 /** By [[LagExpressions]]. */
 private[lanes] final class GpuLagVehicle(code: Ptx, duelist: Duelist, model: Reduced) extends GpuVehicle:
   import LagExpressions.State
-  private val state = GpuVehicle.Variables(
+  private val state = Variables(
     code,
     Seq(duelist.startX.toFloat, duelist.startY.toFloat) ++ Seq.fill(State - 2)(0f)
   )
@@ -73,7 +65,7 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLan
   private val stages      = lanes.stages
   private val own         = stages.parametersOf(lanes.plant, duelist.speed)
   private val wholeStep   = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
-  private val kept        = GpuVehicle.Variables(code, Seq.fill(stages.kept)(0f))
+  private val kept        = Variables(code, Seq.fill(stages.kept)(0f))
   private val isCommanded = code.fresh()
 
   def start(): Unit =
@@ -113,7 +105,7 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLan
 
   private def flyTo(record: GpuRecord): Unit =
     val steps = code.wholeOf(record.time(0))
-    GpuVehicle.repeat(code, steps)(kept.take(write(stages.goOn, 0, 0, constantTime(_))))
+    code.repeat(steps)(kept.take(write(stages.goOn, 0, 0, constantTime(_))))
 
   private def timed(record: GpuRecord)(number: Int) = record.time(1 + number)
   private def constantTime(number: Int)             = code.constant(wholeStep(number))
@@ -135,8 +127,8 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLan
 private[lanes] final class GpuQuadrotor(code: Ptx, duelist: Duelist, lanes: QuadrotorLanes)
     extends GpuVehicle:
   private val hovering = lanes.numbersOf(lanes.quadrotor.hovering(lanes.holdingAt(duelist.altitudeDownM)))
-  private val state    = GpuVehicle.Variables(code, hovering.map(_.toFloat))
-  private val goal = GpuVehicle.Variables(code, Seq(0f, 0f, lanes.holdingAt(duelist.altitudeDownM).z.toFloat))
+  private val state    = Variables(code, hovering.map(_.toFloat))
+  private val goal     = Variables(code, Seq(0f, 0f, lanes.holdingAt(duelist.altitudeDownM).z.toFloat))
 
   def start(): Unit =
     state.start()
@@ -169,4 +161,4 @@ private[lanes] final class GpuQuadrotor(code: Ptx, duelist: Duelist, lanes: Quad
     ))
 
   private def fly(record: GpuRecord): Unit =
-    GpuVehicle.repeat(code, code.wholeOf(record.time(0)))(lanes.step(code, state, goal))
+    code.repeat(code.wholeOf(record.time(0)))(lanes.step(code, state, goal))

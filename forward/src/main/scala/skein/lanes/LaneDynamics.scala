@@ -11,7 +11,6 @@ import skein.forward.{
   ReducedResponse,
   VelocityResponse
 }
-import skein.gpu.Ptx
 import skein.units.Expect
 
 /** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
@@ -45,9 +44,6 @@ private[skein] trait LaneDynamics:
 
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None
-
-  /** One vehicle in the kernel of a GPU. */
-  private[lanes] def onGpu(code: Ptx, duelist: Duelist): GpuVehicle
 
 private[skein] object LaneDynamics:
   /** @return or why this model does not fly by lanes
@@ -106,7 +102,7 @@ private[skein] object LaneDynamics:
 
 /** Vehicles whose readings are carried forward. */
 private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
-  export model.{clock, deadTimeS, flights, handoverS, onGpu}
+  export model.{clock, deadTimeS, flights, handoverS}
   override def stepS: Double                         = model.stepS
   override def fliesAlone: Boolean                   = model.fliesAlone
   override def predictor: Option[TimetablePredictor] = Some(by)
@@ -122,8 +118,6 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
   def deadTimeS: Double                             = model.deadTimeS
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
-
-  private[lanes] def onGpu(code: Ptx, duelist: Duelist): GpuVehicle = GpuLagVehicle(code, duelist, model)
 
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
     loop.timing match
@@ -159,8 +153,6 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
 
-  private[lanes] def onGpu(code: Ptx, duelist: Duelist): GpuVehicle = GpuPlant(code, duelist, lanes)
-
   def clock(): EventClock = PieceClock(lanes, lanes.stages.tell(lanes.plant))
 
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
@@ -174,8 +166,6 @@ private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: Quadrotor
   def deadTimeS: Double                             = 0
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist, LaneQuadrotors(lanes))
-
-  private[lanes] def onGpu(code: Ptx, duelist: Duelist): GpuVehicle = GpuQuadrotor(code, duelist, lanes)
 
   override def fliesAlone: Boolean                                            = false
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =

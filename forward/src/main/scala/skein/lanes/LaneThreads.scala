@@ -95,15 +95,15 @@ private[lanes] object WorldBatches:
     WorldBatches(Array.range(0, worlds), Array.range(0, worlds, most))
 
   /** A batch has worlds of one key and one link. */
-  def byEpisode(worlds: Int, link: Int => AnyRef, key: Int => Int, most: Int): WorldBatches =
+  def byEpisode(worlds: Worlds, most: Int): WorldBatches =
     val groups  = java.util.HashMap[(AnyRef, Int), Integer]()
-    val groupOf = Array.tabulate(worlds): world =>
-      groups.computeIfAbsent((link(world), key(world)), _ => groups.size).intValue
+    val groupOf = Array.tabulate(worlds.size): world =>
+      groups.computeIfAbsent((worlds.link(world), worlds.key(world)), _ => groups.size).intValue
     val sizes = Array.ofDim[Int](groups.size)
     for group <- groupOf do sizes(group) += 1
     val ends  = sizes.scanLeft(0)(_ + _)
     val fill  = ends.clone
-    val order = Array.ofDim[Int](worlds)
+    val order = Array.ofDim[Int](worlds.size)
     for world <- groupOf.indices do
       order(fill(groupOf(world))) = world
       fill(groupOf(world)) += 1

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.formula.{Formula, Untraceable}
-import skein.gpu.{Ptx, PtxExpressions}
+import skein.gpu.{Ptx, PtxExpressions, Variables}
 import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
@@ -45,7 +45,7 @@ private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, for
     *
     * @param goal what is commanded, as in the other
     */
-  def step(code: Ptx, state: GpuVehicle.Variables, goal: GpuVehicle.Variables): Unit =
+  def step(code: Ptx, state: Variables, goal: Variables): Unit =
     state.take(PtxExpressions.write(code, formula.bound.nodes)(
       place =>
         val input = formula.bound.inputs(place)

@@ -92,7 +92,7 @@ final class TeamBatch(
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
     val batches  =
       if shares(worlds.shareEpisodes) then
-        WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, TimetableKernel.WORLDS)
+        WorldBatches.byEpisode(worlds, TimetableKernel.WORLDS)
       else WorldBatches.inOrder(worlds.size, LoopKernel.WORLDS)
     outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
       worker.fly(worlds, prepared, numbers, outcomes)

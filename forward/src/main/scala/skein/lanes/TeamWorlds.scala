@@ -1,25 +1,10 @@
 package skein.lanes
 
-import skein.forward.{Delays, Engagement}
+import skein.forward.Engagement
 import skein.scenario.{Quantity, Reduction}
 
-/** The worlds of one call of [[TeamBatch]], by number from 0. Pure functions of the number, called from any
-  * thread.
-  */
-trait TeamWorlds:
-  def size: Int
-
-  /** Whether several worlds have the same key and the same link, as candidates that meet the same episodes
-    * do.
-    */
-  def shareEpisodes: Boolean = false
-
-  /** `skein.simd.WorldRandom.key` of the world: decides all delays. Worlds of one key and one link meet the
-    * same.
-    */
-  def key(world: Int): Int
-  def link(world: Int): Delays
-
+/** The worlds of one call of [[TeamBatch]]. */
+trait TeamWorlds extends Worlds:
   /** The same object for all worlds of a candidate. */
   def candidate(world: Int): TeamCandidate
 

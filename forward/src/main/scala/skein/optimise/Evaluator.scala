@@ -3,7 +3,7 @@ package skein.optimise
 import skein.forward.Delays
 import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
 import skein.policy.{Policy, PolicyFamily, Role}
-import skein.simd.{LaneMath, WorldRandom}
+import skein.simd.WorldRandom
 
 /** Judges candidates for a [[Search]]. All candidates meet the same episodes (common random numbers), so that
   * their differences are their own.
@@ -77,9 +77,7 @@ final class DuelEvaluator(
 
   override def sideBySide: Int =
     val policy = family.defaultPolicy
-    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true, Seq(link)) then
-      LaneMath.LANES
-    else 1
+    if shareEpisodes then batch.sideBySide(pursuer(policy), evader(policy), link) else 1
 
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -101,6 +99,7 @@ final class DuelEvaluator(
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                       = policies.length * keys.length
     override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
+    override def episodesOfEach: Int    = keys.length
     override def asked: Set[DuelNumber] = objective.asked(role)
     def key(world: Int): Int            = keys(world % keys.length)
     def link(world: Int): Delays        = DuelEvaluator.this.link

@@ -10,11 +10,11 @@ import skein.vehicle.{Quadrotor, ReducedModel}
 @main def gpuKernels(folder: String): Unit =
   val layout                                                        = GpuLayout(2, 4, 4)
   def duels(name: String, model: VelocityResponse, pursuer: Policy) =
-    val lanes  = LaneDynamics.of(model, Duel.paper).fold(sys.error, identity)
-    val forms  = GpuDuelKernel.Forms(PolicyLanes.get(PaperEvader()), PolicyLanes.get(pursuer))
-    val asked  = Set(DuelNumber.MeanLast10s)
-    val kernel =
-      GpuDuelKernel(InterpretedGpu(), Duel.paper, LoopTiming.Stream().periodS, lanes, forms, asked, layout)
+    val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
+    val forms   = GpuDuelKernel.Forms(PolicyLanes.get(PaperEvader()), PolicyLanes.get(pursuer))
+    val asked   = Set(DuelNumber.MeanLast10s)
+    val kernel  =
+      GpuDuelKernel(InterpretedGpu(), Duel.paper, LoopTiming.Stream().periodS, vehicle, forms, asked, layout)
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
   duels("lag", Reduced.AirSim, PaperPursuer())
   duels("drag", ReducedResponse(ReducedModel.AirSim), PaperPursuer())
