@@ -1,8 +1,8 @@
 package skein.bench
 
 import skein.forward.*
-import skein.gpu.Gpu
-import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds, GpuQuadrotors, LaneQuadrotors}
+import skein.gpu.{CudaGpu, Gpu}
+import skein.lanes.*
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
@@ -14,61 +14,67 @@ import skein.vehicle.{Quadrotor, ReducedModel}
   * Arguments: candidates of each row, and vehicles of the quadrotor's.
   */
 object GpuRates:
-  private val Episodes = 8
+  private val Episodes = 32
   private val asked    = Set(DuelNumber.MeanLast10s)
   private val network  = NeuralShape(Vector(16, 16))
   private val weights  = Vector.tabulate(network.parameters)(i => math.sin(i * 1.7))
 
   def main(args: Array[String]): Unit =
     val Array(candidates, vehicles) = args.map(_.toInt)
-    val gpu                         = Gpu.find().fold(sys.error, identity)
+    val gpu                         = CudaGpu.find().fold(sys.error, identity)
     println(s"${gpu.name}; ${Runtime.getRuntime.availableProcessors} processors")
     println("| work | GPU, M/s | its kernels alone, M/s | processors, M/s | times | witness | differ |")
     println("|---|---|---|---|---|---|---|")
     def paper(i: Int): Policy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
     def neural(i: Int): Policy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
     val drag                   = ReducedResponse(ReducedModel.AirSim)
-    row("stream over vpn", gpu, LoopTiming.Stream(), Works.model, candidates, candidates / 16, paper)
-    row("futures over vpn", gpu, LoopTiming.Futures(), Works.model, candidates, candidates / 16, paper)
-    row("stream, drag", gpu, LoopTiming.Stream(), drag, candidates, candidates / 64, paper)
-    row(
-      "stream, network of 16 and 16",
-      gpu,
-      LoopTiming.Stream(),
-      Works.model,
-      candidates / 4,
-      candidates / 256,
-      neural
-    )
-    val quadrotors = VelocityResponses.quadrotor()
-    row("stream, quadrotors", gpu, LoopTiming.Stream(), quadrotors, candidates / 16, candidates / 4096, paper)
+    def duels(name: String, timing: LoopTiming, model: VelocityResponse, share: Int, pursuer: Int => Policy) =
+      val count    = candidates / share
+      val policies = Vector.tabulate(count)(pursuer)
+      val onGpu    = DuelBatch(Duel.paper, timing, model, gpu = Some(gpu))
+      val here     = DuelBatch(Duel.paper, timing, model)
+      row(name, gpu, 2, count, count / 64)(
+        count => onGpu.fly(Duels(count, policies)).meanLast10sM,
+        count => here.fly(Duels(count, policies)).meanLast10sM
+      )
+    def teams(name: String, vehicles: Int, share: Int, candidate: Int => TeamCandidate) =
+      val count = candidates / share
+      val teams = Vector.tabulate(count)(i => candidate(i % 1024))
+      val onGpu = TeamBatch(LoopTiming.Stream(), Works.model, gpu = Some(gpu))
+      val here  = TeamBatch(LoopTiming.Stream(), Works.model)
+      row(name, gpu, vehicles, count, count / 64)(
+        count => onGpu.fly(Teams(count, teams)).values(0),
+        count => here.fly(Teams(count, teams)).values(0)
+      )
+    duels("stream over vpn", LoopTiming.Stream(), Works.model, 1, paper)
+    duels("futures over vpn", LoopTiming.Futures(), Works.model, 1, paper)
+    duels("stream, drag", LoopTiming.Stream(), drag, 1, paper)
+    duels("stream, network of 16 and 16", LoopTiming.Stream(), Works.model, 4, neural)
+    duels("stream, quadrotors", LoopTiming.Stream(), VelocityResponses.quadrotor(), 32, paper)
+    teams("stream, surround of 6", 6, 8, TeamRates.surround(6))
+    teams("stream, surround of 20", 20, 32, TeamRates.surround(20))
+    teams("stream, formation of 6", 6, 8, TeamRates.formation(6))
+    teams("stream, crossing of 6", 6, 32, TeamRates.crossing(6))
     quadrotor(gpu, vehicles)
 
   /** @param onCpu so many candidates fly on the processors, too, and are compared
+    * @param there flies so many, here, too; what they came to, by candidate and then by episode
     */
-  private def row(
-      name: String,
-      gpu: Gpu,
-      timing: LoopTiming,
-      model: VelocityResponse,
-      candidates: Int,
-      onCpu: Int,
-      pursuer: Int => Policy
+  private def row(name: String, gpu: Gpu, vehicles: Int, candidates: Int, onCpu: Int)(
+      there: Int => Array[Float],
+      here: Int => Array[Float]
   ): Unit =
-    val policies = Vector.tabulate(candidates)(pursuer)
-    val onGpu    = DuelBatch(Duel.paper, timing, model, gpu = Some(gpu))
-    val here     = DuelBatch(Duel.paper, timing, model)
-    // Once for nothing: timetables and code are made.
-    onGpu.fly(Worlds(candidates, policies)): Unit
-    here.fly(Worlds(onCpu.max(16), policies)): Unit
+    // For nothing: timetables and code are made.
+    for _ <- 1 to 3 do
+      there(candidates): Unit
+      here(onCpu): Unit
     val ran    = gpu.ranNs
-    val (a, t) = timed(onGpu.fly(Worlds(candidates, policies)))
+    val (a, t) = timed(there(candidates))
     val kernel = (gpu.ranNs - ran) * 1e-9
-    val (b, s) = timed(here.fly(Worlds(onCpu, policies)))
-    // A world is a candidate's episode; the first candidates are the same.
-    val differ = (0 until onCpu * Episodes).count(i => a.meanLast10sM(i) != b.meanLast10sM(i))
-    val mean   = b.meanLast10sM.map(_.toDouble).sum / b.meanLast10sM.length
-    val steps  = Episodes * 1200.0
+    val (b, s) = timed(here(onCpu))
+    val differ = (0 until onCpu * Episodes).count(i => a(i) != b(i))
+    val mean   = b.map(_.toDouble).sum / b.length
+    val steps  = Episodes * vehicles * 600.0
     tell(
       name,
       candidates * steps / t,
@@ -78,16 +84,23 @@ object GpuRates:
       s"$differ of ${onCpu * Episodes}"
     )
 
-  private final class Worlds(candidates: Int, policies: Vector[Policy]) extends DuelWorlds:
-    private val evader                  = PaperEvader()
+  private trait Together(candidates: Int) extends Worlds:
     def size: Int                       = candidates * Episodes
     override def shareEpisodes: Boolean = true
     override def episodesOfEach: Int    = Episodes
-    override def asked: Set[DuelNumber] = GpuRates.asked
     def key(world: Int): Int            = WorldRandom.key(3, 0, world % Episodes)
     def link(world: Int): DelayTable    = DelayTable.vpn
+
+  private final class Duels(candidates: Int, policies: Vector[Policy]) extends DuelWorlds,
+        Together(candidates):
+    private val evader                  = PaperEvader()
+    override def asked: Set[DuelNumber] = GpuRates.asked
     def pursuer(world: Int): Policy     = policies(world / Episodes)
     def evader(world: Int): Policy      = this.evader
+
+  private final class Teams(candidates: Int, teams: Vector[TeamCandidate]) extends TeamWorlds,
+        Together(candidates):
+    def candidate(world: Int): TeamCandidate = teams(world / Episodes)
 
   private def quadrotor(gpu: Gpu, vehicles: Int): Unit =
     val steps    = 10_000

@@ -51,16 +51,16 @@ object TeamRates:
           f"${Candidates * one / again}%.0f | ${(first - again) * 1e3}%.0f | $witness%.4f | $truth%.4f |"
       )
 
-  private def surround(vehicles: Int)(number: Int): TeamCandidate =
+  def surround(vehicles: Int)(number: Int): TeamCandidate =
     val scenario = Surround(vehicles, ringM = 6 + 0.02 * number, pursuerMps = 7 + 0.01 * number)
     candidate(scenario, Vector(OffRing(scenario.ringM), WidestGap))
 
-  private def formation(vehicles: Int)(number: Int): TeamCandidate =
+  def formation(vehicles: Int)(number: Int): TeamCandidate =
     val scenario       = Formation(vehicles, spacingM = 3 + 0.01 * number)
     val (ahead, right) = scenario.slots.unzip
     candidate(scenario, Vector(OffSlots(scenario.circuit, IArray.from(ahead), IArray.from(right))))
 
-  private def crossing(vehicles: Int)(number: Int): TeamCandidate =
+  def crossing(vehicles: Int)(number: Int): TeamCandidate =
     candidate(Crossing(vehicles, marginM = 0.5 + 0.005 * number), Vector(Separation))
 
   private def candidate(scenario: Scenario, by: Vector[Quantity]) =

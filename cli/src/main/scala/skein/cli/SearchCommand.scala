@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
-import skein.gpu.Gpu
+import skein.gpu.CudaGpu
 import skein.optimise.{CmaEs, SearchState}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
@@ -82,13 +82,10 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      gpu   <- if options.gpu.value then Gpu.find().map(Some(_)).left.map("--gpu: " + _) else Right(None)
+      gpu   <- if options.gpu.value then CudaGpu.find().map(Some(_)).left.map("--gpu: " + _) else Right(None)
       ready <- question match
         case duel: SearchQuestion => duel.setup.map(_.copy(gpu = gpu))
-        case team: TeamQuestion   =>
-          Expect.that(gpu.isEmpty)("--gpu: expected a duel's policy to search, came a scenario").flatMap(_ =>
-            team.setup
-          )
+        case team: TeamQuestion   => team.setup.map(_.copy(gpu = gpu))
       _ <- OutFolder.alone(folder):
         options.view.serving("search"): task =>
           EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>

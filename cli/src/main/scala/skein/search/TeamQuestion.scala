@@ -1,6 +1,7 @@
 package skein.search
 
 import skein.forward.{Delays, Engagement}
+import skein.gpu.Gpu
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.optimise.{
   Evaluator,
@@ -172,6 +173,7 @@ enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String)
 /** A search over a scenario's settings, ready to run.
   *
   * @param objective of the scenario as it is unless told otherwise
+  * @param gpu on which candidates fly, if that is asked for
   */
 final case class TeamSetup(
     question: TeamQuestion,
@@ -179,7 +181,8 @@ final case class TeamSetup(
     space: SearchSpace,
     objective: TeamObjective,
     flownBy: TeamEngine,
-    by: SearchMethod
+    by: SearchMethod,
+    gpu: Option[Gpu] = None
 ) extends ReadySearch:
   export flownBy.{isVirtual, model, vehicles}
 
@@ -211,7 +214,7 @@ final case class TeamSetup(
     space.axes.zip(candidate).map((axis, value) => axis.name + between + number(value)).mkString(", ")
 
   private def batch(of: Conditions.Resolved, threads: Int) =
-    TeamBatch(of.timing, of.vehicle.response, threads)
+    TeamBatch(of.timing, of.vehicle.response, threads, gpu)
 
   def judges(threads: Int): Judge => ValueEvaluator = flownBy match
     case TeamEngine.Reduced(conditions, delays) =>

@@ -89,14 +89,19 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       body(arena)
     finally arena.close()
 
-private object CudaGpu:
+object CudaGpu:
   private val MostLog          = 8192L
   private val JitErrorLog      = 5
   private val JitErrorLogBytes = 6
   private val MostName         = 256
 
-  /** The first of this machine, or why there is none. */
-  lazy val first: Either[String, Gpu] = Cuda.load().flatMap: cuda =>
+  /** The first GPU of this machine; the same object each time.
+    *
+    * @return or why there is none
+    */
+  def find(): Either[String, Gpu] = first
+
+  private lazy val first: Either[String, Gpu] = Cuda.load().flatMap: cuda =>
     val arena = Arena.ofConfined()
     try
       val number, device = arena.allocate(JAVA_INT)

@@ -27,13 +27,6 @@ trait Gpu:
   private[skein] def buffer(numbers: Array[Float]): GpuBuffer
   private[skein] def buffer(numbers: Array[Int]): GpuBuffer
 
-object Gpu:
-  /** The first NVIDIA GPU of this machine; the same object each time.
-    *
-    * @return or why there is none
-    */
-  def find(): Either[String, Gpu] = CudaGpu.first
-
 /** Memory of a GPU. */
 private[skein] trait GpuBuffer extends AutoCloseable:
   def address: Long
@@ -46,6 +39,3 @@ private[skein] trait GpuKernel:
     * @param arguments in the kernel's order: a [[GpuBuffer]], an Int, a Float or an array of floats each
     */
   def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit
-
-/** What a GPU's driver refuses. */
-final class GpuFailure(message: String) extends RuntimeException(s"the GPU: $message")

@@ -73,6 +73,11 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def wide(a: Int, factor: Int): Int = result()(r => s"mul.wide.s32 %rd$r, %r$a, $factor")
   def sum(a: Int, b: Int): Int       = result()(r => s"add.s64 %rd$r, %rd$a, %rd$b")
 
+  /** An address so many times so many bytes further on. */
+  def advanced(from: Int, times: Int, bytes: Int): Int =
+    val wide = result()(r => s"cvt.u64.u32 %rd$r, %r$times")
+    result()(r => s"mad.lo.s64 %rd$r, %rd$wide, %rd$bytes, %rd$from")
+
   def argument(parameter: String): Int = parameters.collectFirst {
     case (`parameter`, Kind.Address) => result()(r => s"ld.param.u64 %rd$r, [$parameter]")
     case (`parameter`, Kind.Whole)   => result()(r => s"ld.param.u32 %r$r, [$parameter]")

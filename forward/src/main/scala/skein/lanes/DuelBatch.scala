@@ -85,8 +85,8 @@ final class DuelBatch(
     for
       episodes <- lanes
       _        <- Expect.that(!sees)("the GPU flies nobody who sees by a sensor")
-      _ <- Expect.that(!timing.isInstanceOf[LoopTiming.Predictive])("the GPU flies loops that do not predict")
-      vehicle <- GpuVehicle.of(model)
+      _        <- GpuParts.refusal(timing).toLeft(())
+      vehicle  <- GpuVehicle.of(model)
     yield GpuDuels(gpu, episodes, vehicle, threads)
 
   /** What is told where vehicles are flown side by side. */
@@ -104,15 +104,14 @@ final class DuelBatch(
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
       case Left(reason)                                    => stepped.getOrElse(s"scalar: $reason")
-      case Right(_) if shares(shareEpisodes) && fliesOnGpu => s"GPU, ${gpu.get.name}: a thread a candidate"
+      case Right(_) if shares(shareEpisodes) && fliesOnGpu => GpuParts.told(gpu.get)
       case Right(lanes)                                    =>
-        val instead = gpu.map(_ => onGpu.get.swap.getOrElse("the GPU flies candidates that share episodes"))
-        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) + instead.fold("")(": " + _)
+        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) + GpuParts.instead(onGpu)
 
   /** How many candidates that share episodes take no longer than one. */
   def sideBySide(pursuer: Policy, evader: Policy, link: Delays): Int =
     if !fliesByLanes(pursuer, evader, shareEpisodes = true, Seq(link)) then 1
-    else if fliesOnGpu then GpuDuels.SideBySide
+    else if fliesOnGpu then GpuParts.SideBySide
     else LaneMath.LANES
 
   private def fliesOnGpu = onGpu.exists(_.isRight)

@@ -5,12 +5,6 @@ import skein.policy.Policy
 
 /** The worlds of one call of [[DuelBatch]]. */
 trait DuelWorlds extends Worlds:
-  /** Where every candidate flies through the same episodes, how many these are: then a world's number over
-    * this is its candidate's, which alone decides its policies, and the rest is its episode's, which alone
-    * decides its key and link. Otherwise 0. Only such worlds fly on a GPU.
-    */
-  def episodesOfEach: Int = 0
-
   /** What worlds are judged by. Nothing else is computed. */
   def asked: Set[DuelNumber] = DuelNumber.all
 

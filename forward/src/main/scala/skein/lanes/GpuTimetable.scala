@@ -1,99 +1,124 @@
 package skein.lanes
 
-/** Where a thread of a GPU keeps what its vehicles' readings and headings are: words of its own memory.
+import skein.gpu.Ptx
+
+/** Where a thread of a GPU keeps what its vehicles' readings and commands are: bytes of its own memory.
   *
   * @param readings places of one vehicle
   * @param headings the same
   */
-private[lanes] final case class GpuLayout(vehicles: Int, readings: Int, headings: Int):
+private[lanes] final case class GpuLayout(vehicles: Int, readings: Int = 4, headings: Int = 4):
   import LaneObservation.READ
-  private val firstHeading = vehicles * readings * READ
+  private val firstHeading = 4 * READ * vehicles * readings
 
-  def bytes: Int = 4 * (firstHeading + 2 * vehicles * headings)
+  /** Behind it is room for whatever a kernel keeps besides. */
+  val bytes: Int = firstHeading + 8 * vehicles * headings
 
-  /** Where a reading begins, bytes. */
+  /** Where a reading begins. */
   def reading(vehicle: Int, place: Int): Int = 4 * READ * (vehicle * readings + place)
 
-  /** Where a heading's cosine and sine are, bytes. */
-  def heading(vehicle: Int, place: Int): Int = 4 * (firstHeading + 2 * (vehicle * headings + place))
+  /** Where a heading's cosine and sine are, or a commanded velocity. */
+  def heading(vehicle: Int, place: Int): Int = firstHeading + 8 * (vehicle * headings + place)
 
   /** One with room for an episode, too. */
   def holding(timetable: Timetable): GpuLayout =
     def doubled(now: Int, needed: Int) = if needed <= now then now else Integer.highestOneBit(needed * 2 - 1)
     copy(readings = doubled(readings, timetable.readings), headings = doubled(headings, timetable.headings))
 
-/** A duel's [[Timetable]] as [[GpuDuelKernel]] reads it: of each operation [[stride]] words, the number of
-  * its label, where in own memory are what it takes and leaves, and its times.
+/** A [[Timetable]] as [[GpuKernel]] reads it: of each operation [[stride]] words, which are the number of its
+  * label, where in own memory are what it takes and leaves, and its times; then the views, of each where the
+  * readings of all vehicles are.
   */
 private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout):
   import GpuTimetable.*
   require(layout.holding(timetable) == layout, s"$layout has no room for ${timetable.readings} readings")
 
-  val stride: Int = (FirstTime + timetable.numbers + 3) / 4 * 4
-  def size: Int   = timetable.size
+  private val count     = layout.vehicles
+  private val firstTime = Timetable.Fields
+  val stride: Int       = (firstTime + timetable.numbers + 3) / 4 * 4
 
-  val words: Array[Int] =
-    // The kernel looks at the next operation's label while it is at the last.
-    val packed = Array.ofDim[Int](size * stride + 1)
-    for i <- 0 until size do
-      val at     = i * stride
-      val fields = record(i * Timetable.Fields)
-      System.arraycopy(fields, 0, packed, at, fields.length)
-      for number <- 0 until timetable.numbers do
-        packed(at + FirstTime + number) =
-          java.lang.Float.floatToRawIntBits(timetable.times(i * timetable.numbers + number))
-    packed
+  private val labels = Labels(count)
+
+  private val operations: Vector[Array[Int]] =
+    var shown = -1
+    Vector.range(0, timetable.size).flatMap: i =>
+      val own  = fieldsOf(i)
+      val view = timetable.operations(i * Timetable.Fields + 2)
+      // What several vehicles compute of a view is computed once.
+      val show =
+        if kindOf(i) == TimetableKernel.DECIDE && view != shown then
+          shown = view
+          Vector(Array(labels.show, own(1)))
+        else Vector.empty
+      (show :+ own).map(fields => record(fields, i))
+
+  def size: Int = operations.size
+
+  val words: Array[Int] = operations.toArray.flatten ++ timetable.views.indices.map(i =>
+    layout.reading(i % count, timetable.views(i))
+  )
 
   /** When it is scored, s. */
   val scoredAtS: Array[Float] =
-    Array.range(0, size).filter(i => kind(i * Timetable.Fields) == TimetableKernel.SCORE).map(i =>
+    Array.range(0, timetable.size).filter(kindOf(_) == TimetableKernel.SCORE).map(i =>
       timetable.times(i * timetable.numbers)
     )
 
-  private def kind(at: Int) = timetable.operations(at)
+  private def kindOf(i: Int) = timetable.operations(i * Timetable.Fields)
 
-  private def record(at: Int): Array[Int] =
-    val agent              = timetable.operations(at + 1)
-    def place(i: Int)      = timetable.operations(at + 1 + i)
-    def seen(vehicle: Int) = layout.reading(vehicle, timetable.views(layout.vehicles * place(1) + vehicle))
-    kind(at) match
+  private def record(fields: Array[Int], i: Int): Array[Int] =
+    val made = java.util.Arrays.copyOf(fields, stride)
+    for number <- 0 until timetable.numbers do
+      made(firstTime + number) =
+        java.lang.Float.floatToRawIntBits(timetable.times(i * timetable.numbers + number))
+    made
+
+  private def fieldsOf(i: Int): Array[Int] =
+    val at                = i * Timetable.Fields
+    val agent             = timetable.operations(at + 1)
+    def place(field: Int) = timetable.operations(at + 1 + field)
+    // From here on, in words: nobody knows yet how many operations there are.
+    def view = count * place(1)
+    kindOf(i) match
       case TimetableKernel.LOOK =>
-        Array((if place(2) != 0 then LookAtAll else Look) + agent, layout.reading(agent, place(1)))
-      case TimetableKernel.ACT    => Array(Act + agent, layout.heading(agent, place(1)))
+        Array(labels.look(agent, withVelocity = place(2) != 0), layout.reading(agent, place(1)))
+      case TimetableKernel.ACT    => Array(labels.act(agent), layout.heading(agent, place(1)))
       case TimetableKernel.DECIDE =>
-        val other = 1 - agent
         Array(
-          Decide + agent,
-          seen(agent),
-          seen(other),
-          layout.heading(other, place(2)),
+          labels.decide(agent),
+          view,
+          if count == 2 then layout.heading(1 - agent, place(2)) else 0,
           layout.heading(agent, place(3)),
           layout.heading(agent, place(4))
         )
-      case TimetableKernel.SCORE => Array(Score, seen(0), seen(1))
+      case TimetableKernel.SCORE => Array(labels.score, view)
       case other                 => throw IllegalArgumentException(s"no GPU knows operations of kind $other")
 
 private[lanes] object GpuTimetable:
-  // Labels; all but the last by vehicle.
-  val Look: Int      = 0
-  val LookAtAll: Int = 2
-  val Act: Int       = 4
-  val Decide: Int    = 6
-  val Score: Int     = 8
-
-  val Labels: Int = 9
-
-  /** The first word of an operation's times. */
-  val FirstTime: Int = Timetable.Fields
+  /** Numbers of what a kernel does at an operation. */
+  final class Labels(vehicles: Int):
+    def look(vehicle: Int, withVelocity: Boolean): Int = if withVelocity then vehicles + vehicle else vehicle
+    def act(vehicle: Int): Int                         = 2 * vehicles + vehicle
+    def decide(vehicle: Int): Int                      = 3 * vehicles + vehicle
+    def score: Int                                     = 4 * vehicles
+    def show: Int                                      = score + 1
+    def count: Int                                     = show + 1
 
 /** What a [[GpuTimetable]] tells of the present operation, in a kernel: words that are the same for all
   * threads of a block.
   *
   * @param base the register of its address
+  * @param views the same of the views
   */
-private[lanes] final class GpuRecord(code: skein.gpu.Ptx, base: Int):
+private[lanes] final class GpuRecord(code: Ptx, base: Int, views: Int):
   /** Where in own memory one of the operation's things is; from 1 on. */
   def place(number: Int): Int = code.own(code.loadWhole(base, number))
 
   /** One of its times; see [[Timetable.times]]. */
-  def time(number: Int): Int = code.load(base, GpuTimetable.FirstTime + number)
+  def time(number: Int): Int = code.load(base, Timetable.Fields + number)
+
+  /** Where in own memory the operation's view has a vehicle's reading. */
+  def seen(): Int => Int =
+    val view  = code.address(views, code.loadWhole(base, 1))
+    val known = collection.mutable.HashMap.empty[Int, Int]
+    vehicle => known.getOrElseUpdate(vehicle, code.own(code.loadWhole(view, vehicle)))

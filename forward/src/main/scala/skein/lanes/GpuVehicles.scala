@@ -23,27 +23,41 @@ private[lanes] trait GpuVehicle:
   def act(record: GpuRecord, north: Int, east: Int): Unit
 
 private[lanes] object GpuVehicle:
-  /** One that responds so.
+  /** Makes a vehicle in a kernel.
+    *
+    * Takes the registers of where it starts, north and east, m.
+    */
+  type Kind = (Ptx, Duelist, Int, Int) => GpuVehicle
+
+  /** Those that respond so.
     *
     * @return or why none flies on a GPU
     */
-  def of(response: VelocityResponse): Either[String, (Ptx, Duelist) => GpuVehicle] = response match
-    case lag: Reduced                 => Right(GpuLagVehicle(_, _, lag))
-    case ReducedResponse(drag)        => PlantLanes.of(drag).map(lanes => GpuPlant(_, _, lanes))
-    case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, lanes))
+  def of(response: VelocityResponse): Either[String, Kind] = response match
+    case lag: Reduced                 => Right(GpuLagVehicle(_, _, _, _, lag))
+    case ReducedResponse(drag)        => PlantLanes.of(drag).map(lanes => GpuPlant(_, _, _, _, lanes))
+    case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))
     case quadrotor: QuadrotorResponse =>
-      QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, lanes))
+      QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
     case _ => Left("the GPU does not know the vehicle")
 
 /** By [[LagExpressions]]. */
-private[lanes] final class GpuLagVehicle(code: Ptx, duelist: Duelist, model: Reduced) extends GpuVehicle:
+private[lanes] final class GpuLagVehicle(
+    code: Ptx,
+    duelist: Duelist,
+    startX: Int,
+    startY: Int,
+    model: Reduced
+) extends GpuVehicle:
   import LagExpressions.State
   private val state = Variables(
     code,
-    Seq(duelist.startX.toFloat, duelist.startY.toFloat) ++ Seq.fill(State - 2)(0f)
+    Seq.fill(State)(0f)
   )
 
-  def start(): Unit = state.start()
+  def start(): Unit =
+    state.start()
+    state.take(Seq(startX, startY))
 
   def look(record: GpuRecord, withVelocity: Boolean): Vector[Int] =
     val asked = LagExpressions.position ++ (if withVelocity then LagExpressions.velocity else Nil)
@@ -60,7 +74,8 @@ private[lanes] final class GpuLagVehicle(code: Ptx, duelist: Duelist, model: Red
     else record.time(number)
 
 /** By [[PlantStages]]. */
-private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuVehicle:
+private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, startY: Int, lanes: PlantLanes)
+    extends GpuVehicle:
   import PlantStages.{East, Kept, North, StartX, StartY, State}
   private val stages      = lanes.stages
   private val own         = stages.parametersOf(lanes.plant, duelist.speed)
@@ -82,13 +97,13 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLan
     for (into, value) <- seen.zip(flown) do code.move(value, into)
     code.go(over)
     code.place(atRest)
-    val rests = Seq(
-      duelist.startX.toFloat + resting.northM.toFloat,
-      duelist.startY.toFloat + resting.eastM.toFloat,
-      resting.northMps.toFloat,
-      resting.eastMps.toFloat
+    val rests = Vector(
+      code.two("add.rn", startX, code.constant(resting.northM.toFloat)),
+      code.two("add.rn", startY, code.constant(resting.eastM.toFloat)),
+      code.constant(resting.northMps.toFloat),
+      code.constant(resting.eastMps.toFloat)
     )
-    for (into, value) <- seen.zip(rests) do code.constant(value, into)
+    for (into, value) <- seen.zip(rests) do code.move(value, into)
     code.place(over)
     seen
 
@@ -113,8 +128,8 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLan
   private def write(of: BoundFunction, north: Int, east: Int, time: Int => Int): Vector[Int] =
     PtxExpressions.write(code, of.nodes)(
       of.inputs(_) match
-        case StartX                 => code.constant(duelist.startX.toFloat)
-        case StartY                 => code.constant(duelist.startY.toFloat)
+        case StartX                 => startX
+        case StartY                 => startY
         case North                  => north
         case East                   => east
         case input if input >= Kept => kept(input - Kept)
@@ -124,8 +139,13 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, lanes: PlantLan
     )
 
 /** By the steps of [[QuadrotorLanes]], as [[TimetableQuadrotors]] are. */
-private[lanes] final class GpuQuadrotor(code: Ptx, duelist: Duelist, lanes: QuadrotorLanes)
-    extends GpuVehicle:
+private[lanes] final class GpuQuadrotor(
+    code: Ptx,
+    duelist: Duelist,
+    startX: Int,
+    startY: Int,
+    lanes: QuadrotorLanes
+) extends GpuVehicle:
   private val hovering = lanes.numbersOf(lanes.quadrotor.hovering(lanes.holdingAt(duelist.altitudeDownM)))
   private val state    = Variables(code, hovering.map(_.toFloat))
   private val goal     = Variables(code, Seq(0f, 0f, lanes.holdingAt(duelist.altitudeDownM).z.toFloat))
@@ -141,7 +161,7 @@ private[lanes] final class GpuQuadrotor(code: Ptx, duelist: Duelist, lanes: Quad
     def numbers(row: String*) = row.map(name => state(lanes.row(name))).toVector
     def carried(of: BoundFunction, by: Vector[Int]) =
       PtxExpressions.write(code, of.nodes)(input => by(of.inputs(input)), Vector(since, half))
-    val starts   = Vector(duelist.startX, duelist.startY).map(each => code.constant(each.toFloat))
+    val starts   = Vector(startX, startY)
     val position = Vector("x", "y").zip(starts).map((axis, start) =>
       carried(TimetableQuadrotors.placed, numbers(s"a$axis", s"v$axis", axis) :+ start).head
     )

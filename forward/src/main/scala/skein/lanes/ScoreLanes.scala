@@ -79,6 +79,9 @@ private[lanes] final class ScoreLanes private (
       Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
     else Source.Kept(input - FirstKept)
 
+  /** Whether a number needs the share of each value among all so far. */
+  def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
+
   /** How many numbers a quantity differs by from another of its form. */
   def parameters(number: Int): Int = derived(number).size
 

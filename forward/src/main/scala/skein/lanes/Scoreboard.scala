@@ -19,7 +19,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
     Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
   private val stages = lanes.stages.map(Stage(_)).toArray
 
-  private val hasShare = judged.map(_.reduction == Reduction.Sd).toArray
+  private val hasShare = judged.indices.map(lanes.hasShare).toArray
 
   for case (Judged(_, OfMoment.FirstWithin(limit), _), number) <- judged.zipWithIndex do
     this.limit(number, limit.toFloat)

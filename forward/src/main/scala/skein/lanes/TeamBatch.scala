@@ -3,8 +3,9 @@ package skein.lanes
 import java.util.IdentityHashMap
 import scala.collection.mutable
 import skein.forward.{Delays, LoopTiming, TabledDelays, VelocityResponse}
+import skein.gpu.Gpu
 import skein.policy.TeamPolicy
-import skein.simd.LaneMath
+import skein.simd.{LaneFunction, LaneMath}
 import skein.units.Expect
 
 /** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
@@ -14,16 +15,30 @@ import skein.units.Expect
   * reference ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate,
   * its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on
   * their order. One call at a time.
+  *
+  * @param gpu on which candidates that share episodes fly, where it knows them; outcomes are the same, to the
+  *   bit
   */
 final class TeamBatch(
     timing: LoopTiming,
     model: VelocityResponse,
-    threads: Int = Runtime.getRuntime.availableProcessors
+    threads: Int = Runtime.getRuntime.availableProcessors,
+    gpu: Option[Gpu] = None
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
+
+  /** The GPU, if there is one, and if it knows the loop. */
+  private val onGpu: Option[Either[String, GpuTeams]] = gpu.map: gpu =>
+    for
+      _       <- GpuParts.refusal(timing).toLeft(())
+      vehicle <- GpuVehicle.of(model)
+    yield GpuTeams(gpu, vehicle, threads, timetable)
+
+  private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
+    Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles)
 
   /** Which engine flies such a team, and why, in a line for the user.
     *
@@ -33,13 +48,17 @@ final class TeamBatch(
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(candidate) match
       case Left(reason) => steppedOf(candidate).getOrElse(s"scalar: $reason")
-      case Right(form)  =>
+      case Right(_) if shares(shareEpisodes) && onGpu.exists(_.isRight) => GpuParts.told(gpu.get)
+      case Right(form)                                                  =>
         val worlds = if shares(shareEpisodes) then "candidates of an episode" else "worlds"
         LaneSupport.told(
           s"${LaneMath.LANES} $worlds at a time",
           links.map(refusal(form, shares(shareEpisodes), _)),
           steppedOf(candidate)
-        )
+        ) + GpuParts.instead(onGpu)
+
+  /** How many candidates that share episodes take no longer than one, if they fly by lanes or on the GPU. */
+  def sideBySide: Int = if onGpu.exists(_.isRight) then GpuParts.SideBySide else LaneFunction.COUNT
 
   private def steppedOf(candidate: TeamCandidate) = SteppedRollouts.told(model, candidate.engagement.agents)
 
@@ -51,10 +70,10 @@ final class TeamBatch(
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
 
   /** Why no lanes fly over a link. */
-  private def refusal(form: Form, share: Boolean, link: Delays): Option[String] =
+  private def refusal(form: TeamForm, share: Boolean, link: Delays): Option[String] =
     if share then None else LoopSupport.refusal(timing, form.team.count, link, form.vehicles)
 
-  private def lanesOf(candidate: TeamCandidate): Either[String, Form] =
+  private def lanesOf(candidate: TeamCandidate): Either[String, TeamForm] =
     val engagement = candidate.engagement
     val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
@@ -67,7 +86,7 @@ final class TeamBatch(
         .of(candidate.judged, policies.size)
         .left
         .map(refused => s"a quantity is no formula: ${refused.getMessage}")
-    yield Form(
+    yield TeamForm(
       team,
       scores,
       engagement.durationS,
@@ -85,38 +104,47 @@ final class TeamBatch(
       onProgress: Int => Unit = _ => (),
       isCancelled: () => Boolean = () => false
   ): TeamOutcomes =
-    val known    = IdentityHashMap[TeamCandidate, Prepared]()
-    val prepared = Array.tabulate(worlds.size): world =>
-      known.computeIfAbsent(worlds.candidate(world), Prepared(_))
+    val known                              = IdentityHashMap[TeamCandidate, PreparedTeam]()
+    def prepare(number: Int): PreparedTeam =
+      known.computeIfAbsent(
+        worlds.candidate(number),
+        each => PreparedTeam(each, lanesOf(each).toOption, steppedOf(each).isDefined)
+      )
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
-    val batches  =
+    val together = shares(worlds.shareEpisodes)
+    outcomes.flown = onGpu.flatMap(_.toOption).filter(_ => together && worlds.episodesOfEach > 0) match
+      case Some(gpu) if (0 until worlds.size by worlds.episodesOfEach).forall(prepare(_).form.isDefined) =>
+        gpu.fly(worlds, prepare, outcomes, onProgress, isCancelled)
+      case _ => fly(worlds, Array.tabulate(worlds.size)(prepare), outcomes, onProgress, isCancelled)
+    outcomes
+
+  private def fly(
+      worlds: TeamWorlds,
+      prepared: Array[PreparedTeam],
+      outcomes: TeamOutcomes,
+      onProgress: Int => Unit,
+      isCancelled: () => Boolean
+  ): Int =
+    val batches =
       if shares(worlds.shareEpisodes) then
         WorldBatches.byEpisode(worlds, TimetableKernel.WORLDS)
       else WorldBatches.inOrder(worlds.size, LoopKernel.WORLDS)
-    outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
+    LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
       worker.fly(worlds, prepared, numbers, outcomes)
-    outcomes
-
-  /** A candidate with the numbers that it differs by from others of its form. */
-  private final class Prepared(val candidate: TeamCandidate):
-    private val agents                    = candidate.engagement.agents
-    val form: Option[Form]                = lanesOf(candidate).toOption
-    lazy val isStepped: Boolean           = steppedOf(candidate).isDefined
-    val ofPolicies: Vector[Array[Double]] = form.toVector.flatMap: form =>
-      agents.zipWithIndex.map((agent, self) =>
-        form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy])
-      )
-    val ofQuantities: Vector[Array[Double]] = form.toVector.flatMap: form =>
-      candidate.judged.zipWithIndex.map((each, number) => form.scores.parametersOf(number, each.quantity))
 
   /** One per thread. Mutable. */
   private final class Worker:
-    private val byForm  = mutable.HashMap.empty[(Form, Boolean), Flight]
+    private val byForm  = mutable.HashMap.empty[(TeamForm, Boolean), Flight]
     private val stepped = mutable.HashMap.empty[Int, SteppedTeams]
     private val scalar  = ScalarTeam(timing, model)
 
-    def fly(worlds: TeamWorlds, prepared: Array[Prepared], numbers: Array[Int], into: TeamOutcomes): Unit =
+    def fly(
+        worlds: TeamWorlds,
+        prepared: Array[PreparedTeam],
+        numbers: Array[Int],
+        into: TeamOutcomes
+    ): Unit =
       val filled   = mutable.LinkedHashSet.empty[Flight]
       val unfilled = Array.newBuilder[Int]
       val share    = shares(worlds.shareEpisodes)
@@ -149,10 +177,10 @@ final class TeamBatch(
     */
   private final class Flight(team: Array[Delays] => Team):
     private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
-    private val held    = Array.ofDim[Prepared](TimetableKernel.WORLDS)
+    private val held    = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
     private var filled  = 0
 
-    def add(world: Int, prepared: Prepared): Unit =
+    def add(world: Int, prepared: PreparedTeam): Unit =
       worldOf(filled) = world
       held(filled) = prepared
       filled += 1
@@ -175,7 +203,7 @@ final class TeamBatch(
       filled = 0
 
   /** A team in many worlds, and what judges it. */
-  private abstract class Team(form: Form):
+  private abstract class Team(form: TeamForm):
     val scores: Scoreboard         = Scoreboard(form.scores)
     protected val views: TeamViews = TeamViews(form.team)
     def members: Array[? <: TeamMember]
@@ -184,7 +212,7 @@ final class TeamBatch(
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit
 
   /** All worlds meet the same episode. */
-  private final class EpisodeTeam(form: Form, first: TeamCandidate) extends Team(form):
+  private final class EpisodeTeam(form: TeamForm, first: TeamCandidate) extends Team(form):
     private val count              = form.team.count
     val members: Array[TeamAgents] = Array.tabulate(count): self =>
       TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
@@ -192,12 +220,11 @@ final class TeamBatch(
 
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
       val (link, key) = (links(0), keys(0))
-      val timetable   = timetables.getOrMake((link, key, count, form.durationS)):
-        Timetable.of(count, form.durationS, timing, link, key, form.vehicles)
-      kernel.fly(timetable, filled)
+      val made        = timetables.getOrMake((link, key, count, form.durationS))(timetable(link, key, form))
+      kernel.fly(made, filled)
 
   /** Each world has delays of its own. */
-  private final class LoopTeam(form: Form, first: TeamCandidate, maxDelayS: Double) extends Team(form):
+  private final class LoopTeam(form: TeamForm, first: TeamCandidate, maxDelayS: Double) extends Team(form):
     private val loop                   = LoopLanes(timing, form.team.count, form.durationS, maxDelayS)
     val members: Array[LoopTeamAgents] =
       LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, views)
@@ -205,14 +232,6 @@ final class TeamBatch(
 
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
       kernel.fly(keys, links.map(_.asInstanceOf[TabledDelays]))
-
-  /** Candidates of one form fly side by side. */
-  private final case class Form(
-      team: TeamLanes,
-      scores: ScoreLanes,
-      durationS: Double,
-      altitudesDownM: Vector[Double]
-  )(val vehicles: LaneDynamics)
 
   /** Of some 90 kB for each vehicle and minute; a search flies the same few episodes again and again. */
   private inline val MostBytes = 256L << 20

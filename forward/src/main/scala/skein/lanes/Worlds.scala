@@ -15,6 +15,12 @@ trait Worlds:
     */
   def shareEpisodes: Boolean = false
 
+  /** Where every candidate flies through the same episodes, how many these are: then a world's number over
+    * this is its candidate's, which alone decides who flies, and the rest is its episode's, which alone
+    * decides its key and link. Otherwise 0. Only such worlds fly on a GPU.
+    */
+  def episodesOfEach: Int = 0
+
   /** `skein.simd.WorldRandom.key` of the world: decides all delays. Worlds of one key and one link meet the
     * same delays.
     */

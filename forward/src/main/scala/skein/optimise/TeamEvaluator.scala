@@ -2,7 +2,7 @@ package skein.optimise
 
 import skein.forward.Delays
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
-import skein.simd.{LaneFunction, WorldRandom}
+import skein.simd.WorldRandom
 
 /** Flies a team's candidates in [[TeamBatch]].
   *
@@ -21,7 +21,7 @@ final class TeamEvaluator(
     shareEpisodes: Boolean = true
 ) extends ValueEvaluator:
 
-  override def sideBySide: Int = if shareEpisodes then TeamEvaluator.SideBySide else 1
+  override def sideBySide: Int = if shareEpisodes then batch.sideBySide else 1
 
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -40,10 +40,7 @@ final class TeamEvaluator(
   private final class Worlds(teams: Vector[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
     def size: Int                            = teams.size * keys.length
     override def shareEpisodes: Boolean      = TeamEvaluator.this.shareEpisodes
+    override def episodesOfEach: Int         = keys.length
     def key(world: Int): Int                 = keys(world % keys.length)
     def link(world: Int): Delays             = TeamEvaluator.this.link
     def candidate(world: Int): TeamCandidate = teams(world / keys.length)
-
-object TeamEvaluator:
-  /** Candidates of an episode that take no longer than one, by lanes. */
-  private val SideBySide = LaneFunction.COUNT

@@ -180,6 +180,7 @@ private final class PtxThread(
       case "mad.lo.s32"                       => toBits(r(1) * r(2) + r(3))
       case "mul.wide.s32"                     => toWide(r(1).toLong * r(2))
       case "mad.wide.s32"                     => toWide(r(1).toLong * r(2) + d(3))
+      case "mad.lo.s64"                       => toWide(d(1) * d(2) + d(3))
       case "add.s64" | "add.u64"              => toWide(d(1) + d(2))
       case "ld.param.u64"     => toWide(arguments(o(1).drop(1).dropRight(1)).asInstanceOf[GpuBuffer].address)
       case "ld.param.u32"     => toBits(arguments(o(1).drop(1).dropRight(1)).asInstanceOf[Int])

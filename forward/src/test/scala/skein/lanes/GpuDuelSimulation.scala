@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.forward.*
-import skein.gpu.{Gpu, InterpretedGpu}
+import skein.gpu.{CudaGpu, Gpu, InterpretedGpu}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -16,7 +16,7 @@ class GpuDuelSimulation extends munit.FunSuite:
   private val gpus: Seq[(String, () => Gpu)] = Seq(
     "interpreted" -> (() => InterpretedGpu()),
     "a GPU"       -> (() =>
-      val found = Gpu.find()
+      val found = CudaGpu.find()
       assume(found.isRight, found.swap.getOrElse(""))
       found.toOption.get
     )

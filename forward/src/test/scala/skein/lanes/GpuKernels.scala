@@ -8,10 +8,10 @@ import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
 @main def gpuKernels(folder: String): Unit =
-  val layout                                                        = GpuLayout(2, 4, 4)
+  val layout                                                        = GpuLayout(2)
   def duels(name: String, model: VelocityResponse, pursuer: Policy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
-    val forms   = GpuDuelKernel.Forms(PolicyLanes.get(PaperEvader()), PolicyLanes.get(pursuer))
+    val forms   = Vector(PaperEvader(), pursuer).map(PolicyLanes.get)
     val asked   = Set(DuelNumber.MeanLast10s)
     val kernel  =
       GpuDuelKernel(InterpretedGpu(), Duel.paper, LoopTiming.Stream().periodS, vehicle, forms, asked, layout)

@@ -1,0 +1,241 @@
+package skein.lanes
+
+import skein.gpu.{Gpu, GpuBuffer, GpuKernel as Compiled, Ptx, PtxExpressions, Variables}
+
+/** [[TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and the threads of a block
+  * fly candidates of the same. So no two threads of a block part ways. What is computed are the same
+  * expressions by the same single operations as on the CPU, and so the outcomes, to the bit.
+  *
+  * @param sides how many numbers tell who flies, of each side
+  * @param scores what the flights are judged by
+  */
+private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vector[Int], scores: ScoreLanes):
+  import GpuKernel.*
+
+  /** What is special about those who fly. */
+  protected trait Body:
+    def vehicles: Vector[GpuVehicle]
+
+    /** Before the first operation. */
+    def start(): Unit
+
+    /** What several vehicles compute of a view. */
+    def show(now: GpuRecord): Unit
+    def decide(self: Int, now: GpuRecord): Unit
+    def altitude(vehicle: Int): Int
+
+    /** Of what a quantity differs by; see [[ScoreLanes.Source.Parameter]]. */
+    def quantity(number: Int, parameter: Int): Int
+
+    /** What a number that is waited for is to be at most. */
+    def limit(number: Int): Int
+
+    /** Numbers that a world comes to besides its scores. */
+    def besides: Vector[Int]
+
+  /** @param numbers of each side, the register of a number
+    */
+  protected def body(code: Ptx, numbers: Vector[Int => Int]): Body
+  protected def withVelocity: Boolean
+
+  /** Bytes of own memory behind the layout's. */
+  protected def moreBytes: Int = 0
+
+  /** How many numbers a world comes to. */
+  def outcomes: Int
+
+  private lazy val kernel: Compiled = gpu.kernel(text, Name)
+
+  /** Flies candidates through episodes.
+    *
+    * @param flownBy of each side the numbers that tell who flies, one set after the other, and which a
+    *   candidate flies by
+    * @param limitM see [[Body.limit]]
+    * @return what the worlds came to, number by number, then by episode, then by candidate
+    */
+  def fly(
+      episodes: Vector[GpuEpisodes.Held],
+      candidates: Int,
+      flownBy: Vector[(Array[Float], Array[Int])],
+      limitM: Float
+  ): Array[Float] =
+    val worlds                = episodes.size * candidates
+    val buffers               = collection.mutable.ArrayBuffer.empty[GpuBuffer]
+    def here(made: GpuBuffer) =
+      buffers += made
+      made
+    try
+      val into   = here(gpu.buffer(outcomes.toLong * worlds))
+      val blocks = blocksOf(episodes, candidates)
+      val read   = flownBy.zip(sides).flatMap: (told, count) =>
+        Vector(here(gpu.buffer(tiled(told._1, count))), here(gpu.buffer(told._2)))
+      val arguments =
+        Vector(here(gpu.buffer(blocks)), episodes.head.stride) ++ read ++ Vector(limitM, worlds, into)
+      kernel(blocks.length / BlockWords, BlockWorlds, arguments*)
+      into.floats()
+    finally buffers.foreach(_.close())
+
+  /** Words for each block: the address of its episode's operations, in two, and how many these are; the first
+    * world, how many, and the first one's candidate.
+    */
+  private def blocksOf(episodes: Vector[GpuEpisodes.Held], candidates: Int): Array[Int] =
+    val words = Array.newBuilder[Int]
+    for (episode, number) <- episodes.zipWithIndex; first <- 0 until candidates by BlockWorlds do
+      words += episode.buffer.address.toInt
+      words += (episode.buffer.address >>> 32).toInt
+      words += episode.size
+      words += number * candidates + first
+      words += BlockWorlds.min(candidates - first)
+      words += first
+    words.result()
+
+  /** Sets of numbers side by side, so that neighbours read neighbours. */
+  private def tiled(numbers: Array[Float], count: Int): Array[Float] =
+    val sets = if count == 0 then 0 else numbers.length / count
+    val made = Array.ofDim[Float]((sets + Tile - 1) / Tile * Tile * count)
+    for set <- 0 until sets; number <- 0 until count do
+      made((set / Tile * count + number) * Tile + set % Tile) = numbers(set * count + number)
+    made
+
+  /** The kernel. */
+  lazy val text: String = Writer().module
+
+  private final class Writer:
+    private val code = Ptx(
+      Name,
+      Seq("blocks" -> Ptx.Kind.Address, "stride" -> Ptx.Kind.Whole) ++
+        sides.indices.flatMap(side =>
+          Seq(s"numbers$side" -> Ptx.Kind.Address, s"flownBy$side" -> Ptx.Kind.Address)
+        ) ++
+        Seq("limit" -> Ptx.Kind.Float, "worlds" -> Ptx.Kind.Whole, "into" -> Ptx.Kind.Address),
+      layout.bytes + moreBytes
+    )
+    private val end, loop, next = code.label()
+    private val labels          = GpuTimetable.Labels(layout.vehicles)
+    private val kept            = Variables(code, scores.initial)
+
+    // How often each stage was computed, for numbers that need their share.
+    private val counted = Variables(code, scores.judged.map(_ => 0f))
+
+    def module: String =
+      code.ownBase(): Unit
+      val block = code.address(code.argument("blocks"), code.special("ctaid.x"), BlockWords)
+      val own   = code.special("tid.x")
+      code.goIf(code.compareWholes("ge", own, code.loadWhole(block, 4)), end)
+      val world     = code.wholes("add.s32", code.loadWhole(block, 3), own)
+      val candidate = code.wholes("add.s32", code.loadWhole(block, 5), own)
+      val record    = code.loadAddress(block, 0)
+      val left      = code.loadWhole(block, 2)
+      val stride    = code.argument("stride")
+      val bytes     = code.wide(stride, 4)
+      val views     = code.advanced(record, left, bytes)
+      val flying    = body(code, Vector.tabulate(sides.size)(numbersOf(_, candidate)))
+      flying.vehicles.foreach(_.start())
+      flying.start()
+      kept.start()
+      counted.start()
+      code.place(loop)
+      code.goIf(code.compareWhole("le", left, 0), "stored")
+      val now     = GpuRecord(code, record, views)
+      val targets = Vector.fill(labels.count)(code.label())
+      code.goTo(code.loadWhole(record), targets)
+      for self <- 0 until layout.vehicles do
+        val vehicle = flying.vehicles(self)
+        part(targets(labels.look(self, withVelocity = false)))(look(vehicle, now, withVelocity = false))
+        part(targets(labels.look(self, withVelocity = true)))(look(vehicle, now, withVelocity))
+        part(targets(labels.act(self))):
+          val at = now.place(1)
+          vehicle.act(now, code.loadOwn(at, 0), code.loadOwn(at, 1))
+        part(targets(labels.decide(self)))(flying.decide(self, now))
+      part(targets(labels.show))(flying.show(now))
+      part(targets(labels.score))(score(flying, now))
+      code.place(next)
+      code(s"add.s64 %rd$record, %rd$record, %rd$bytes")
+      code(s"add.s32 %r$left, %r$left, -1")
+      code.go(loop)
+      code.place("stored")
+      store(world, flying.besides)
+      code.place(end)
+      code("ret")
+      code.module
+
+    private def part(label: String)(body: => Unit): Unit =
+      code.place(label)
+      body
+      code.go(next)
+
+    /** Of what this thread's candidate flies by. Few numbers stay in registers. */
+    private def numbersOf(side: Int, candidate: Int): Int => Int =
+      val set    = code.loadWhole(code.address(code.argument(s"flownBy$side"), candidate))
+      val tile   = code.wholes("shr.s32", set, TileBits.toString)
+      val within = code.wholes("and.b32", set, (Tile - 1).toString)
+      val at = code.address(code.address(code.argument(s"numbers$side"), tile, sides(side) * Tile), within)
+      if sides(side) <= MostInRegisters then
+        val registers = Vector.tabulate(sides(side))(number => code.load(at, number * Tile))
+        registers(_)
+      else number => code.load(at, number * Tile)
+
+    private def look(vehicle: GpuVehicle, now: GpuRecord, withVelocity: Boolean): Unit =
+      val seen = vehicle.look(now, withVelocity)
+      val at   = now.place(1)
+      for (value, i) <- seen.zipWithIndex do code.storeOwn(value, at, i)
+
+    private def score(flying: Body, now: GpuRecord): Unit =
+      val time = now.time(0)
+      for stage <- scores.stages.reverse do
+        val earlier = code.label()
+        code.goIf(code.compare("lt", code.constant(stage.afterS), time), earlier, holds = false)
+        add(flying, stage, now.seen(), time)
+        code.go(next)
+        code.place(earlier)
+
+    private def add(flying: Body, stage: ScoreLanes.Stage, seen: Int => Int, time: Int): Unit =
+      import ScoreLanes.Source
+      val one = code.constant(1)
+      for number <- stage.judged if scores.hasShare(number) do
+        code.move(code.two("add.rn", counted(number), one), counted(number))
+      val values = PtxExpressions.write(code, stage.function.nodes)(
+        input =>
+          scores.source(stage.function.inputs(input)) match
+            case Source.Reading(vehicle, field)      => code.loadOwn(seen(vehicle), field)
+            case Source.Altitude(vehicle)            => flying.altitude(vehicle)
+            case Source.Kept(place)                  => kept(place)
+            case Source.Parameter(number, parameter) => flying.quantity(number, parameter)
+        ,
+        parameter =>
+          if parameter == ScoreLanes.Time then time
+          else
+            val number = parameter - ScoreLanes.ownParameter(0)
+            if scores.hasShare(number) then code.two("div.rn", one, counted(number)) else flying.limit(number)
+      )
+      for (value, place) <- values.zip(stage.places) do code.move(value, kept(place))
+
+    private def store(world: Int, besides: Vector[Int]): Unit =
+      val worlds = code.argument("worlds")
+      var at     = code.address(code.argument("into"), world)
+      for value <- scores.initial.indices.map(kept(_)) ++ besides do
+        code.store(value, at)
+        at = code.address(at, worlds)
+
+private[lanes] object GpuKernel:
+  private val Name = "flights"
+
+  /** Worlds of a block: all of one episode. */
+  private val BlockWorlds = 128
+  private val BlockWords  = 6
+  private val Tile        = 32
+  private val TileBits    = 5
+
+  /** More of a side's numbers are read where they are needed. */
+  private val MostInRegisters = 16
+
+  /** Where a number of what is judged is among all that a world comes to, and what it tells.
+    *
+    * @param count how often it counted
+    */
+  final class Outcome(scores: ScoreLanes, number: Int, scoredAtS: Array[Float]):
+    private val of    = scores.judged(number)
+    private val count = scoredAtS.count(of.counts(_))
+
+    val place: Int                = scores.places(number + 1) - 1
+    def apply(kept: Float): Float = ScoreLanes.value(of.reduction, kept, count)

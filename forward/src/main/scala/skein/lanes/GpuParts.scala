@@ -1,0 +1,58 @@
+package skein.lanes
+
+import skein.forward.LoopTiming
+import skein.gpu.Gpu
+
+/** A call's candidates and episodes, in parts that a GPU flies at once, so that a call can be cancelled and
+  * fits in memory.
+  *
+  * @param each episodes of a candidate
+  */
+private[lanes] final class GpuParts(
+    candidates: Int,
+    each: Int,
+    durationS: Double,
+    onProgress: Int => Unit,
+    isCancelled: () => Boolean
+):
+  import GpuParts.*
+
+  /** Flies all, unless it is cancelled.
+    *
+    * @param formOf a candidate's
+    * @param part flies candidates of a form through some of the episodes; whether it was not cancelled
+    * @return how many worlds were flown
+    */
+  def fly[F](formOf: Int => F)(part: (F, Array[Int], Array[Int]) => Boolean): Int =
+    var done = 0
+    for
+      (form, alike) <- Array.range(0, candidates).groupBy(formOf)
+      some          <- alike.grouped((MostWorlds / each).max(1))
+      numbers       <- Array.range(0, each).grouped((MostMinutes * 60 / durationS).toInt.max(1))
+      if !isCancelled() && part(form, some, numbers)
+    do
+      done += some.length * numbers.length
+      onProgress(done)
+    done
+
+private[lanes] object GpuParts:
+  private val MostWorlds  = 1 << 22
+  private val MostMinutes = 1024
+
+  /** Why the GPU does not fly a loop. */
+  def refusal(timing: LoopTiming): Option[String] = timing match
+    case _: LoopTiming.Predictive => Some("the GPU flies loops that do not predict")
+    case _                        => None
+
+  /** What flies on it, in a line for the user. */
+  def told(gpu: Gpu): String = s"GPU, ${gpu.name}: a thread a candidate"
+
+  /** Behind the line of what flies instead of a GPU. */
+  def instead(onGpu: Option[Either[String, Any]]): String =
+    onGpu.fold("")(_.fold(": " + _, _ => ": the GPU flies candidates that share episodes"))
+
+  /** Candidates of some episodes that keep a GPU busy. */
+  val SideBySide: Int = 1 << 14
+
+  /** Of a minute of a duel some 300 kB. */
+  val MostBytes: Long = 1L << 30

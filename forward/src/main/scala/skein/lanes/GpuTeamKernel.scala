@@ -1,0 +1,109 @@
+package skein.lanes
+
+import skein.forward.Duelist
+import skein.gpu.{Gpu, Ptx, PtxExpressions}
+
+/** Teams on a GPU. One side: of each vehicle where it starts and the direction in which it heads, and what
+  * its policy flies by; then of each quantity what it differs by.
+  *
+  * @param vehicles one of the candidates': where they start and head is told by numbers
+  */
+private[lanes] final class GpuTeamKernel(
+    gpu: Gpu,
+    vehicles: Vector[Duelist],
+    vehicle: GpuVehicle.Kind,
+    team: TeamLanes,
+    scores: ScoreLanes,
+    layout: GpuLayout
+) extends GpuKernel(gpu, layout, Vector(GpuTeamKernel.numbers(team, scores)), scores):
+  import GpuTeamKernel.*
+  private val firstDirection = layout.bytes
+  private val firstShared    = firstDirection + 8 * team.count
+
+  override protected def moreBytes: Int = firstShared + 4 * team.shared.outputs - layout.bytes
+
+  protected val withVelocity: Boolean = team.needsVelocity
+
+  val outcomes: Int = scores.initial.size
+
+  protected def body(code: Ptx, numbers: Vector[Int => Int]): Body = new Body:
+    private val number        = numbers(0)
+    private val first         = firstOf(team)
+    private val firstQuantity = first.last
+
+    val vehicles: Vector[GpuVehicle] = GpuTeamKernel.this.vehicles.zipWithIndex.map: (duelist, self) =>
+      vehicle(code, duelist.copy(speed = 1), number(first(self)), number(first(self) + 1))
+
+    private def direction(self: Int) = code.own(code.whole(firstDirection + 8 * self))
+    private lazy val shared          = code.own(code.whole(firstShared))
+
+    def start(): Unit =
+      shared: Unit
+      for self <- 0 until team.count; i <- 0 to 1 do
+        code.storeOwn(number(first(self) + 2 + i), direction(self), i)
+
+    def show(now: GpuRecord): Unit = if team.shared.outputs > 0 then
+      val values = write(team.shared, now, -1)
+      for (value, i) <- values.zipWithIndex do code.storeOwn(value, shared, i)
+
+    def decide(self: Int, now: GpuRecord): Unit =
+      val decided = write(team.functions(self), now, self)
+      val after   = now.place(4)
+      val heads   = direction(self)
+      for i <- 0 to 1 do
+        code.storeOwn(decided(i), after, i)
+        code.storeOwn(decided(2 + i), heads, i)
+
+    private def write(bound: BoundFunction, now: GpuRecord, self: Int): Vector[Int] =
+      import TeamLanes.Source
+      val seen = now.seen()
+      PtxExpressions.write(code, bound.nodes)(
+        place =>
+          val input = bound.inputs(place)
+          team.reading(input) match
+            case Some((vehicle, field)) => code.loadOwn(seen(vehicle), field)
+            case None                   =>
+              team.source(input) match
+                case Source.Cos              => code.loadOwn(direction(self), 0)
+                case Source.Sin              => code.loadOwn(direction(self), 1)
+                case Source.Elapsed          => now.time(0)
+                case Source.Parameter(which) => number(first(self) + Starts + which)
+                case Source.Shared(which)    => code.loadOwn(shared, which)
+        ,
+        which => throw IllegalStateException(s"a team's functions have no parameter $which")
+      )
+
+    def altitude(vehicle: Int): Int =
+      code.constant(GpuTeamKernel.this.vehicles(vehicle).altitudeDownM.toFloat)
+    def quantity(of: Int, parameter: Int): Int =
+      number(firstQuantity + (0 until of).map(scores.parameters).sum + parameter)
+    def limit(of: Int): Int = scores.judged(of).reduction match
+      case OfMoment.FirstWithin(limit) => code.constant(limit.toFloat)
+      case other                       => throw IllegalStateException(s"$other has no limit")
+    def besides: Vector[Int] = Vector.empty
+
+private object GpuTeamKernel:
+  /** Of each vehicle: where it starts, north and east, m, and cosine and sine of its heading. */
+  private val Starts = 4
+
+  /** Where each vehicle's numbers begin, and behind them the quantities'. */
+  private def firstOf(team: TeamLanes): Vector[Int] =
+    Vector.range(0, team.count).scanLeft(0)((first, self) => first + Starts + team.parameters(self))
+
+  private def numbers(team: TeamLanes, scores: ScoreLanes): Int =
+    firstOf(team).last + scores.judged.indices.map(scores.parameters).sum
+
+  /** Of one candidate.
+    *
+    * @param ofPolicies by vehicle
+    * @param ofQuantities by what is judged
+    */
+  def numbersOf(
+      vehicles: Vector[Duelist],
+      ofPolicies: Vector[Array[Double]],
+      ofQuantities: Vector[Array[Double]]
+  ): Array[Float] =
+    val starts = vehicles.zip(ofPolicies).flatMap: (duelist, own) =>
+      val headingRad = duelist.startHeadingRad
+      Vector(duelist.startX, duelist.startY, StrictMath.cos(headingRad), StrictMath.sin(headingRad)) ++ own
+    (starts ++ ofQuantities.flatten).map(_.toFloat).toArray

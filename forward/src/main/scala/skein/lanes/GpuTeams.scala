@@ -1,0 +1,70 @@
+package skein.lanes
+
+import scala.collection.mutable
+import skein.forward.Delays
+import skein.gpu.Gpu
+
+/** Flies teams' candidates on a GPU, each through the same episodes, by [[GpuTeamKernel]]. Mutable; one call
+  * at a time.
+  *
+  * @param threads that make timetables
+  */
+private[lanes] final class GpuTeams(
+    gpu: Gpu,
+    vehicle: GpuVehicle.Kind,
+    threads: Int,
+    timetable: (Delays, Int, TeamForm) => Timetable
+):
+  private val onGpu   = mutable.HashMap.empty[Int, GpuEpisodes]
+  private val kernels = mutable.HashMap.empty[(TeamForm, GpuLayout), GpuTeamKernel]
+
+  /** Flies all worlds, unless it is cancelled.
+    *
+    * @param worlds with [[Worlds.episodesOfEach]]
+    * @param prepared a world's candidate, which is a formula
+    * @return how many worlds were flown
+    */
+  def fly(
+      worlds: TeamWorlds,
+      prepared: Int => PreparedTeam,
+      into: TeamOutcomes,
+      onProgress: Int => Unit,
+      isCancelled: () => Boolean
+  ): Int =
+    val each                   = worlds.episodesOfEach
+    def candidate(number: Int) = prepared(number * each)
+    val longestS               = if worlds.size == 0 then 1.0 else candidate(0).form.get.durationS
+    GpuParts(worlds.size / each, each, longestS, onProgress, isCancelled)
+      .fly(candidate(_).form.get): (form, some, numbers) =>
+        val episodes = onGpu.getOrElseUpdate(
+          form.team.count,
+          GpuEpisodes(gpu, form.team.count, threads, GpuParts.MostBytes)
+        )
+        val names   = numbers.toVector.map(i => (worlds.link(i), worlds.key(i), form.durationS))
+        val brought = episodes.bring(names, isCancelled): i =>
+          timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
+        brought
+          .map: flown =>
+            val came = fly(form, some.map(candidate), flown, episodes.layout)
+            for
+              (judged, told) <- form.scores.judged.indices.zip(into.values);
+              (episode, at)  <- flown.zipWithIndex
+            do
+              val outcome = GpuKernel.Outcome(form.scores, judged, episode.scoredAtS)
+              val first   = (outcome.place * flown.size + at) * some.length
+              for i <- some.indices do told(some(i) * each + numbers(at)) = outcome(came(first + i))
+          .isDefined
+
+  private def fly(
+      form: TeamForm,
+      candidates: Array[PreparedTeam],
+      episodes: Vector[GpuEpisodes.Held],
+      layout: GpuLayout
+  ): Array[Float] =
+    val kernel = kernels.getOrElseUpdate(
+      (form, layout),
+      GpuTeamKernel(gpu, candidates(0).vehicles, vehicle, form.team, form.scores, layout)
+    )
+    val numbers =
+      candidates.map(each => GpuTeamKernel.numbersOf(each.vehicles, each.ofPolicies, each.ofQuantities))
+    kernel.fly(episodes, candidates.length, Vector((numbers.flatten, candidates.indices.toArray)), 0)

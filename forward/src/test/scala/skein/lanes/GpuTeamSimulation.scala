@@ -1,0 +1,74 @@
+package skein.lanes
+
+import skein.forward.*
+import skein.gpu.{CudaGpu, Gpu, InterpretedGpu}
+import skein.scenario.*
+import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
+
+/** What [[GpuDuelSimulation]] holds duels to, of teams. */
+class GpuTeamSimulation extends munit.FunSuite:
+  private val gpus: Seq[(String, () => Gpu)] = Seq(
+    "interpreted" -> (() => InterpretedGpu()),
+    "a GPU"       -> (() =>
+      val found = CudaGpu.find()
+      assume(found.isRight, found.swap.getOrElse(""))
+      found.toOption.get
+    )
+  )
+
+  private val lag  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val drag = ReducedResponse(ReducedModel.AirSim)
+
+  private val loops =
+    Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
+
+  private val reductions: Vector[Reduction | OfMoment] =
+    Reduction.values.toVector ++ Vector(OfMoment.Newest, OfMoment.FirstWithin(4))
+
+  private val scenarios: Seq[(String, Int => Scenario)] = Seq(
+    "surround"  -> (i => Surround(6, ringM = 5 + i, pursuerMps = 6 + i)),
+    "formation" -> (i => Formation(spacingM = 3 + 0.5 * i, leaderMps = 3 + 0.5 * i)),
+    "crossing"  -> (i => Crossing(4, entryM = 15, laneM = 1 + 0.5 * i, marginM = 0.5 + 0.2 * i))
+  )
+
+  private final class Worlds(candidates: Vector[TeamCandidate], episodes: Int, link: Delays)
+      extends TeamWorlds:
+    def size: Int                            = candidates.size * episodes
+    override def shareEpisodes: Boolean      = true
+    override def episodesOfEach: Int         = episodes
+    def key(world: Int): Int                 = WorldRandom.key(5, 0, world % episodes)
+    def link(world: Int): Delays             = link
+    def candidate(world: Int): TeamCandidate = candidates(world / episodes)
+
+  private def check(gpu: Gpu, of: Int => Scenario, model: VelocityResponse, timing: LoopTiming): Unit =
+    val durationS  = 3.0
+    val candidates = Vector.tabulate(3): i =>
+      val scenario = of(i)
+      val judged   =
+        for reduction <- reductions
+        yield Judged(OffRing(4 + i), reduction, fromS = if reduction == Reduction.Mean then 2 else 0)
+      TeamCandidate(Engagement.of(scenario.fleet, durationS), judged)
+    val worlds = Worlds(candidates, episodes = 2, DelayTable.vpn)
+    val onCpu  = TeamBatch(timing, model, threads = 1)
+    val onGpu  = TeamBatch(timing, model, threads = 1, Some(gpu))
+    assertEquals(
+      onGpu.engine(candidates(0), shareEpisodes = true, Seq(DelayTable.vpn)),
+      s"GPU, ${gpu.name}: a thread a candidate"
+    )
+    val (told, wanted) = (onGpu.fly(worlds), onCpu.fly(worlds))
+    assertEquals(told.flown, worlds.size)
+    for (reduction, number) <- reductions.zipWithIndex; world <- 0 until worlds.size do
+      val (ours, theirs) = (told.values(number)(world), wanted.values(number)(world))
+      assertEquals(
+        java.lang.Float.floatToRawIntBits(ours),
+        java.lang.Float.floatToRawIntBits(theirs),
+        s"$reduction of world $world: $ours and $theirs"
+      )
+
+  for (name, gpu) <- gpus; (scenario, of) <- scenarios do
+    for timing <- loops do
+      test(s"$name, $scenario, ${timing.productPrefix}: the CPU's outcomes, to the bit"):
+        check(gpu(), of, lag, timing)
+    test(s"$name, $scenario with drag: the CPU's outcomes, to the bit"):
+      check(gpu(), of, drag, LoopTiming.Stream())
