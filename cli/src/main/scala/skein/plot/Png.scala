@@ -15,9 +15,11 @@ object Png:
     */
   def bytes(drawing: Drawing, scale: Double = 3): Either[String, Array[Byte]] =
     try Right(paint(drawing, scale))
-    // How Java reports a machine without fonts or without the library that draws them.
+    // How Java reports a machine without fonts, without their configuration or without the library that draws
+    // them: the second is a plain RuntimeException of sun.awt.FontConfiguration.
     catch
-      case missing: (LinkageError | InternalError) => Left(s"no fonts to draw with: ${missing.getMessage}")
+      case missing: (LinkageError | InternalError | RuntimeException) =>
+        Left(s"no fonts to draw with: ${missing.getMessage}")
 
   private def paint(drawing: Drawing, scale: Double): Array[Byte] =
     val image = BufferedImage(

@@ -49,7 +49,7 @@ private[lanes] object GpuParts:
 
   /** Behind the line of what flies instead of a GPU. */
   def instead(onGpu: Option[Either[String, Any]]): String =
-    onGpu.fold("")(_.fold(": " + _, _ => ": the GPU flies candidates that share episodes"))
+    onGpu.fold("")(_.fold(why => s" ($why)", _ => " (the GPU flies candidates that share episodes)"))
 
   /** Candidates of some episodes that keep a GPU busy. */
   val SideBySide: Int = 1 << 14
