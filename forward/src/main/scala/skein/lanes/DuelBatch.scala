@@ -83,11 +83,11 @@ final class DuelBatch(
   /** The GPU, if there is one, and if it knows the loop. */
   private val onGpu: Option[Either[String, GpuDuels]] = gpu.map: gpu =>
     for
-      episodes <- lanes
-      _        <- Expect.that(!sees)("the GPU flies nobody who sees by a sensor")
-      _        <- GpuParts.refusal(timing).toLeft(())
-      vehicle  <- GpuVehicle.of(model)
-    yield GpuDuels(gpu, episodes, vehicle, threads)
+      episodes   <- lanes
+      _          <- Expect.that(!sees)("the GPU flies nobody who sees by a sensor")
+      prediction <- GpuPrediction.of(timing)
+      vehicle    <- GpuVehicle.of(model)
+    yield GpuDuels(gpu, episodes, vehicle, prediction, threads)
 
   /** What is told where vehicles are flown side by side. */
   private val stepped: Option[String] = SteppedRollouts.told(model, vehicles).filterNot(_ => sees)

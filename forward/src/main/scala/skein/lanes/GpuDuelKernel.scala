@@ -13,6 +13,7 @@ private[lanes] final class GpuDuelKernel(
     duel: Duel,
     periodS: Double,
     vehicle: GpuVehicle.Kind,
+    prediction: Option[GpuPrediction.Kind],
     forms: Vector[PolicyLanes],
     asked: Set[DuelNumber],
     layout: GpuLayout
@@ -46,7 +47,8 @@ private[lanes] final class GpuDuelKernel(
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body = new Body:
     val vehicles: Vector[GpuVehicle] = duelists.map: duelist =>
       vehicle(code, duelist, code.constant(duelist.startX.toFloat), code.constant(duelist.startY.toFloat))
-    private val effort  = Vector.fill(2)(Variables(code, Seq(0f)))
+    val predictions: Vector[GpuPrediction] = prediction.toVector.flatMap(of => duelists.map(of(code, _)))
+    private val effort                     = Vector.fill(2)(Variables(code, Seq(0f)))
     private val heading = duelists.map(each => Variables(code, Seq(each.startHeadingRad.toFloat)))
     private val memory  = forms.map(form => Variables(code, Seq.fill(form.memories)(0f)))
     private val radius  = code.argument("limit")

@@ -10,7 +10,13 @@ import skein.policy.Policy
   *
   * @param threads that make timetables and read policies
   */
-private[lanes] final class GpuDuels(gpu: Gpu, episodes: DuelEpisodes, vehicle: GpuVehicle.Kind, threads: Int):
+private[lanes] final class GpuDuels(
+    gpu: Gpu,
+    episodes: DuelEpisodes,
+    vehicle: GpuVehicle.Kind,
+    prediction: Option[GpuPrediction.Kind],
+    threads: Int
+):
   import GpuDuels.*
 
   private val onGpu   = GpuEpisodes(gpu, vehicles = 2, threads, GpuParts.MostBytes)
@@ -55,7 +61,16 @@ private[lanes] final class GpuDuels(gpu: Gpu, episodes: DuelEpisodes, vehicle: G
   ): Unit =
     val kernel = kernels.getOrElseUpdate(
       (forms, worlds.asked, onGpu.layout),
-      GpuDuelKernel(gpu, episodes.duel, episodes.timing.periodS, vehicle, forms, worlds.asked, onGpu.layout)
+      GpuDuelKernel(
+        gpu,
+        episodes.duel,
+        episodes.timing.periodS,
+        vehicle,
+        prediction,
+        forms,
+        worlds.asked,
+        onGpu.layout
+      )
     )
     val flownBy = Vector(0, 1).map(side => sides(side).numbersOf(some)(kernel.numbersOf(side, _)))
     val came    = kernel.fly(flown, some.length, flownBy, captureRadiusM)

@@ -16,6 +16,9 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
   protected trait Body:
     def vehicles: Vector[GpuVehicle]
 
+    /** What carries their readings forward, in loops that predict. */
+    def predictions: Vector[GpuPrediction]
+
     /** Before the first operation. */
     def start(): Unit
 
@@ -36,6 +39,8 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
   /** @param numbers of each side, the register of a number
     */
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body
+
+  /** Whether decisions look at velocities. */
   protected def withVelocity: Boolean
 
   /** Bytes of own memory behind the layout's. */
@@ -137,16 +142,20 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       code.place(loop)
       code.goIf(code.compareWhole("le", left, 0), "stored")
       val now     = GpuRecord(code, record, views)
-      val targets = Vector.fill(labels.count)(code.label())
+      val targets =
+        Vector.fill(if flying.predictions.isEmpty then labels.predict(0) else labels.count)(code.label())
       code.goTo(code.loadWhole(record), targets)
       for self <- 0 until layout.vehicles do
         val vehicle = flying.vehicles(self)
         part(targets(labels.look(self, withVelocity = false)))(look(vehicle, now, withVelocity = false))
-        part(targets(labels.look(self, withVelocity = true)))(look(vehicle, now, withVelocity))
+        // Predictions start from velocities, whoever looks at them.
+        part(targets(labels.look(self, withVelocity = true))):
+          look(vehicle, now, withVelocity || flying.predictions.nonEmpty)
         part(targets(labels.act(self))):
           val at = now.place(1)
           vehicle.act(now, code.loadOwn(at, 0), code.loadOwn(at, 1))
         part(targets(labels.decide(self)))(flying.decide(self, now))
+        if flying.predictions.nonEmpty then predict(self, flying.predictions(self), now, targets)
       part(targets(labels.show))(flying.show(now))
       part(targets(labels.score))(score(flying, now))
       code.place(next)
@@ -179,6 +188,29 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       val seen = vehicle.look(now, withVelocity)
       val at   = now.place(1)
       for (value, i) <- seen.zipWithIndex do code.storeOwn(value, at, i)
+
+    private def predict(self: Int, prediction: GpuPrediction, now: GpuRecord, targets: Vector[String]): Unit =
+      part(targets(labels.predict(self))):
+        val at = now.place(1)
+        prediction.begin(now, Vector.tabulate(LaneObservation.READ)(code.loadOwn(at, _)))
+      part(targets(labels.carry(self))):
+        val command         = now.field(1)
+        val (atRest, knows) = (code.label(), code.label())
+        val north, east     = code.fresh()
+        code.goIf(code.compareWhole("lt", command, 0), atRest)
+        val at = code.own(command)
+        code.move(code.loadOwn(at, 0), north)
+        code.move(code.loadOwn(at, 1), east)
+        code.go(knows)
+        code.place(atRest)
+        code.constant(0f, north): Unit
+        code.constant(0f, east): Unit
+        code.place(knows)
+        prediction.go(now, north, east)
+      part(targets(labels.predicted(self))):
+        val at   = now.place(1)
+        val seen = prediction.end(now)
+        for i <- 0 until (if withVelocity then 4 else 2) do code.storeOwn(seen(i), at, i)
 
     private def score(flying: Body, now: GpuRecord): Unit =
       val time = now.time(0)

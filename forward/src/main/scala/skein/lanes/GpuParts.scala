@@ -1,6 +1,5 @@
 package skein.lanes
 
-import skein.forward.LoopTiming
 import skein.gpu.Gpu
 
 /** A call's candidates and episodes, in parts that a GPU flies at once, so that a call can be cancelled and
@@ -38,11 +37,6 @@ private[lanes] final class GpuParts(
 private[lanes] object GpuParts:
   private val MostWorlds  = 1 << 22
   private val MostMinutes = 1024
-
-  /** Why the GPU does not fly a loop. */
-  def refusal(timing: LoopTiming): Option[String] = timing match
-    case _: LoopTiming.Predictive => Some("the GPU flies loops that do not predict")
-    case _                        => None
 
   /** What flies on it, in a line for the user. */
   def told(gpu: Gpu): String = s"GPU, ${gpu.name}: a thread a candidate"

@@ -12,6 +12,7 @@ private[lanes] final class GpuTeamKernel(
     gpu: Gpu,
     vehicles: Vector[Duelist],
     vehicle: GpuVehicle.Kind,
+    prediction: Option[GpuPrediction.Kind],
     team: TeamLanes,
     scores: ScoreLanes,
     layout: GpuLayout
@@ -33,6 +34,11 @@ private[lanes] final class GpuTeamKernel(
 
     val vehicles: Vector[GpuVehicle] = GpuTeamKernel.this.vehicles.zipWithIndex.map: (duelist, self) =>
       vehicle(code, duelist.copy(speed = 1), number(first(self)), number(first(self) + 1))
+
+    val predictions: Vector[GpuPrediction] =
+      prediction.toVector.flatMap(of =>
+        GpuTeamKernel.this.vehicles.map(each => of(code, each.copy(speed = 1)))
+      )
 
     private def direction(self: Int) = code.own(code.whole(firstDirection + 8 * self))
     private lazy val shared          = code.own(code.whole(firstShared))

@@ -12,6 +12,7 @@ import skein.gpu.Gpu
 private[lanes] final class GpuTeams(
     gpu: Gpu,
     vehicle: GpuVehicle.Kind,
+    prediction: Option[GpuPrediction.Kind],
     threads: Int,
     timetable: (Delays, Int, TeamForm) => Timetable
 ):
@@ -63,7 +64,7 @@ private[lanes] final class GpuTeams(
   ): Array[Float] =
     val kernel = kernels.getOrElseUpdate(
       (form, layout),
-      GpuTeamKernel(gpu, candidates(0).vehicles, vehicle, form.team, form.scores, layout)
+      GpuTeamKernel(gpu, candidates(0).vehicles, vehicle, prediction, form.team, form.scores, layout)
     )
     val numbers =
       candidates.map(each => GpuTeamKernel.numbersOf(each.vehicles, each.ofPolicies, each.ofQuantities))

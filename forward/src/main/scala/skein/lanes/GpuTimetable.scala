@@ -33,30 +33,33 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
   import GpuTimetable.*
   require(layout.holding(timetable) == layout, s"$layout has no room for ${timetable.readings} readings")
 
-  private val count     = layout.vehicles
-  private val firstTime = Timetable.Fields
-  val stride: Int       = (firstTime + timetable.numbers + 3) / 4 * 4
-
+  private val count  = layout.vehicles
   private val labels = Labels(count)
 
-  private val operations: Vector[Array[Int]] =
+  /** The fields of an operation, and its times. */
+  private type Record = (Array[Int], Array[Float])
+
+  private val operations: Vector[Record] =
     var shown = -1
     Vector.range(0, timetable.size).flatMap: i =>
-      val own  = fieldsOf(i)
-      val view = timetable.operations(i * Timetable.Fields + 2)
-      // What several vehicles compute of a view is computed once.
-      val show =
-        if kindOf(i) == TimetableKernel.DECIDE && view != shown then
-          shown = view
-          Vector(Array(labels.show, own(1)))
-        else Vector.empty
-      (show :+ own).map(fields => record(fields, i))
+      kindOf(i) match
+        case TimetableKernel.PREDICT => predictionOf(i)
+        case kind                    =>
+          val own  = (fieldsOf(i), timesOf(i))
+          val view = timetable.operations(i * Timetable.Fields + 2)
+          // What several vehicles compute of a view is computed once.
+          if kind == TimetableKernel.DECIDE && view != shown then
+            shown = view
+            Vector((Array(labels.show, own._1(1)), own._2), own)
+          else Vector(own)
+
+  val stride: Int = (Timetable.Fields + operations.iterator.map(_._2.length).max + 3) / 4 * 4
 
   def size: Int = operations.size
 
-  val words: Array[Int] = operations.toArray.flatten ++ timetable.views.indices.map(i =>
-    layout.reading(i % count, timetable.views(i))
-  )
+  val words: Array[Int] =
+    val places = timetable.views.indices.map(i => layout.reading(i % count, timetable.views(i)))
+    operations.iterator.flatMap(wordsOf).toArray ++ places
 
   /** When it is scored, s. */
   val scoredAtS: Array[Float] =
@@ -66,12 +69,29 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
 
   private def kindOf(i: Int) = timetable.operations(i * Timetable.Fields)
 
-  private def record(fields: Array[Int], i: Int): Array[Int] =
-    val made = java.util.Arrays.copyOf(fields, stride)
-    for number <- 0 until timetable.numbers do
-      made(firstTime + number) =
-        java.lang.Float.floatToRawIntBits(timetable.times(i * timetable.numbers + number))
+  private def timesOf(i: Int) = timetable.times.slice(i * timetable.numbers, (i + 1) * timetable.numbers)
+
+  private def wordsOf(record: Record): Array[Int] =
+    val (fields, times) = record
+    val made            = java.util.Arrays.copyOf(fields, stride)
+    for (time, number) <- times.zipWithIndex do
+      made(Timetable.Fields + number) = java.lang.Float.floatToRawIntBits(time)
     made
+
+  private def predictionOf(i: Int): Vector[Record] =
+    val at                = i * Timetable.Fields
+    val agent             = timetable.operations(at + 1)
+    def place(field: Int) = layout.reading(agent, timetable.operations(at + 1 + field))
+    val propagation       = timetable.propagations(timetable.operations(at + 4))
+    val (first, of, last) = GpuPrediction.numbersOf(propagation)
+    val parts             =
+      for (part, numbers) <- propagation.parts.toVector.zip(of) yield
+        val command = if part.command == Propagation.Rest then -1 else layout.heading(agent, part.command)
+        (Array(labels.carry(agent), command), numbers)
+    (Array(labels.predict(agent), place(1)), first) +: parts :+ (
+      Array(labels.predicted(agent), place(2)),
+      last
+    )
 
   private def fieldsOf(i: Int): Array[Int] =
     val at                = i * Timetable.Fields
@@ -102,7 +122,13 @@ private[lanes] object GpuTimetable:
     def decide(vehicle: Int): Int                      = 3 * vehicles + vehicle
     def score: Int                                     = 4 * vehicles
     def show: Int                                      = score + 1
-    def count: Int                                     = show + 1
+
+    /** A prediction begins, goes on under a command, and ends. */
+    def predict(vehicle: Int): Int   = show + 1 + vehicle
+    def carry(vehicle: Int): Int     = predict(vehicles + vehicle)
+    def predicted(vehicle: Int): Int = carry(vehicles + vehicle)
+
+    def count: Int = predicted(vehicles)
 
 /** What a [[GpuTimetable]] tells of the present operation, in a kernel: words that are the same for all
   * threads of a block.
@@ -111,14 +137,17 @@ private[lanes] object GpuTimetable:
   * @param views the same of the views
   */
 private[lanes] final class GpuRecord(code: Ptx, base: Int, views: Int):
-  /** Where in own memory one of the operation's things is; from 1 on. */
-  def place(number: Int): Int = code.own(code.loadWhole(base, number))
+  /** One of the operation's fields, from 1 on. */
+  def field(number: Int): Int = code.loadWhole(base, number)
+
+  /** Where in own memory one of the operation's things is. */
+  def place(number: Int): Int = code.own(field(number))
 
   /** One of its times; see [[Timetable.times]]. */
   def time(number: Int): Int = code.load(base, Timetable.Fields + number)
 
   /** Where in own memory the operation's view has a vehicle's reading. */
   def seen(): Int => Int =
-    val view  = code.address(views, code.loadWhole(base, 1))
+    val view  = code.address(views, field(1))
     val known = collection.mutable.HashMap.empty[Int, Int]
     vehicle => known.getOrElseUpdate(vehicle, code.own(code.loadWhole(view, vehicle)))

@@ -76,15 +76,11 @@ private[lanes] final class GpuLagVehicle(
 /** By [[PlantStages]]. */
 private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, startY: Int, lanes: PlantLanes)
     extends GpuVehicle:
-  import PlantStages.{East, Kept, North, StartX, StartY, State}
-  private val stages      = lanes.stages
-  private val own         = stages.parametersOf(lanes.plant, duelist.speed)
-  private val wholeStep   = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
-  private val kept        = Variables(code, Seq.fill(stages.kept)(0f))
+  private val flight      = GpuStages(code, lanes, duelist.speed, startX, startY)
   private val isCommanded = code.fresh()
 
   def start(): Unit =
-    kept.start()
+    flight.start()
     code.whole(0, isCommanded): Unit
 
   def look(record: GpuRecord, withVelocity: Boolean): Vector[Int] =
@@ -92,9 +88,8 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, st
     val resting        = lanes.resting
     val seen           = Vector.fill(if withVelocity then 4 else 2)(code.fresh())
     code.goIf(code.compareWhole("eq", isCommanded, 0), atRest)
-    flyTo(record)
-    val flown = write(if withVelocity then stages.look else stages.position, 0, 0, timed(record))
-    for (into, value) <- seen.zip(flown) do code.move(value, into)
+    flight.goOn(code.wholeOf(record.time(0)))
+    for (into, value) <- seen.zip(flight.look(withVelocity, timed(record))) do code.move(value, into)
     code.go(over)
     code.place(atRest)
     val rests = Vector(
@@ -110,33 +105,15 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, st
   def act(record: GpuRecord, north: Int, east: Int): Unit =
     val (first, over) = (code.label(), code.label())
     code.goIf(code.compareWhole("eq", isCommanded, 0), first)
-    flyTo(record)
-    kept.take(write(stages.act, north, east, timed(record)))
+    flight.goOn(code.wholeOf(record.time(0)))
+    flight.act(north, east, timed(record))
     code.go(over)
     code.place(first)
-    kept.take(write(stages.begin, north, east, constantTime(_)))
+    flight.begin(north, east, number => code.constant(lanes.initial(number)))
     code.whole(1, isCommanded): Unit
     code.place(over)
 
-  private def flyTo(record: GpuRecord): Unit =
-    val steps = code.wholeOf(record.time(0))
-    code.repeat(steps)(kept.take(write(stages.goOn, 0, 0, constantTime(_))))
-
   private def timed(record: GpuRecord)(number: Int) = record.time(1 + number)
-  private def constantTime(number: Int)             = code.constant(wholeStep(number))
-
-  private def write(of: BoundFunction, north: Int, east: Int, time: Int => Int): Vector[Int] =
-    PtxExpressions.write(code, of.nodes)(
-      of.inputs(_) match
-        case StartX                 => startX
-        case StartY                 => startY
-        case North                  => north
-        case East                   => east
-        case input if input >= Kept => kept(input - Kept)
-        case input                  => code.constant(lanes.initial(input - State)),
-      number =>
-        if number < stages.firstOfTime then code.constant(own(number)) else time(number - stages.firstOfTime)
-    )
 
 /** By the steps of [[QuadrotorLanes]], as [[TimetableQuadrotors]] are. */
 private[lanes] final class GpuQuadrotor(

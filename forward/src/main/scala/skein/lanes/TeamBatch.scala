@@ -33,9 +33,9 @@ final class TeamBatch(
   /** The GPU, if there is one, and if it knows the loop. */
   private val onGpu: Option[Either[String, GpuTeams]] = gpu.map: gpu =>
     for
-      _       <- GpuParts.refusal(timing).toLeft(())
-      vehicle <- GpuVehicle.of(model)
-    yield GpuTeams(gpu, vehicle, threads, timetable)
+      prediction <- GpuPrediction.of(timing)
+      vehicle    <- GpuVehicle.of(model)
+    yield GpuTeams(gpu, vehicle, prediction, threads, timetable)
 
   private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles)

@@ -57,7 +57,7 @@ private[skein] object TimetablePredictor:
     case _                => Left("the lanes predict by reduced models and constant velocity")
 
 /** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
-private object CoastPredictor extends TimetablePredictor, Propagator:
+private[lanes] object CoastPredictor extends TimetablePredictor, Propagator:
   def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
   def alone(duelist: Duelist): ForecastVehicles            = ForecastCoasting()
   def deadTimeS: Double                                    = 0
@@ -69,7 +69,7 @@ private object CoastPredictor extends TimetablePredictor, Propagator:
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of
   * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
   */
-private final class LagPredictor(model: ReducedModel) extends TimetablePredictor:
+private[lanes] final class LagPredictor(val model: ReducedModel) extends TimetablePredictor:
   def deadTimeS: Double                             = model.deadTimeS
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
   def alone(duelist: Duelist): ForecastVehicles = ForecastLagVehicles(duelist.speed * model.gain, model.lagS)
@@ -89,7 +89,7 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
     Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
 /** By [[PredictedPlants]]. */
-private final class DragPredictor(lanes: PlantLanes) extends TimetablePredictor:
+private[lanes] final class DragPredictor(val lanes: PlantLanes) extends TimetablePredictor:
   private val tell = lanes.stages.tell(lanes.plant)
 
   def deadTimeS: Double                             = lanes.plant.deadTimeS

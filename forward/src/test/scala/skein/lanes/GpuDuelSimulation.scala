@@ -88,7 +88,17 @@ class GpuDuelSimulation extends munit.FunSuite:
         s"$number of world $world: ${told(number)(world)} and ${wanted(number)(world)}"
       )
 
+  private val predictors = Seq(
+    "its own lag"       -> LoopTiming.Predictive(predictor = lag.predictor),
+    "drag"              -> LoopTiming.Predictive(predictor = ReducedResponse(ReducedModel.AirSim).predictor),
+    "constant velocity" -> LoopTiming.Predictive(predictor = skein.vehicle.ConstantVelocity)
+  )
+
   for (name, gpu) <- gpus do
+    for (predictor, timing) <- predictors; (plant, model) <- plants do
+      test(s"$name, $plant, predicted by $predictor"):
+        check(gpu(), model, timing, DelayTable.vpn, if plant == "quadrotors" then 1 else 12, pursuers(2)._2)
+
     for (plant, model) <- plants; timing <- loops do
       test(s"$name, $plant, $timing"):
         check(gpu(), model, timing, DelayTable.vpn, if plant == "quadrotors" then 1 else 12, pursuers(0)._2)

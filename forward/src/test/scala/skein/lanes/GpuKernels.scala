@@ -14,7 +14,16 @@ import skein.vehicle.{Quadrotor, ReducedModel}
     val forms   = Vector(PaperEvader(), pursuer).map(PolicyLanes.get)
     val asked   = Set(DuelNumber.MeanLast10s)
     val kernel  =
-      GpuDuelKernel(InterpretedGpu(), Duel.paper, LoopTiming.Stream().periodS, vehicle, forms, asked, layout)
+      GpuDuelKernel(
+        InterpretedGpu(),
+        Duel.paper,
+        LoopTiming.Stream().periodS,
+        vehicle,
+        None,
+        forms,
+        asked,
+        layout
+      )
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
   duels("lag", Reduced.AirSim, PaperPursuer())
   duels("drag", ReducedResponse(ReducedModel.AirSim), PaperPursuer())

@@ -21,7 +21,13 @@ class GpuTeamSimulation extends munit.FunSuite:
   private val drag = ReducedResponse(ReducedModel.AirSim)
 
   private val loops =
-    Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
+    Seq(
+      LoopTiming.Paused(),
+      LoopTiming.Sequential(),
+      LoopTiming.Futures(),
+      LoopTiming.Stream(),
+      LoopTiming.Predictive(predictor = lag.predictor)
+    )
 
   private val reductions: Vector[Reduction | OfMoment] =
     Reduction.values.toVector ++ Vector(OfMoment.Newest, OfMoment.FirstWithin(4))

@@ -1,0 +1,96 @@
+package skein.lanes
+
+import skein.forward.{Duelist, LoopTiming}
+import skein.gpu.{Ptx, Variables}
+
+/** Carries readings of one vehicle forward in the world of each thread, command by command; see
+  * [[PredictedVehicles]]. Position and velocity stand in variables meanwhile.
+  */
+private[lanes] trait GpuPrediction:
+  /** From a reading.
+    *
+    * @param reading position and velocity, north and east
+    */
+  def begin(now: GpuRecord, reading: Vector[Int]): Unit
+
+  /** Through one command.
+    *
+    * @param north what is commanded, over the vehicle's speed
+    */
+  def go(now: GpuRecord, north: Int, east: Int): Unit
+
+  /** @return position and velocity that are predicted
+    */
+  def end(now: GpuRecord): Vector[Int]
+
+private[lanes] object GpuPrediction:
+  type Kind = (Ptx, Duelist) => GpuPrediction
+
+  /** What a loop predicts by, if it does.
+    *
+    * @return or why no GPU knows it
+    */
+  def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
+    case predictive: LoopTiming.Predictive =>
+      TimetablePredictor.of(predictive.predictor).flatMap:
+        case CoastPredictor      => Right(Some(GpuLagPrediction(_, _, 0)))
+        case lag: LagPredictor   => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
+        case drag: DragPredictor => Right(Some(GpuPlantPrediction(_, _, drag.lanes)))
+        case _                   => Left("the GPU does not know what the loop predicts by")
+    case _ => Right(None)
+
+  /** Numbers of a [[Propagation]]'s records: of its beginning, of each part, of its end. */
+  def numbersOf(propagation: Propagation): (Array[Float], Vector[Array[Float]], Array[Float]) =
+    // A plant goes on from the moment at which the part before ended.
+    val before = Array.emptyFloatArray +: propagation.parts.toVector.map(_.numbers.drop(1))
+    (
+      Array(propagation.first.toFloat, propagation.second.toFloat),
+      propagation.parts.toVector.zip(before).map((part, before) => part.numbers ++ before),
+      before.last
+    )
+
+/** By [[PredictedLagVehicles]]. */
+private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) extends GpuPrediction:
+  private val predicted = Variables(code, Seq.fill(4)(0f))
+  private val speed     = code.constant((duelist.speed * gain).toFloat)
+
+  def begin(now: GpuRecord, reading: Vector[Int]): Unit =
+    val (carried, kept)      = (now.time(0), now.time(1))
+    val Vector(x, y, vx, vy) = reading: @unchecked
+    def times(v: Int)        = code.two("mul.rn", v, kept)
+    predicted.take(Seq(code.fma(vx, carried, x), code.fma(vy, carried, y), times(vx), times(vy)))
+
+  def go(now: GpuRecord, north: Int, east: Int): Unit =
+    val Vector(moved, faster) = Vector(0, 1).map(i => code.two("mul.rn", now.time(i), speed)): @unchecked
+    predicted.take(Seq(
+      code.fma(north, moved, predicted(0)),
+      code.fma(east, moved, predicted(1)),
+      code.fma(north, faster, predicted(2)),
+      code.fma(east, faster, predicted(3))
+    ))
+
+  def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
+
+/** By [[PredictedPlants]]. */
+private final class GpuPlantPrediction(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuPrediction:
+  private val zero    = code.constant(0f)
+  private val flight  = GpuStages(code, lanes, duelist.speed, zero, zero)
+  private val state   = Variables(code, Seq.fill(lanes.count)(0f))
+  private val isBegun = code.fresh()
+
+  def begin(now: GpuRecord, reading: Vector[Int]): Unit =
+    state.take(reading)
+    code.whole(0, isBegun): Unit
+
+  def go(now: GpuRecord, north: Int, east: Int): Unit =
+    val (first, over) = (code.label(), code.label())
+    code.goIf(code.compareWhole("eq", isBegun, 0), first)
+    flight.act(north, east, number => now.time(1 + lanes.stages.times + number))
+    code.go(over)
+    code.place(first)
+    flight.begin(north, east, state(_))
+    code.whole(1, isBegun): Unit
+    code.place(over)
+    flight.goOn(code.wholeOf(now.time(0)))
+
+  def end(now: GpuRecord): Vector[Int] = flight.look(withVelocity = true, now.time)
