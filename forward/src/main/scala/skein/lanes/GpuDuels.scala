@@ -19,7 +19,7 @@ private[lanes] final class GpuDuels(
 ):
   import GpuDuels.*
 
-  private val onGpu   = GpuEpisodes(gpu, vehicles = 2, threads, GpuParts.MostBytes)
+  private val onGpu   = GpuEpisodes(gpu, vehicles = 2, shows = false, threads, GpuParts.MostBytes)
   private val kernels =
     mutable.HashMap.empty[(Vector[PolicyLanes], Set[DuelNumber], GpuLayout), GpuDuelKernel]
 

@@ -4,14 +4,15 @@ import skein.gpu.{Gpu, GpuBuffer}
 
 /** Episodes of so many vehicles, on a GPU. Mutable.
   *
+  * @param shows see [[GpuLayout]]
   * @param threads that make timetables
   * @param mostBytes that are held, unless one call needs more
   */
-private[lanes] final class GpuEpisodes(gpu: Gpu, vehicles: Int, threads: Int, mostBytes: Long):
+private[lanes] final class GpuEpisodes(gpu: Gpu, vehicles: Int, shows: Boolean, threads: Int, mostBytes: Long):
   import GpuEpisodes.Held
   private val held  = java.util.LinkedHashMap[Any, Held](16, 0.75f, true)
   private var bytes = 0L
-  private var now   = GpuLayout(vehicles)
+  private var now   = GpuLayout(vehicles, shows)
 
   /** Of all that are held. */
   def layout: GpuLayout = now
@@ -40,8 +41,10 @@ private[lanes] final class GpuEpisodes(gpu: Gpu, vehicles: Int, threads: Int, mo
         bring(names, isCancelled)(timetable)
       else
         forget(mostBytes)
-        for (i, timetable) <- missing.zip(made) do
-          val told = Held(gpu, GpuTimetable(timetable, layout))
+        val packed = Array.ofDim[GpuTimetable](made.length)
+        GpuEpisodes.inParallel(made.length, 1, threads)(i => packed(i) = GpuTimetable(made(i), layout)): Unit
+        for (i, timetable) <- missing.zip(packed) do
+          val told = Held(gpu, timetable)
           held.put(names(i), told): Unit
           bytes += told.bytes
         Some(names.iterator.map(held.get).toVector)

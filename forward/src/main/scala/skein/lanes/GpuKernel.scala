@@ -139,12 +139,17 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       flying.start()
       kept.start()
       counted.start()
+      val label     = code.loadWhole(record)
+      val nextLabel = code.fresh()
       code.place(loop)
       code.goIf(code.compareWhole("le", left, 0), "stored")
+      // Behind the last operation are the views.
+      val following = code.sum(record, bytes)
+      code.loadWhole(following, 0, nextLabel): Unit
       val now     = GpuRecord(code, record, views)
       val targets =
         Vector.fill(if flying.predictions.isEmpty then labels.predict(0) else labels.count)(code.label())
-      code.goTo(code.loadWhole(record), targets)
+      code.goTo(label, targets)
       for self <- 0 until layout.vehicles do
         val vehicle = flying.vehicles(self)
         part(targets(labels.look(self, withVelocity = false)))(look(vehicle, now, withVelocity = false))
@@ -159,7 +164,8 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       part(targets(labels.show))(flying.show(now))
       part(targets(labels.score))(score(flying, now))
       code.place(next)
-      code(s"add.s64 %rd$record, %rd$record, %rd$bytes")
+      code(s"mov.b64 %rd$record, %rd$following")
+      code(s"mov.b32 %r$label, %r$nextLabel")
       code(s"add.s32 %r$left, %r$left, -1")
       code.go(loop)
       code.place("stored")

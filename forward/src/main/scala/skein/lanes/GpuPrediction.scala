@@ -39,15 +39,29 @@ private[lanes] object GpuPrediction:
         case _                   => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 
-  /** Numbers of a [[Propagation]]'s records: of its beginning, of each part, of its end. */
-  def numbersOf(propagation: Propagation): (Array[Float], Vector[Array[Float]], Array[Float]) =
-    // A plant goes on from the moment at which the part before ended.
-    val before = Array.emptyFloatArray +: propagation.parts.toVector.map(_.numbers.drop(1))
-    (
-      Array(propagation.first.toFloat, propagation.second.toFloat),
-      propagation.parts.toVector.zip(before).map((part, before) => part.numbers ++ before),
-      before.last
-    )
+  /** How many numbers one of a propagation's records has at most. */
+  def mostNumbers(of: Propagation): Int =
+    2.max(2 * of.parts.iterator.map(_.numbers.length).maxOption.getOrElse(0))
+
+  /** Tells the numbers of a propagation's beginning. */
+  def tellBegin(of: Propagation, tell: (Int, Float) => Unit): Unit =
+    tell(0, of.first.toFloat)
+    tell(1, of.second.toFloat)
+
+  /** Those of a part, and of the time at which the part before ended: a plant goes on from there. */
+  def tellPart(of: Propagation, part: Int, tell: (Int, Float) => Unit): Unit =
+    val own = of.parts(part).numbers
+    for i <- own.indices do tell(i, own(i))
+    if part > 0 then tellTime(of, part - 1, own.length, tell)
+
+  /** Those of the time at which the last part ends. */
+  def tellEnd(of: Propagation, tell: (Int, Float) => Unit): Unit =
+    if of.parts.nonEmpty then tellTime(of, of.parts.length - 1, 0, tell)
+
+  /** Behind how many steps there are, a part has the numbers of its end. */
+  private def tellTime(of: Propagation, part: Int, from: Int, tell: (Int, Float) => Unit): Unit =
+    val numbers = of.parts(part).numbers
+    for i <- 1 until numbers.length do tell(from + i - 1, numbers(i))
 
 /** By [[PredictedLagVehicles]]. */
 private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) extends GpuPrediction:

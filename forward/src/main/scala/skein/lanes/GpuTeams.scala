@@ -39,7 +39,7 @@ private[lanes] final class GpuTeams(
       .fly(candidate(_).form.get): (form, some, numbers) =>
         val episodes = onGpu.getOrElseUpdate(
           form.team.count,
-          GpuEpisodes(gpu, form.team.count, threads, GpuParts.MostBytes)
+          GpuEpisodes(gpu, form.team.count, shows = true, threads, GpuParts.MostBytes)
         )
         val names   = numbers.toVector.map(i => (worlds.link(i), worlds.key(i), form.durationS))
         val brought = episodes.bring(names, isCancelled): i =>

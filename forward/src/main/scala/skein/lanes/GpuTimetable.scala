@@ -6,8 +6,9 @@ import skein.gpu.Ptx
   *
   * @param readings places of one vehicle
   * @param headings the same
+  * @param shows whether several vehicles compute something of a view together
   */
-private[lanes] final case class GpuLayout(vehicles: Int, readings: Int = 4, headings: Int = 4):
+private[lanes] final case class GpuLayout(vehicles: Int, shows: Boolean, readings: Int = 4, headings: Int = 4):
   import LaneObservation.READ
   private val firstHeading = 4 * READ * vehicles * readings
 
@@ -31,90 +32,107 @@ private[lanes] final case class GpuLayout(vehicles: Int, readings: Int = 4, head
   */
 private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout):
   import GpuTimetable.*
+  import Timetable.Fields
   require(layout.holding(timetable) == layout, s"$layout has no room for ${timetable.readings} readings")
 
   private val count  = layout.vehicles
   private val labels = Labels(count)
 
-  /** The fields of an operation, and its times. */
-  private type Record = (Array[Int], Array[Float])
+  val stride: Int =
+    val most = timetable.propagations.iterator.map(GpuPrediction.mostNumbers).maxOption.getOrElse(0)
+    (Fields + timetable.numbers.max(most) + 3) / 4 * 4
 
-  private val operations: Vector[Record] =
-    var shown = -1
-    Vector.range(0, timetable.size).flatMap: i =>
-      kindOf(i) match
-        case TimetableKernel.PREDICT => predictionOf(i)
-        case kind                    =>
-          val own  = (fieldsOf(i), timesOf(i))
-          val view = timetable.operations(i * Timetable.Fields + 2)
-          // What several vehicles compute of a view is computed once.
-          if kind == TimetableKernel.DECIDE && view != shown then
-            shown = view
-            Vector((Array(labels.show, own._1(1)), own._2), own)
-          else Vector(own)
+  // Of the operation that is written, and of all so far.
+  private var at      = 0
+  private var packed  = Array.ofDim[Int](stride * timetable.size)
+  private var records = 0
 
-  val stride: Int = (Timetable.Fields + operations.iterator.map(_._2.length).max + 3) / 4 * 4
+  locally:
+    var shown = Nothing
+    var i     = 0
+    while i < timetable.size do
+      val kind = timetable.operations(i * Fields)
+      val view = timetable.operations(i * Fields + 2)
+      // What several vehicles compute of a view is computed once.
+      if layout.shows && kind == TimetableKernel.DECIDE && view != shown then
+        shown = view
+        record(labels.show)
+        field(1, count * view)
+      if kind == TimetableKernel.PREDICT then predict(i) else operation(kind, i)
+      i += 1
 
-  def size: Int = operations.size
+  def size: Int = records
 
   val words: Array[Int] =
-    val places = timetable.views.indices.map(i => layout.reading(i % count, timetable.views(i)))
-    operations.iterator.flatMap(wordsOf).toArray ++ places
+    val all = java.util.Arrays.copyOf(packed, records * stride + timetable.views.length)
+    for i <- timetable.views.indices do
+      all(records * stride + i) = layout.reading(i % count, timetable.views(i))
+    packed = null
+    all
 
   /** When it is scored, s. */
   val scoredAtS: Array[Float] =
-    Array.range(0, timetable.size).filter(kindOf(_) == TimetableKernel.SCORE).map(i =>
-      timetable.times(i * timetable.numbers)
-    )
+    Array
+      .range(0, timetable.size)
+      .filter(i => timetable.operations(i * Fields) == TimetableKernel.SCORE)
+      .map(i => timetable.times(i * timetable.numbers))
 
-  private def kindOf(i: Int) = timetable.operations(i * Timetable.Fields)
+  private def record(label: Int): Unit =
+    at = records * stride
+    records += 1
+    if packed.length < at + stride then packed = java.util.Arrays.copyOf(packed, 2 * (at + stride))
+    packed(at) = label
 
-  private def timesOf(i: Int) = timetable.times.slice(i * timetable.numbers, (i + 1) * timetable.numbers)
+  private def field(number: Int, value: Int): Unit = packed(at + number) = value
 
-  private def wordsOf(record: Record): Array[Int] =
-    val (fields, times) = record
-    val made            = java.util.Arrays.copyOf(fields, stride)
-    for (time, number) <- times.zipWithIndex do
-      made(Timetable.Fields + number) = java.lang.Float.floatToRawIntBits(time)
-    made
+  private def time(number: Int, value: Float): Unit =
+    packed(at + Fields + number) = java.lang.Float.floatToRawIntBits(value)
 
-  private def predictionOf(i: Int): Vector[Record] =
-    val at                = i * Timetable.Fields
-    val agent             = timetable.operations(at + 1)
-    def place(field: Int) = layout.reading(agent, timetable.operations(at + 1 + field))
-    val propagation       = timetable.propagations(timetable.operations(at + 4))
-    val (first, of, last) = GpuPrediction.numbersOf(propagation)
-    val parts             =
-      for (part, numbers) <- propagation.parts.toVector.zip(of) yield
-        val command = if part.command == Propagation.Rest then -1 else layout.heading(agent, part.command)
-        (Array(labels.carry(agent), command), numbers)
-    (Array(labels.predict(agent), place(1)), first) +: parts :+ (
-      Array(labels.predicted(agent), place(2)),
-      last
-    )
-
-  private def fieldsOf(i: Int): Array[Int] =
-    val at                = i * Timetable.Fields
-    val agent             = timetable.operations(at + 1)
-    def place(field: Int) = timetable.operations(at + 1 + field)
-    // From here on, in words: nobody knows yet how many operations there are.
-    def view = count * place(1)
-    kindOf(i) match
+  private def operation(kind: Int, i: Int): Unit =
+    val agent             = timetable.operations(i * Fields + 1)
+    def place(field: Int) = timetable.operations(i * Fields + 1 + field)
+    kind match
       case TimetableKernel.LOOK =>
-        Array(labels.look(agent, withVelocity = place(2) != 0), layout.reading(agent, place(1)))
-      case TimetableKernel.ACT    => Array(labels.act(agent), layout.heading(agent, place(1)))
+        record(labels.look(agent, withVelocity = place(2) != 0))
+        field(1, layout.reading(agent, place(1)))
+      case TimetableKernel.ACT =>
+        record(labels.act(agent))
+        field(1, layout.heading(agent, place(1)))
       case TimetableKernel.DECIDE =>
-        Array(
-          labels.decide(agent),
-          view,
-          if count == 2 then layout.heading(1 - agent, place(2)) else 0,
-          layout.heading(agent, place(3)),
-          layout.heading(agent, place(4))
-        )
-      case TimetableKernel.SCORE => Array(labels.score, view)
-      case other                 => throw IllegalArgumentException(s"no GPU knows operations of kind $other")
+        record(labels.decide(agent))
+        field(1, count * place(1))
+        if count == 2 then field(2, layout.heading(1 - agent, place(2)))
+        field(3, layout.heading(agent, place(3)))
+        field(4, layout.heading(agent, place(4)))
+      case TimetableKernel.SCORE =>
+        record(labels.score)
+        field(1, count * place(1))
+      case other => throw IllegalArgumentException(s"no GPU knows operations of kind $other")
+    var number = 0
+    while number < timetable.numbers do
+      time(number, timetable.times(i * timetable.numbers + number))
+      number += 1
+
+  private def predict(i: Int): Unit =
+    val agent             = timetable.operations(i * Fields + 1)
+    def place(field: Int) = layout.reading(agent, timetable.operations(i * Fields + 1 + field))
+    val propagation       = timetable.propagations(timetable.operations(i * Fields + 4))
+    record(labels.predict(agent))
+    field(1, place(1))
+    GpuPrediction.tellBegin(propagation, time)
+    for part <- propagation.parts.indices do
+      val command = propagation.parts(part).command
+      record(labels.carry(agent))
+      field(1, if command == Propagation.Rest then -1 else layout.heading(agent, command))
+      GpuPrediction.tellPart(propagation, part, time)
+    record(labels.predicted(agent))
+    field(1, place(2))
+    GpuPrediction.tellEnd(propagation, time)
 
 private[lanes] object GpuTimetable:
+  /** No view. */
+  private val Nothing = -1
+
   /** Numbers of what a kernel does at an operation. */
   final class Labels(vehicles: Int):
     def look(vehicle: Int, withVelocity: Boolean): Int = if withVelocity then vehicles + vehicle else vehicle
