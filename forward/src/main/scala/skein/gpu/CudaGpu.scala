@@ -89,6 +89,7 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       body(arena)
     finally arena.close()
 
+/** NVIDIA's GPUs of this machine. */
 object CudaGpu:
   private val MostLog          = 8192L
   private val JitErrorLog      = 5

@@ -8,7 +8,13 @@ import skein.gpu.{Gpu, GpuBuffer}
   * @param threads that make timetables
   * @param mostBytes that are held, unless one call needs more
   */
-private[lanes] final class GpuEpisodes(gpu: Gpu, vehicles: Int, shows: Boolean, threads: Int, mostBytes: Long):
+private[lanes] final class GpuEpisodes(
+    gpu: Gpu,
+    vehicles: Int,
+    shows: Boolean,
+    threads: Int,
+    mostBytes: Long
+):
   import GpuEpisodes.Held
   private val held  = java.util.LinkedHashMap[Any, Held](16, 0.75f, true)
   private var bytes = 0L
