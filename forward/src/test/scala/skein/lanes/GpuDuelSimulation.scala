@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.forward.*
-import skein.gpu.{CudaGpu, Gpu, InterpretedGpu}
+import skein.gpu.Gpu
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -9,18 +9,9 @@ import skein.vehicle.ReducedModel
 /** What flies on a GPU comes to what it comes to on the CPU, to the bit: by an interpreter of the GPU's
   * instructions, and by the GPU itself, where there is one.
   */
-class GpuDuelSimulation extends munit.FunSuite:
+class GpuDuelSimulation extends munit.FunSuite, TestGpus:
   override def munitTimeout: scala.concurrent.duration.Duration =
     scala.concurrent.duration.Duration(5, "min")
-
-  private val gpus: Seq[(String, () => Gpu)] = Seq(
-    "interpreted" -> (() => InterpretedGpu()),
-    "a GPU"       -> (() =>
-      val found = CudaGpu.find()
-      assume(found.isRight, found.swap.getOrElse(""))
-      found.toOption.get
-    )
-  )
 
   private val lag = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 

@@ -1,22 +1,13 @@
 package skein.lanes
 
 import skein.forward.*
-import skein.gpu.{CudaGpu, Gpu, InterpretedGpu}
+import skein.gpu.Gpu
 import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
 /** What [[GpuDuelSimulation]] holds duels to, of teams. */
-class GpuTeamSimulation extends munit.FunSuite:
-  private val gpus: Seq[(String, () => Gpu)] = Seq(
-    "interpreted" -> (() => InterpretedGpu()),
-    "a GPU"       -> (() =>
-      val found = CudaGpu.find()
-      assume(found.isRight, found.swap.getOrElse(""))
-      found.toOption.get
-    )
-  )
-
+class GpuTeamSimulation extends munit.FunSuite, TestGpus:
   private val lag  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val drag = ReducedResponse(ReducedModel.AirSim)
 

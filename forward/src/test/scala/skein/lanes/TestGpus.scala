@@ -1,0 +1,18 @@
+package skein.lanes
+
+import munit.FunSuite
+import skein.gpu.{CudaGpu, Gpu, InterpretedGpu}
+
+/** Tests on an interpreter of a GPU's instructions, and on this machine's GPU, where there is one. */
+trait TestGpus:
+  self: FunSuite =>
+
+  private val found = CudaGpu.find()
+
+  /** By their names in tests. */
+  protected val gpus: Seq[(String, () => Gpu)] =
+    ("interpreted" -> (() => InterpretedGpu())) +: found.toSeq.map(gpu => gpu.name -> (() => gpu))
+
+  for why <- found.left do
+    test("on this machine's GPU"):
+      assume(false, why)
