@@ -68,13 +68,14 @@ object GpuRates:
     for _ <- 1 to 3 do
       there(candidates): Unit
       here(onCpu): Unit
-    val ran    = gpu.ranNs
-    val (a, t) = timed(there(candidates))
-    val kernel = (gpu.ranNs - ran) * 1e-9
-    val (b, s) = timed(here(onCpu))
-    val differ = (0 until onCpu * Episodes).count(i => a(i) != b(i))
-    val mean   = b.map(_.toDouble).sum / b.length
-    val steps  = Episodes * vehicles * 600.0
+    val ran             = gpu.ranNs
+    val (a, t)          = timed(there(candidates))
+    val kernel          = (gpu.ranNs - ran) * 1e-9
+    val (b, s)          = timed(here(onCpu))
+    def bits(of: Float) = java.lang.Float.floatToRawIntBits(of)
+    val differ          = (0 until onCpu * Episodes).count(i => bits(a(i)) != bits(b(i)))
+    val mean            = b.map(_.toDouble).sum / b.length
+    val steps           = Episodes * vehicles * 600.0
     tell(
       name,
       candidates * steps / t,

@@ -86,6 +86,10 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       ready <- question match
         case duel: SearchQuestion => duel.setup.map(_.copy(gpu = gpu))
         case team: TeamQuestion   => team.setup.map(_.copy(gpu = gpu))
+      _ <- Expect.that(gpu.isEmpty || cluster.isEmpty):
+        "--gpu: expected without --workers and --cluster, whose processes fly on processors"
+      _ <- Expect.that(gpu.isEmpty || ready.fliesForward):
+        "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
         options.view.serving("search"): task =>
           EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>

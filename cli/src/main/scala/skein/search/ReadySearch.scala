@@ -61,6 +61,9 @@ trait ReadySearch:
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
   def rate(threads: Int): Option[String] = None
 
+  /** Whether forward simulation flies it, and not flights in virtual time. */
+  def fliesForward: Boolean = true
+
   /** Whether many candidates that meet the same episodes fly by lanes. */
   def byLanes: Boolean
 

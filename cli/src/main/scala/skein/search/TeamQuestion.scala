@@ -220,8 +220,9 @@ final case class TeamSetup(
     case TeamEngine.Reduced(conditions, delays) =>
       val weights               = objective.terms.map(_._1)
       val flown                 = batch(conditions, threads)
-      def judge(share: Boolean) = TeamEvaluator(flown, candidate, delays, weights, question.seed, share)
-      val (shared, own)         = (judge(true), judge(false))
+      def judge(share: Boolean) =
+        TeamEvaluator(flown, candidate, delays, weights, question.seed, share, Some(space.defaults))
+      val (shared, own) = (judge(true), judge(false))
       judge => if share(judge) then shared else own
     case TeamEngine.Whole(flights, _) =>
       val same = WholeFlightEvaluator(flights, scenario, objective, threads)
@@ -251,6 +252,8 @@ final case class TeamSetup(
   override def rate(threads: Int): Option[String] = flownBy match
     case _: TeamEngine.Reduced        => None
     case TeamEngine.Whole(flights, _) => Some(flights.rate(scenario(space.defaults), objective, threads))
+
+  override def fliesForward: Boolean = !isVirtual
 
   def byLanes: Boolean = flownBy match
     case TeamEngine.Reduced(_, delays) => asked.fliesByLanes(candidate(space.defaults), true, Seq(delays))

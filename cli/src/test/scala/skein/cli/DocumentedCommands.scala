@@ -11,6 +11,7 @@ import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.airsim.WorldSettings
 import skein.docs.Documentation
+import skein.gpu.CudaGpu
 import skein.link.{Address, TcpTransport}
 import skein.mujoco.MujocoLibrary
 import skein.simulator.{SimulatorServer, SimulatorSettings}
@@ -108,11 +109,21 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       case "latency" => Seq("--period", "5ms")
       case "torture" => Seq("--seeds", "2", "--duration", "12s")
       case _         => Seq.empty
-    few(words) ++ more ++
+    few(without(words, more)) ++ more ++
       Option.when(Set("fly", "search", "learn", "budget", "latency", "new", "torture")(words.head))(Seq(
         "--out",
         out.toString
       )).toSeq.flatten
+
+  /** The words but for options that others state, and their values. */
+  private def without(words: Seq[String], others: Seq[String]): Seq[String] =
+    words.indices
+      .filterNot(i =>
+        Seq(i, i - 1).exists(at =>
+          words.lift(at).exists(word => word.startsWith("--") && others.contains(word))
+        )
+      )
+      .map(words)
 
   /** As many as are flown, where a command says so. */
   private def few(words: Seq[String]): Seq[String] = words.indexOf("--seeds") match
@@ -234,6 +245,10 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
           // MuJoCo is installed by whoever wants it: that is told in a line.
           val (status, told) = run(words)
           (if told.contains("MuJoCo's library was not found") then 0 else status, told)
+        case _ if words.contains("--gpu") && CudaGpu.find().isLeft =>
+          // A machine without a GPU says so in a line.
+          val (status, told) = run(words)
+          (if told.contains("--gpu: ") then 0 else status, told)
         case "cluster" => run(words.updated(2, folder.resolve("certificates").toString))
         case "worker"  =>
           // Nobody is there to be joined: that is told in a line.

@@ -115,17 +115,16 @@ final case class VehicleForecast[S] private (
   /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one
     * sent earlier.
     */
-  private def effects(delays: OneWayDelays, now: Instant): Vector[(Commanded, Instant)] =
-    val acting = commands.filterNot(isPresumedLost(_, delays, now))
-    val times  = acting
-      .map(command =>
-        command.answeredAt.fold(delays.expectedArrival(command.sentAt))(delays.arrivalGiven(
-          command.sentAt,
-          _
-        ))
-      )
-    if acting.isEmpty then Vector.empty
-    else acting.zip(times.drop(1).scanLeft(times.head)(_.max(_)))
+  private def effects(delays: OneWayDelays, now: Instant): Iterator[(Commanded, Instant)] =
+    var latest = Option.empty[Instant]
+    commands.iterator
+      .filterNot(isPresumedLost(_, delays, now))
+      .map: command =>
+        val arrives = command.answeredAt.fold(delays.expectedArrival(command.sentAt)):
+          delays.arrivalGiven(command.sentAt, _)
+        val acts = latest.fold(arrives)(_.max(arrives))
+        latest = Some(acts)
+        (command, acts)
 
   /** A command is taken for lost when its arrival should have been heard of long ago. The oldest held one
     * never is: the vehicle flies under something.
@@ -136,9 +135,10 @@ final case class VehicleForecast[S] private (
 
   /** Index of the command in effect; 0 if there is none. */
   private def inEffect(validAt: Instant, delays: OneWayDelays, now: Instant): Int =
-    effects(delays, now).takeWhile((_, actsAt) => actsAt <= validAt).lastOption.fold(0)((command, _) =>
-      commands.indexOf(command)
-    )
+    effects(delays, now)
+      .takeWhile((_, actsAt) => actsAt <= validAt)
+      .foldLeft(0):
+        case (_, (command, _)) => commands.indexOf(command)
 
 object VehicleForecast:
   /** Readings remembered, to hold predictions against. */

@@ -3,7 +3,6 @@ package skein.gpu
 import java.lang.foreign.ValueLayout.{ADDRESS, JAVA_INT, JAVA_LONG}
 import java.lang.foreign.{Arena, FunctionDescriptor, Linker, MemoryLayout, SymbolLookup}
 import java.lang.invoke.MethodHandle
-import scala.util.control.NonFatal
 
 /** NVIDIA's driver (CUDA driver API 10.2 and later), which every machine with such a GPU has; no toolkit is
   * needed. Names are those of the API.
@@ -17,20 +16,21 @@ private[gpu] final class Cuda private (library: SymbolLookup):
     val symbol = library.find(name).orElseThrow(() => GpuFailure(s"the driver has no $name; a newer one has"))
     linker.downcallHandle(symbol, FunctionDescriptor.of(JAVA_INT, arguments*))
 
-  val init: MethodHandle             = function("cuInit", JAVA_INT)
-  val deviceGetCount: MethodHandle   = function("cuDeviceGetCount", ADDRESS)
-  val deviceGet: MethodHandle        = function("cuDeviceGet", ADDRESS, JAVA_INT)
-  val deviceGetName: MethodHandle    = function("cuDeviceGetName", ADDRESS, JAVA_INT, JAVA_INT)
-  val primaryCtxRetain: MethodHandle = function("cuDevicePrimaryCtxRetain", ADDRESS, JAVA_INT)
-  val ctxSetCurrent: MethodHandle    = function("cuCtxSetCurrent", ADDRESS)
-  val ctxSynchronize: MethodHandle   = function("cuCtxSynchronize")
-  val memGetInfo: MethodHandle       = function("cuMemGetInfo_v2", ADDRESS, ADDRESS)
-  val memAlloc: MethodHandle         = function("cuMemAlloc_v2", ADDRESS, JAVA_LONG)
-  val memFree: MethodHandle          = function("cuMemFree_v2", JAVA_LONG)
-  val memcpyHtoD: MethodHandle       = function("cuMemcpyHtoD_v2", JAVA_LONG, ADDRESS, JAVA_LONG)
-  val memcpyDtoH: MethodHandle       = function("cuMemcpyDtoH_v2", ADDRESS, JAVA_LONG, JAVA_LONG)
-  val moduleLoadDataEx: MethodHandle =
+  val init: MethodHandle               = function("cuInit", JAVA_INT)
+  val deviceGetCount: MethodHandle     = function("cuDeviceGetCount", ADDRESS)
+  val deviceGet: MethodHandle          = function("cuDeviceGet", ADDRESS, JAVA_INT)
+  val deviceGetName: MethodHandle      = function("cuDeviceGetName", ADDRESS, JAVA_INT, JAVA_INT)
+  val deviceGetAttribute: MethodHandle = function("cuDeviceGetAttribute", ADDRESS, JAVA_INT, JAVA_INT)
+  val primaryCtxRetain: MethodHandle   = function("cuDevicePrimaryCtxRetain", ADDRESS, JAVA_INT)
+  val ctxSetCurrent: MethodHandle      = function("cuCtxSetCurrent", ADDRESS)
+  val ctxSynchronize: MethodHandle     = function("cuCtxSynchronize")
+  val memAlloc: MethodHandle           = function("cuMemAlloc_v2", ADDRESS, JAVA_LONG)
+  val memFree: MethodHandle            = function("cuMemFree_v2", JAVA_LONG)
+  val memcpyHtoD: MethodHandle         = function("cuMemcpyHtoD_v2", JAVA_LONG, ADDRESS, JAVA_LONG)
+  val memcpyDtoH: MethodHandle         = function("cuMemcpyDtoH_v2", ADDRESS, JAVA_LONG, JAVA_LONG)
+  val moduleLoadDataEx: MethodHandle   =
     function("cuModuleLoadDataEx", ADDRESS, ADDRESS, JAVA_INT, ADDRESS, ADDRESS)
+  val moduleUnload: MethodHandle      = function("cuModuleUnload", ADDRESS)
   val moduleGetFunction: MethodHandle = function("cuModuleGetFunction", ADDRESS, ADDRESS, ADDRESS)
   val launchKernel: MethodHandle      = function(
     "cuLaunchKernel",
@@ -61,10 +61,12 @@ private[gpu] object Cuda:
   /** @return or why there is none */
   def load(): Either[String, Cuda] =
     val names = if scala.util.Properties.isWin then Seq("nvcuda.dll") else Seq("libcuda.so.1", "libcuda.so")
-    names.iterator
-      .map: name =>
-        try Right(Cuda(SymbolLookup.libraryLookup(name, Arena.global)))
-        catch
-          case failure: GpuFailure => Left(failure.getMessage)
-          case NonFatal(_)         => Left(s"no NVIDIA driver: the library $name is not found")
-      .reduce((first, second) => if first.isRight then first else second)
+    val tried = names.iterator.map: name =>
+      try Right(Cuda(SymbolLookup.libraryLookup(name, Arena.global)))
+      catch
+        case failure: GpuFailure                          => Left(Some(failure.getMessage))
+        case _: (IllegalArgumentException | LinkageError) => Left(None)
+    tried
+      .reduce((first, second) => if first.isRight || second == Left(None) then first else second)
+      .left
+      .map(_.getOrElse(s"no NVIDIA driver: the library ${names.head} is not found"))

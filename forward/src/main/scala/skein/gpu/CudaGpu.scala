@@ -2,8 +2,10 @@ package skein.gpu
 
 import java.lang.foreign.ValueLayout.{ADDRESS, JAVA_BYTE, JAVA_FLOAT, JAVA_INT, JAVA_LONG}
 import java.lang.foreign.{Arena, MemorySegment}
+import java.lang.invoke.MethodHandle
+import java.lang.ref.Cleaner
 
-/** An NVIDIA GPU, by its driver.
+/** An NVIDIA GPU, by its driver. What it holds for somebody is given back when nobody knows it any more.
   *
   * @param name as the driver tells it
   */
@@ -21,8 +23,11 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
     catch
       case refused: GpuFailure =>
         throw GpuFailure(s"${refused.getMessage.stripPrefix("the GPU: ")} ${log.getString(0).trim}")
-    cuda.call(cuda.moduleGetFunction, located, loaded.get(ADDRESS, 0), arena.allocateFrom(name))
-    Kernel(located.get(ADDRESS, 0))
+    val translated = loaded.get(ADDRESS, 0)
+    cuda.call(cuda.moduleGetFunction, located, translated, arena.allocateFrom(name))
+    val made = Kernel(located.get(ADDRESS, 0))
+    givenBack(made)(cuda.moduleUnload, translated)
+    made
 
   private var ran               = 0L
   private lazy val begins, ends = within: arena =>
@@ -31,11 +36,6 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
     event.get(ADDRESS, 0)
 
   def ranNs: Long = ran
-
-  def freeBytes: Long = within: arena =>
-    val free, total = arena.allocate(JAVA_LONG)
-    cuda.call(cuda.memGetInfo, free, total)
-    free.get(JAVA_LONG, 0)
 
   private[skein] def buffer(words: Long): Buffer = within: arena =>
     val address = arena.allocate(JAVA_LONG)
@@ -60,18 +60,19 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       cuda.call(cuda.memcpyDtoH, here, address, 4 * words)
       here.toArray(JAVA_FLOAT)
 
-    def close(): Unit = within(_ => cuda.call(cuda.memFree, address))
+    private val memory = givenBack(this)(cuda.memFree, address)
+
+    def close(): Unit = memory.clean()
 
   private final class Kernel(function: MemorySegment) extends GpuKernel:
     def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit = within: arena =>
       val places = arena.allocate(ADDRESS, arguments.size.max(1))
       for (argument, i) <- arguments.zipWithIndex do
         val value = argument match
-          case buffer: GpuBuffer     => arena.allocateFrom(JAVA_LONG, buffer.address)
-          case whole: Int            => arena.allocateFrom(JAVA_INT, whole)
-          case number: Float         => arena.allocateFrom(JAVA_FLOAT, number)
-          case numbers: Array[Float] => arena.allocateFrom(JAVA_FLOAT, numbers*)
-          case other                 => throw IllegalArgumentException(s"no kernel takes $other")
+          case buffer: GpuBuffer => arena.allocateFrom(JAVA_LONG, buffer.address)
+          case whole: Int        => arena.allocateFrom(JAVA_INT, whole)
+          case number: Float     => arena.allocateFrom(JAVA_FLOAT, number)
+          case other             => throw IllegalArgumentException(s"no kernel takes $other")
         places.setAtIndex(ADDRESS, i, value)
       val none = MemorySegment.NULL
       cuda.call(cuda.eventRecord, begins, none)
@@ -82,7 +83,17 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       cuda.call(cuda.eventElapsedTime, tookMs, begins, ends)
       ran += (tookMs.get(JAVA_FLOAT, 0) * 1e6).toLong
 
-  private def within[A](body: Arena => A): A =
+  /** Lets the driver take something back when it is closed, or when nobody knows its holder any more. */
+  private def givenBack(holder: AnyRef)(by: MethodHandle, what: Any): Cleaner.Cleanable =
+    cleaner.register(
+      holder,
+      () =>
+        // After a fault the driver refuses this as well, and holds nothing.
+        try within(_ => cuda.call(by, what))
+        catch case _: GpuFailure => ()
+    )
+
+  private def within[A](body: Arena => A): A = synchronized:
     val arena = Arena.ofConfined()
     try
       cuda.call(cuda.ctxSetCurrent, context)
@@ -95,6 +106,11 @@ object CudaGpu:
   private val JitErrorLog      = 5
   private val JitErrorLogBytes = 6
   private val MostName         = 256
+  private val cleaner          = Cleaner.create()
+
+  // CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR; those that PTX is written for (Turing).
+  private val Capability      = Seq(75, 76)
+  private val LeastCapability = Seq(7, 5)
 
   /** The first GPU of this machine; the same object each time.
     *
@@ -114,7 +130,16 @@ object CudaGpu:
       else
         cuda.call(cuda.deviceGet, device, 0)
         cuda.call(cuda.deviceGetName, name, MostName, device.get(JAVA_INT, 0))
-        cuda.call(cuda.primaryCtxRetain, context, device.get(JAVA_INT, 0))
-        Right(new CudaGpu(cuda, context.get(ADDRESS, 0), name.getString(0)))
+        val capability = Capability.map: attribute =>
+          cuda.call(cuda.deviceGetAttribute, number, attribute, device.get(JAVA_INT, 0))
+          number.get(JAVA_INT, 0)
+        if Ordering.Implicits.seqOrdering[Seq, Int].lt(capability, LeastCapability) then
+          Left(
+            s"expected an NVIDIA GPU of compute capability ${LeastCapability.mkString(".")} at least, " +
+              s"found ${name.getString(0)} of ${capability.mkString(".")}"
+          )
+        else
+          cuda.call(cuda.primaryCtxRetain, context, device.get(JAVA_INT, 0))
+          Right(new CudaGpu(cuda, context.get(ADDRESS, 0), name.getString(0)))
     catch case refused: GpuFailure => Left(refused.getMessage)
     finally arena.close()

@@ -1,14 +1,11 @@
 package skein.gpu
 
 /** A processor that runs one program in many threads at once, for flights by the thousand. Kernels are texts
-  * in PTX ([[Ptx]]). One caller at a time.
+  * in PTX ([[Ptx]]). Callers take turns.
   */
 trait Gpu:
   /** As its driver tells it. */
   def name: String
-
-  /** Bytes of its memory that are free. */
-  def freeBytes: Long
 
   /** How long kernels ran so far, ns. */
   def ranNs: Long
@@ -19,7 +16,7 @@ trait Gpu:
     */
   private[skein] def kernel(module: String, name: String): GpuKernel
 
-  /** Memory for so many numbers of 4 bytes, until it is closed.
+  /** Memory for so many numbers of 4 bytes, until it is closed or nobody knows it.
     *
     * @throws GpuFailure if there is not so much
     */
@@ -36,6 +33,6 @@ private[skein] trait GpuBuffer extends AutoCloseable:
 private[skein] trait GpuKernel:
   /** Runs it to its end.
     *
-    * @param arguments in the kernel's order: a [[GpuBuffer]], an Int, a Float or an array of floats each
+    * @param arguments in the kernel's order: a [[GpuBuffer]], an Int or a Float each
     */
   def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit

@@ -1,5 +1,7 @@
 package skein.gpu
 
+import java.util.HexFormat
+
 /** The text of one kernel in PTX, the instructions that NVIDIA's driver translates for whatever GPU is there
   * (PTX ISA 6.4). Each operation takes registers by number and leaves its result in a new one, unless told to
   * leave it in a variable. Floats are rounded to nearest and never flushed to zero or fused unasked, so that
@@ -38,7 +40,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def fma(a: Int, b: Int, c: Int): Int            = result()(r => s"fma.rn.f32 %f$r, %f$a, %f$b, %f$c")
   def choose(condition: Int, a: Int, b: Int): Int = result()(r => s"selp.f32 %f$r, %f$a, %f$b, %p$condition")
   def compare(how: String, a: Int, b: Int): Int   = result()(r => s"setp.$how.f32 %p$r, %f$a, %f$b")
-  def fromWhole(a: Int): Int                      = result()(r => s"cvt.rn.f32.s32 %f$r, %r$a")
 
   def wholeOf(a: Int): Int = result()(r => s"cvt.rzi.s32.f32 %r$r, %f$a")
 
@@ -83,10 +84,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
     case (`parameter`, Kind.Whole)   => result()(r => s"ld.param.u32 %r$r, [$parameter]")
     case (`parameter`, Kind.Float)   => result()(r => s"ld.param.f32 %f$r, [$parameter]")
   }.getOrElse(throw new NoSuchElementException(s"$name has no parameter $parameter"))
-
-  /** One of the floats of a parameter. */
-  def argument(parameter: String, number: Int): Int =
-    result()(r => s"ld.param.f32 %f$r, [$parameter+${4 * number}]")
 
   def load(base: Int, word: Int = 0, into: Int = fresh()): Int =
     result(into)(r => s"ld.global.nc.f32 %f$r, [%rd$base+${4 * word}]")
@@ -149,18 +146,14 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
       .mkString
     s".version 6.4\n.target sm_75\n.address_size 64\n\n.visible .entry $name(\n$arguments\n)\n{\n$declared$own$text}\n"
 
-  private def hex(bits: Int) = String.format("%08X", bits)
+  private def hex(bits: Int) = HexFormat.of.withUpperCase.toHexDigits(bits)
 
 object Ptx:
   /** What a kernel takes. */
   enum Kind:
     case Address, Whole, Float
 
-    /** So many floats, the same for all threads. */
-    case Floats(count: Int)
-
     private[gpu] def declared(name: String): String = this match
-      case Address       => s".param .u64 $name"
-      case Whole         => s".param .u32 $name"
-      case Float         => s".param .f32 $name"
-      case Floats(count) => s".param .align 4 .b8 $name[${4 * count}]"
+      case Address => s".param .u64 $name"
+      case Whole   => s".param .u32 $name"
+      case Float   => s".param .f32 $name"

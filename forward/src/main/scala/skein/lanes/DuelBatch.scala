@@ -19,12 +19,12 @@ import skein.units.Expect
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
   * [[TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar
   * loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the
-  * table. Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do not
-  * depend on threads, on a call's other worlds or on their order. One call at a time.
+  * table. But for a GPU, which engine flies a world depends on the world and on `shareEpisodes` alone, so
+  * results do not depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param duel start, speeds and duration; the policies come from the worlds
-  * @param gpu on which candidates that share episodes fly, where it knows them; outcomes are the same, to the
-  *   bit
+  * @param gpu on which the candidates of [[Worlds.episodesOfEach]] fly, where it knows the loop and all
+  *   policies of a call are formulas; outcomes are the same, to the bit
   */
 final class DuelBatch(
     duel: Duel,

@@ -36,14 +36,17 @@ private[lanes] final class GpuDuels(
       isCancelled: () => Boolean
   ): Option[Int] =
     val each       = worlds.episodesOfEach
-    val candidates = worlds.size / each
+    val candidates = GpuEpisodes.candidatesOf(worlds)
     val sides      = Vector(
       Side(candidates, threads, candidate => worlds.evader(candidate * each)),
       Side(candidates, threads, candidate => worlds.pursuer(candidate * each))
     )
     Option.when(sides.forall(_.areFormulas)):
-      GpuParts(candidates, each, episodes.duel.durationS, onProgress, isCancelled)
-        .fly(candidate => sides.map(_.formOf(candidate))): (forms, some, numbers) =>
+      GpuParts(candidates, each, onProgress, isCancelled)
+        .fly(
+          candidate => sides.map(_.formOf(candidate)),
+          _ => 2 * episodes.duel.durationS / episodes.timing.periodS
+        ): (forms, some, numbers) =>
           val names   = numbers.toVector.map(i => episodes.of(worlds.link(i), worlds.key(i)))
           val brought = onGpu.bring(names, isCancelled): i =>
             episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)))

@@ -33,20 +33,30 @@ private[lanes] final class GpuEpisodes(
       names: Vector[Any],
       isCancelled: () => Boolean
   )(timetable: Int => Timetable): Option[Vector[Held]] =
+    bring(names, isCancelled, timetable, Map.empty)
+
+  /** @param known timetables that are made already, by their episodes' names
+    */
+  private def bring(
+      names: Vector[Any],
+      isCancelled: () => Boolean,
+      timetable: Int => Timetable,
+      known: Map[Any, Timetable]
+  ): Option[Vector[Held]] =
     // Whoever is used now is forgotten last.
     val missing = names.indices.filter(i => held.get(names(i)) == null).distinctBy(names)
-    val made    = Array.ofDim[Timetable](missing.length)
-    val ready   =
-      GpuEpisodes.inParallel(missing.length, 1, threads, isCancelled)(i => made(i) = timetable(missing(i)))
+    val made    = missing.map(i => known.getOrElse(names(i), null)).toArray
+    val ready   = GpuEpisodes.inParallel(missing.length, 1, threads, isCancelled): i =>
+      if made(i) == null then made(i) = timetable(missing(i))
     if ready < missing.length then None
     else
       val needed = made.foldLeft(layout)(_.holding(_))
       if needed != layout then
         now = needed
-        forget(most = 0)
-        bring(names, isCancelled)(timetable)
+        forget(0, Set.empty)
+        bring(names, isCancelled, timetable, missing.map(names).zip(made).toMap)
       else
-        forget(mostBytes)
+        forget(mostBytes, names.toSet)
         val packed = Array.ofDim[GpuTimetable](made.length)
         GpuEpisodes.inParallel(made.length, 1, threads)(i => packed(i) = GpuTimetable(made(i), layout)): Unit
         for (i, timetable) <- missing.zip(packed) do
@@ -55,14 +65,16 @@ private[lanes] final class GpuEpisodes(
           bytes += told.bytes
         Some(names.iterator.map(held.get).toVector)
 
-  /** Those used least lately, until no more than so many bytes are held. */
-  private def forget(most: Long): Unit =
-    val eldest = held.values.iterator
+  /** Those used least lately, until no more than so many bytes are held; but not those that are needed now.
+    */
+  private def forget(most: Long, needed: Set[Any]): Unit =
+    val eldest = held.entrySet.iterator
     while bytes > most && eldest.hasNext do
       val old = eldest.next()
-      bytes -= old.bytes
-      old.buffer.close()
-      eldest.remove()
+      if !needed(old.getKey) then
+        bytes -= old.getValue.bytes
+        old.getValue.buffer.close()
+        eldest.remove()
 
 private[lanes] object GpuEpisodes:
   /** One. */
@@ -72,6 +84,12 @@ private[lanes] object GpuEpisodes:
     val size: Int               = timetable.size
     val stride: Int             = timetable.stride
     val scoredAtS: Array[Float] = timetable.scoredAtS
+
+  /** How many candidates fly these worlds. */
+  def candidatesOf(worlds: Worlds): Int =
+    val each = worlds.episodesOfEach
+    require(worlds.size % each == 0, s"${worlds.size} worlds are not $each episodes of every candidate")
+    worlds.size / each
 
   /** Does something with each number below a count.
     *

@@ -10,7 +10,6 @@ import skein.gpu.Gpu
 private[lanes] final class GpuParts(
     candidates: Int,
     each: Int,
-    durationS: Double,
     onProgress: Int => Unit,
     isCancelled: () => Boolean
 ):
@@ -19,15 +18,17 @@ private[lanes] final class GpuParts(
   /** Flies all, unless it is cancelled.
     *
     * @param formOf a candidate's
+    * @param decisions of one episode, of all vehicles together, about
     * @param part flies candidates of a form through some of the episodes; whether it was not cancelled
     * @return how many worlds were flown
     */
-  def fly[F](formOf: Int => F)(part: (F, Array[Int], Array[Int]) => Boolean): Int =
+  def fly[F](formOf: Int => F, decisions: F => Double)(part: (F, Array[Int], Array[Int]) => Boolean): Int =
     var done = 0
     for
       (form, alike) <- Array.range(0, candidates).groupBy(formOf)
-      some          <- alike.grouped((MostWorlds / each).max(1))
-      numbers       <- Array.range(0, each).grouped((MostMinutes * 60 / durationS).toInt.max(1))
+      episodes = (MostBytes / 4 / (BytesOfDecision * decisions(form))).toInt.max(1).min(each)
+      numbers <- Array.range(0, each).grouped(episodes)
+      some    <- alike.grouped((MostDecisions / (numbers.length * decisions(form))).toInt.max(1))
       if !isCancelled() && part(form, some, numbers)
     do
       done += some.length * numbers.length
@@ -35,8 +36,17 @@ private[lanes] final class GpuParts(
     done
 
 private[lanes] object GpuParts:
-  private val MostWorlds  = 1 << 22
-  private val MostMinutes = 1024
+  /** In one part: some tenths of a second for a GPU, seconds where vehicles fly in steps. */
+  private val MostDecisions = 2e9
+
+  /** An episode's operations take about half as much. */
+  private val BytesOfDecision = 512
+
+  /** Of a batch's episodes on the GPU. */
+  val MostBytes: Long = 1L << 30
+
+  /** Candidates of some episodes that keep a GPU busy. */
+  val SideBySide: Int = 1 << 14
 
   /** What flies on it, in a line for the user. */
   def told(gpu: Gpu): String = s"GPU, ${gpu.name}: a thread a candidate"
@@ -44,9 +54,3 @@ private[lanes] object GpuParts:
   /** Behind the line of what flies instead of a GPU. */
   def instead(onGpu: Option[Either[String, Any]]): String =
     onGpu.fold("")(_.fold(why => s" ($why)", _ => " (the GPU flies candidates that share episodes)"))
-
-  /** Candidates of some episodes that keep a GPU busy. */
-  val SideBySide: Int = 1 << 14
-
-  /** Of a minute of a duel some 300 kB. */
-  val MostBytes: Long = 1L << 30

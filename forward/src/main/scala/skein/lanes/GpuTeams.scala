@@ -14,6 +14,7 @@ private[lanes] final class GpuTeams(
     vehicle: GpuVehicle.Kind,
     prediction: Option[GpuPrediction.Kind],
     threads: Int,
+    periodS: Double,
     timetable: (Delays, Int, TeamForm) => Timetable
 ):
   private val onGpu   = mutable.HashMap.empty[Int, GpuEpisodes]
@@ -34,27 +35,27 @@ private[lanes] final class GpuTeams(
   ): Int =
     val each                   = worlds.episodesOfEach
     def candidate(number: Int) = prepared(number * each)
-    val longestS               = if worlds.size == 0 then 1.0 else candidate(0).form.get.durationS
-    GpuParts(worlds.size / each, each, longestS, onProgress, isCancelled)
-      .fly(candidate(_).form.get): (form, some, numbers) =>
-        val episodes = onGpu.getOrElseUpdate(
-          form.team.count,
-          GpuEpisodes(gpu, form.team.count, shows = true, threads, GpuParts.MostBytes)
-        )
-        val names   = numbers.toVector.map(i => (worlds.link(i), worlds.key(i), form.durationS))
-        val brought = episodes.bring(names, isCancelled): i =>
-          timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
-        brought
-          .map: flown =>
-            val came = fly(form, some.map(candidate), flown, episodes.layout)
-            for
-              (judged, told) <- form.scores.judged.indices.zip(into.values);
-              (episode, at)  <- flown.zipWithIndex
-            do
-              val outcome = GpuKernel.Outcome(form.scores, judged, episode.scoredAtS)
-              val first   = (outcome.place * flown.size + at) * some.length
-              for i <- some.indices do told(some(i) * each + numbers(at)) = outcome(came(first + i))
-          .isDefined
+    GpuParts(GpuEpisodes.candidatesOf(worlds), each, onProgress, isCancelled)
+      .fly(candidate(_).form.get, form => form.team.count * form.durationS / periodS):
+        (form, some, numbers) =>
+          val episodes = onGpu.getOrElseUpdate(
+            form.team.count,
+            GpuEpisodes(gpu, form.team.count, shows = true, threads, GpuParts.MostBytes)
+          )
+          val names   = numbers.toVector.map(i => (worlds.link(i), worlds.key(i), form.durationS))
+          val brought = episodes.bring(names, isCancelled): i =>
+            timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
+          brought
+            .map: flown =>
+              val came = fly(form, some.map(candidate), flown, episodes.layout)
+              for
+                (judged, told) <- form.scores.judged.indices.zip(into.values);
+                (episode, at)  <- flown.zipWithIndex
+              do
+                val outcome = GpuKernel.Outcome(form.scores, judged, episode.scoredAtS)
+                val first   = (outcome.place * flown.size + at) * some.length
+                for i <- some.indices do told(some(i) * each + numbers(at)) = outcome(came(first + i))
+            .isDefined
 
   private def fly(
       form: TeamForm,

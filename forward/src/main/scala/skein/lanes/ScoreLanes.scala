@@ -117,8 +117,10 @@ private[lanes] object ScoreLanes:
     * @param places of what the function computes, by its outputs
     */
   final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
-    /** Times after this count. */
-    def afterS: Float = Judged.afterS(fromS).toFloat
+    /** Times after this count: the last float that does not. */
+    def afterS: Float =
+      val (exact, near) = (Judged.afterS(fromS), Judged.afterS(fromS).toFloat)
+      if near > exact then Math.nextDown(near) else near
 
   private def initially(judged: Judged): Vector[Float] = judged.reduction match
     case Reduction.Least | OfMoment.FirstWithin(_) => Vector(Float.PositiveInfinity)

@@ -12,12 +12,12 @@ import skein.units.Expect
   * quantities are formulas fly by lanes: worlds that share episodes by [[TimetableKernel]], all of an episode
   * by one [[Timetable]], which is made once; others by [[LoopKernel]]. Other teams' quadrotors and bodies of
   * MuJoCo are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar
-  * reference ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate,
-  * its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on
-  * their order. One call at a time.
+  * reference ([[skein.forward.Rollout]]), which is told. But for a GPU, which engine flies a world depends on
+  * its candidate, its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other
+  * worlds or on their order. One call at a time.
   *
-  * @param gpu on which candidates that share episodes fly, where it knows them; outcomes are the same, to the
-  *   bit
+  * @param gpu on which the candidates of [[Worlds.episodesOfEach]] fly, where it knows the loop and all
+  *   policies and quantities of a call are formulas; outcomes are the same, to the bit
   */
 final class TeamBatch(
     timing: LoopTiming,
@@ -35,7 +35,7 @@ final class TeamBatch(
     for
       prediction <- GpuPrediction.of(timing)
       vehicle    <- GpuVehicle.of(model)
-    yield GpuTeams(gpu, vehicle, prediction, threads, timetable)
+    yield GpuTeams(gpu, vehicle, prediction, threads, timing.periodS, timetable)
 
   private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles)
@@ -57,8 +57,11 @@ final class TeamBatch(
           steppedOf(candidate)
         ) + GpuParts.instead(onGpu)
 
-  /** How many candidates that share episodes take no longer than one, if they fly by lanes or on the GPU. */
-  def sideBySide: Int = if onGpu.exists(_.isRight) then GpuParts.SideBySide else LaneFunction.COUNT
+  /** How many such candidates that share episodes take no longer than one. */
+  def sideBySide(candidate: TeamCandidate, link: Delays): Int =
+    if onGpu.exists(_.isRight) && fliesByLanes(candidate, shareEpisodes = true, Seq(link)) then
+      GpuParts.SideBySide
+    else LaneFunction.COUNT
 
   private def steppedOf(candidate: TeamCandidate) = SteppedRollouts.told(model, candidate.engagement.agents)
 

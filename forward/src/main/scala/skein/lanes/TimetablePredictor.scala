@@ -77,15 +77,13 @@ private[lanes] final class LagPredictor(val model: ReducedModel) extends Timetab
   def propagator: Propagator = ReducedPropagator(model.deadTimeS, propagation)
 
   private def propagation(flown: Vector[ReducedPropagator.Flown], totalS: Double): Propagation =
-    val lag                = FirstOrderLag(model.lagS)
-    def reached(t: Double) = lag.carriesS(t) / model.lagS
-    def moved(t: Double)   = t - lag.carriesS(t)
-    val parts              = flown.map: part =>
-      val (left, after) = (totalS - part.fromS, totalS - part.untilS)
-      Propagation.Part(
-        part.decision,
-        Array(moved(left) - moved(after), reached(left) - reached(after)).map(_.toFloat)
-      )
+    val lag   = FirstOrderLag(model.lagS)
+    val parts = flown.map: part =>
+      val (left, after)               = (totalS - part.fromS, totalS - part.untilS)
+      val (carriedLeft, carriedAfter) = (lag.carriesS(left), lag.carriesS(after))
+      val moved                       = (left - carriedLeft) - (after - carriedAfter)
+      val reached                     = carriedLeft / model.lagS - carriedAfter / model.lagS
+      Propagation.Part(part.decision, Array(moved.toFloat, reached.toFloat))
     Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
 /** By [[PredictedPlants]]. */
@@ -118,20 +116,25 @@ private final class ReducedPropagator private (
   import ReducedPropagator.*
 
   def next(legs: Vector[Propagator.Leg]): Propagator =
-    new ReducedPropagator(deadTime, propagation, legs.foldLeft(held)(_.after(_, deadTime)))
+    new ReducedPropagator(deadTime, propagation, legs.foldLeft(held)(_.through(_, deadTime)._2))
 
   def predicted(legs: Vector[Propagator.Leg]): Propagation =
     val flown  = Vector.newBuilder[Flown]
     var known  = held
     var startS = 0.0
     for leg <- legs do
-      val next = known.told(leg, deadTime)
-      val endS = startS + leg.span.toSeconds
-      val acts = next.due(leg).map((decision, in) => (decision, startS + in.toSeconds))
-      val from = (known.acting, startS) +: acts
-      for ((decision, fromS), untilS) <- from.zip(acts.map(_._2) :+ endS) if untilS > fromS do
-        flown += Flown(decision, fromS, untilS)
-      known = known.after(leg, deadTime)
+      val (due, after)        = known.through(leg, deadTime)
+      val endS                = startS + leg.span.toSeconds
+      var acting              = known.acting
+      var fromS               = startS
+      def fly(untilS: Double) = if untilS > fromS then flown += Flown(acting, fromS, untilS)
+      for (decision, in) <- due do
+        val actsS = startS + in.toSeconds
+        fly(actsS)
+        acting = decision
+        fromS = actsS
+      fly(endS)
+      known = after
       startS = endS
     propagation(flown.result(), startS)
 
@@ -147,18 +150,10 @@ private object ReducedPropagator:
     * @param coming and in how long each acts
     */
   final case class Known(acting: Int, last: Int, coming: Vector[(Int, Span)]):
-    def told(leg: Propagator.Leg, deadTime: Span): Known =
-      if leg.decision == last then this
-      else Known(acting, leg.decision, coming :+ (leg.decision, deadTime))
-
-    /** Of what comes, what acts within a leg. */
-    def due(leg: Propagator.Leg): Vector[(Int, Span)] = coming.filter(_._2 <= leg.span)
-
-    def after(leg: Propagator.Leg, deadTime: Span): Known =
-      val now = told(leg, deadTime)
-      val due = now.due(leg)
-      Known(
-        due.lastOption.fold(acting)(_._1),
-        now.last,
-        now.coming.filter(_._2 > leg.span).map((decision, in) => (decision, in - leg.span))
-      )
+    /** What acts within a leg, and in how long, and what is known behind it. Whoever came first acts first.
+      */
+    def through(leg: Propagator.Leg, deadTime: Span): (Vector[(Int, Span)], Known) =
+      val now            = if leg.decision == last then coming else coming :+ (leg.decision, deadTime)
+      val (due, waiting) = now.span(_._2 <= leg.span)
+      val behind         = waiting.map((decision, in) => (decision, in - leg.span))
+      (due, Known(due.lastOption.fold(acting)(_._1), leg.decision, behind))

@@ -2,7 +2,7 @@ package skein.optimise
 
 import skein.forward.Delays
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
-import skein.simd.WorldRandom
+import skein.simd.{LaneFunction, WorldRandom}
 
 /** Flies a team's candidates in [[TeamBatch]].
   *
@@ -11,6 +11,7 @@ import skein.simd.WorldRandom
   * @param seed of the delays
   * @param shareEpisodes whether they meet the same episodes, each by one timetable: for many candidates; one
   *   alone flies faster without
+  * @param usual parameters of a candidate as most are, by which to tell how many fly side by side
   */
 final class TeamEvaluator(
     batch: TeamBatch,
@@ -18,10 +19,13 @@ final class TeamEvaluator(
     link: Delays,
     weights: Vector[Double],
     seed: Long,
-    shareEpisodes: Boolean = true
+    shareEpisodes: Boolean = true,
+    usual: Option[Vector[Double]] = None
 ) extends ValueEvaluator:
 
-  override def sideBySide: Int = if shareEpisodes then batch.sideBySide else 1
+  override def sideBySide: Int =
+    if shareEpisodes then usual.fold(LaneFunction.COUNT)(each => batch.sideBySide(candidate(each), link))
+    else 1
 
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],

@@ -193,7 +193,8 @@ private[skein] abstract class ExpressionCompiler:
       5.0000001201e-1f
     )
     val fraction = bitsOf(fma(tail, mul(rest, rest), add(rest, constant(1f))))
-    ofBits(addBits(fraction, shiftLeft(bitsOf(rounded), 23)))
+    // The bits of what is no number differ between machines, and with a sum they may become one.
+    choose(x, ofBits(addBits(fraction, shiftLeft(bitsOf(rounded), 23))), isEqual(x, x))
 
   private def tanh(x: Int): Int =
     val inside = within(x, constant(-9f), constant(9f))

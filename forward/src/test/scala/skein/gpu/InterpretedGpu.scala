@@ -7,9 +7,8 @@ import scala.collection.mutable
   * are tested where there is no GPU. It knows the instructions that [[Ptx]] writes, and refuses others.
   */
 final class InterpretedGpu extends Gpu:
-  def name      = "an interpreter of PTX"
-  def freeBytes = 1L << 30
-  def ranNs     = 0L
+  def name  = "an interpreter of PTX"
+  def ranNs = 0L
 
   private val memory = mutable.HashMap.empty[Long, ByteBuffer]
 
@@ -122,10 +121,12 @@ private final class PtxThread(
       if o(i).startsWith("0f") then
         java.lang.Float.intBitsToFloat(java.lang.Integer.parseUnsignedInt(o(i).drop(2), 16))
       else floats(number(i))
-    def r(i: Int)               = if o(i).startsWith("%") then bits(number(i)) else o(i).toInt
-    def d(i: Int)               = wide(number(i))
-    def p(i: Int)               = conditions(number(i))
-    def toFloat(a: Float)       = floats(number(0)) = a
+    def r(i: Int)         = if o(i).startsWith("%") then bits(number(i)) else o(i).toInt
+    def d(i: Int)         = wide(number(i))
+    def p(i: Int)         = conditions(number(i))
+    def toFloat(a: Float) = floats(number(0)) = a
+    // What is no number has the bits that a GPU gives it: others than a CPU's.
+    def rounded(a: Float)       = toFloat(if a.isNaN then java.lang.Float.intBitsToFloat(0x7fffffff) else a)
     def toBits(a: Int)          = bits(number(0)) = a
     def toWide(a: Long)         = wide(number(0)) = a
     def toCondition(a: Boolean) = conditions(number(0)) = a
@@ -151,12 +152,12 @@ private final class PtxThread(
       case "mov.u64"                          => toWide(0) // The address of own memory.
       case "neg.f32"                          => toFloat(-f(1))
       case "abs.f32"                          => toFloat(math.abs(f(1)))
-      case "sqrt.rn.f32"                      => toFloat(math.sqrt(f(1)).toFloat)
-      case "add.rn.f32"                       => toFloat(f(1) + f(2))
-      case "sub.rn.f32"                       => toFloat(f(1) - f(2))
-      case "mul.rn.f32"                       => toFloat(f(1) * f(2))
-      case "div.rn.f32"                       => toFloat(f(1) / f(2))
-      case "fma.rn.f32"                       => toFloat(Math.fma(f(1), f(2), f(3)))
+      case "sqrt.rn.f32"                      => rounded(math.sqrt(f(1)).toFloat)
+      case "add.rn.f32"                       => rounded(f(1) + f(2))
+      case "sub.rn.f32"                       => rounded(f(1) - f(2))
+      case "mul.rn.f32"                       => rounded(f(1) * f(2))
+      case "div.rn.f32"                       => rounded(f(1) / f(2))
+      case "fma.rn.f32"                       => rounded(Math.fma(f(1), f(2), f(3)))
       case "selp.f32"                         => toFloat(if p(3) then f(1) else f(2))
       case "setp.lt.f32"                      => toCondition(f(1) < f(2))
       case "setp.le.f32"                      => toCondition(f(1) <= f(2))
@@ -168,7 +169,6 @@ private final class PtxThread(
       case "and.pred"                         => toCondition(p(1) && p(2))
       case "or.pred"                          => toCondition(p(1) || p(2))
       case "not.pred"                         => toCondition(!p(1))
-      case "cvt.rn.f32.s32"                   => toFloat(r(1).toFloat)
       case "cvt.rzi.s32.f32"                  => toBits(f(1).toInt)
       case "cvt.u64.u32"                      => toWide(r(1) & 0xffffffffL)
       case "add.s32"                          => toBits(r(1) + r(2))
