@@ -80,14 +80,14 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     for
       threads <- options.forward.threadCount
       cluster <- options.cluster.checked
-      begun   <- options.resume.fold(begin(options))(resume(options, _))
-      (folder, question, state) = begun
+      _       <- Expect.that(!options.gpu.value || cluster.isEmpty):
+        "--gpu: expected without --workers and --cluster, whose processes fly on processors"
       gpu   <- if options.gpu.value then CudaGpu.find().map(Some(_)).left.map("--gpu: " + _) else Right(None)
+      begun <- options.resume.fold(begin(options))(resume(options, _))
+      (folder, question, state) = begun
       ready <- question match
         case duel: SearchQuestion => duel.setup.map(_.copy(gpu = gpu))
         case team: TeamQuestion   => team.setup.map(_.copy(gpu = gpu))
-      _ <- Expect.that(gpu.isEmpty || cluster.isEmpty):
-        "--gpu: expected without --workers and --cluster, whose processes fly on processors"
       _ <- Expect.that(gpu.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):

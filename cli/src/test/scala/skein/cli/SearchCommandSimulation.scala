@@ -1,5 +1,6 @@
 package skein.cli
 
+import skein.gpu.CudaGpu
 import skein.testing.{Optimised, TemporaryFolders}
 
 class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
@@ -18,3 +19,15 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assert(found(2).num > 0 && found(3).num > 0, found.toString)
     assert(found(6).str.startsWith("SIMD, ") && paper(6).str.startsWith("SIMD, "), found.toString)
     assert(ran.err.contains("policy.conf"))
+
+  test("--gpu is refused with other processes, and where there is no GPU, before anything is written"):
+    val folder                                 = temporaryFolder().resolve("found")
+    def refused(words: String*): (Int, String) =
+      val ran = Ran.of(Main.run(Seq("search", "--gpu", "--out", folder.toString) ++ words))
+      assert(!java.nio.file.Files.exists(folder))
+      (ran.status, ran.err.linesIterator.mkString)
+    val (status, told) = refused("--workers", "2")
+    assert(status != 0 && told.contains("--gpu: expected without --workers and --cluster"), told)
+    for why <- CudaGpu.find().left do
+      val (status, told) = refused()
+      assert(status != 0 && told.contains(s"--gpu: $why"), told)
