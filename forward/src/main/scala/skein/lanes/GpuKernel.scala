@@ -75,13 +75,14 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       val read   = flownBy.zip(sides).flatMap: (told, count) =>
         Vector(here(gpu.buffer(tiled(told._1, count))), here(gpu.buffer(told._2)))
       val arguments =
-        Vector(here(gpu.buffer(blocks)), episodes.head.stride) ++ read ++ Vector(limitM, worlds, into)
+        here(gpu.buffer(blocks)) +: (read ++ Vector(limitM, worlds, into))
       kernel(blocks.length / BlockWords, BlockWorlds, arguments*)
       into.floats()
     finally buffers.foreach(_.close())
 
-  /** Words for each block: the address of its episode's operations, in two, and how many these are; the first
-    * world, how many, and the first one's candidate.
+  /** Words for each block: the address of its episode's operations, in two, how many these are, and the words
+    * of each; the first world, how many, and the first one's candidate; one is unused, so that addresses lie
+    * where eight bytes begin.
     */
   private def blocksOf(episodes: Vector[GpuEpisodes.Held], candidates: Int): Array[Int] =
     val words = Array.newBuilder[Int]
@@ -89,9 +90,11 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       words += episode.buffer.address.toInt
       words += (episode.buffer.address >>> 32).toInt
       words += episode.size
+      words += episode.stride
       words += number * candidates + first
       words += BlockWorlds.min(candidates - first)
       words += first
+      words += 0
     words.result()
 
   /** Sets of numbers side by side, so that neighbours read neighbours. */
@@ -108,7 +111,7 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
   private final class Writer:
     private val code = Ptx(
       Name,
-      Seq("blocks" -> Ptx.Kind.Address, "stride" -> Ptx.Kind.Whole) ++
+      Seq("blocks" -> Ptx.Kind.Address) ++
         sides.indices.flatMap(side =>
           Seq(s"numbers$side" -> Ptx.Kind.Address, s"flownBy$side" -> Ptx.Kind.Address)
         ) ++
@@ -126,13 +129,12 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       code.ownBase(): Unit
       val block = code.address(code.argument("blocks"), code.special("ctaid.x"), BlockWords)
       val own   = code.special("tid.x")
-      code.goIf(code.compareWholes("ge", own, code.loadWhole(block, 4)), end)
-      val world     = code.wholes("add.s32", code.loadWhole(block, 3), own)
-      val candidate = code.wholes("add.s32", code.loadWhole(block, 5), own)
+      code.goIf(code.compareWholes("ge", own, code.loadWhole(block, 5)), end)
+      val world     = code.wholes("add.s32", code.loadWhole(block, 4), own)
+      val candidate = code.wholes("add.s32", code.loadWhole(block, 6), own)
       val record    = code.loadAddress(block, 0)
       val left      = code.loadWhole(block, 2)
-      val stride    = code.argument("stride")
-      val bytes     = code.wide(stride, 4)
+      val bytes     = code.wide(code.loadWhole(block, 3), 4)
       val views     = code.advanced(record, left, bytes)
       val flying    = body(code, Vector.tabulate(sides.size)(numbersOf(_, candidate)))
       flying.vehicles.foreach(_.start())
@@ -260,7 +262,7 @@ private[lanes] object GpuKernel:
 
   /** Worlds of a block: all of one episode. */
   private val BlockWorlds = 128
-  private val BlockWords  = 6
+  private val BlockWords  = 8
   private val Tile        = 32
   private val TileBits    = 5
 
