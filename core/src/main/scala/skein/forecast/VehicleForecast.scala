@@ -137,8 +137,8 @@ final case class VehicleForecast[S] private (
   private def inEffect(validAt: Instant, delays: OneWayDelays, now: Instant): Int =
     effects(delays, now)
       .takeWhile((_, actsAt) => actsAt <= validAt)
-      .foldLeft(0):
-        case (_, (command, _)) => commands.indexOf(command)
+      .reduceOption((_, later) => later)
+      .fold(0)((command, _) => commands.indexOf(command))
 
 object VehicleForecast:
   /** Readings remembered, to hold predictions against. */

@@ -61,12 +61,14 @@ private[gpu] object Cuda:
   /** @return or why there is none */
   def load(): Either[String, Cuda] =
     val names = if scala.util.Properties.isWin then Seq("nvcuda.dll") else Seq("libcuda.so.1", "libcuda.so")
-    val tried = names.iterator.map: name =>
-      try Right(Cuda(SymbolLookup.libraryLookup(name, Arena.global)))
-      catch
-        case failure: GpuFailure                          => Left(Some(failure.getMessage))
-        case _: (IllegalArgumentException | LinkageError) => Left(None)
-    tried
-      .reduce((first, second) => if first.isRight || second == Left(None) then first else second)
-      .left
-      .map(_.getOrElse(s"no NVIDIA driver: the library ${names.head} is not found"))
+    names.iterator
+      .flatMap(library)
+      .nextOption()
+      .toRight(s"no NVIDIA driver: the library ${names.head} is not found")
+      .flatMap: found =>
+        try Right(Cuda(found))
+        catch case failure: GpuFailure => Left(failure.getMessage)
+
+  private def library(name: String): Option[SymbolLookup] =
+    try Some(SymbolLookup.libraryLookup(name, Arena.global))
+    catch case _: (IllegalArgumentException | LinkageError) => None

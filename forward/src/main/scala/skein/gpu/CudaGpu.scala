@@ -22,7 +22,7 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
     try cuda.call(cuda.moduleLoadDataEx, loaded, arena.allocateFrom(module), 2, options, values)
     catch
       case refused: GpuFailure =>
-        throw GpuFailure(s"${refused.getMessage.stripPrefix("the GPU: ")} ${log.getString(0).trim}")
+        throw GpuFailure(s"${refused.reason} ${log.getString(0).trim}")
     val translated = loaded.get(ADDRESS, 0)
     cuda.call(cuda.moduleGetFunction, located, translated, arena.allocateFrom(name))
     val made = Kernel(located.get(ADDRESS, 0))
@@ -109,8 +109,8 @@ object CudaGpu:
   private val cleaner          = Cleaner.create()
 
   // CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR; those that PTX is written for (Turing).
-  private val Capability      = Seq(75, 76)
-  private val LeastCapability = Seq(7, 5)
+  private val Capability      = (75, 76)
+  private val LeastCapability = (7, 5)
 
   /** The first GPU of this machine; the same object each time.
     *
@@ -130,13 +130,15 @@ object CudaGpu:
       else
         cuda.call(cuda.deviceGet, device, 0)
         cuda.call(cuda.deviceGetName, name, MostName, device.get(JAVA_INT, 0))
-        val capability = Capability.map: attribute =>
-          cuda.call(cuda.deviceGetAttribute, number, attribute, device.get(JAVA_INT, 0))
+        def attribute(which: Int): Int =
+          cuda.call(cuda.deviceGetAttribute, number, which, device.get(JAVA_INT, 0))
           number.get(JAVA_INT, 0)
-        if Ordering.Implicits.seqOrdering[Seq, Int].lt(capability, LeastCapability) then
+        val (major, minor)           = (attribute(Capability._1), attribute(Capability._2))
+        val (leastMajor, leastMinor) = LeastCapability
+        if Ordering[(Int, Int)].lt((major, minor), LeastCapability) then
           Left(
-            s"expected an NVIDIA GPU of compute capability ${LeastCapability.mkString(".")} at least, " +
-              s"found ${name.getString(0)} of ${capability.mkString(".")}"
+            s"expected an NVIDIA GPU of compute capability $leastMajor.$leastMinor at least, " +
+              s"found ${name.getString(0)} of $major.$minor"
           )
         else
           cuda.call(cuda.primaryCtxRetain, context, device.get(JAVA_INT, 0))

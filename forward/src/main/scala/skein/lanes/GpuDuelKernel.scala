@@ -25,7 +25,6 @@ private[lanes] final class GpuDuelKernel(
     ):
   private val duelists = Vector(duel.evader, duel.pursuer)
   private val judged   = DuelKernel.judged(duel.durationS, periodS, asked)
-  private val scores   = ScoreLanes.ofDistance(judged.map(_._2)*)
   private val efforts  = Vector(DuelNumber.EvaderEffort, DuelNumber.PursuerEffort).map(asked)
 
   val outcomes: Int = scores.initial.size + efforts.count(identity)

@@ -9,7 +9,12 @@ import skein.gpu.{Gpu, GpuBuffer, GpuKernel as Compiled, Ptx, PtxExpressions, Va
   * @param sides how many numbers tell who flies, of each side
   * @param scores what the flights are judged by
   */
-private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vector[Int], scores: ScoreLanes):
+private[lanes] abstract class GpuKernel(
+    gpu: Gpu,
+    layout: GpuLayout,
+    sides: Vector[Int],
+    protected val scores: ScoreLanes
+):
   import GpuKernel.*
 
   /** What is special about those who fly. */
@@ -118,9 +123,9 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
         Seq("limit" -> Ptx.Kind.Float, "worlds" -> Ptx.Kind.Whole, "into" -> Ptx.Kind.Address),
       layout.bytes + moreBytes
     )
-    private val end, loop, next = code.label()
-    private val labels          = GpuTimetable.Labels(layout.vehicles)
-    private val kept            = Variables(code, scores.initial)
+    private val end, loop, next, stored = code.label()
+    private val labels                  = GpuTimetable.Labels(layout.vehicles)
+    private val kept                    = Variables(code, scores.initial)
 
     // How often each stage was computed, for numbers that need their share.
     private val counted = Variables(code, scores.judged.map(_ => 0f))
@@ -144,7 +149,7 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       val label     = code.loadWhole(record)
       val nextLabel = code.fresh()
       code.place(loop)
-      code.goIf(code.compareWhole("le", left, 0), "stored")
+      code.goIf(code.compareWhole("le", left, 0), stored)
       // Behind the last operation are the views.
       val following = code.sum(record, bytes)
       code.loadWhole(following, 0, nextLabel): Unit
@@ -170,7 +175,7 @@ private[lanes] abstract class GpuKernel(gpu: Gpu, layout: GpuLayout, sides: Vect
       code(s"mov.b32 %r$label, %r$nextLabel")
       code(s"add.s32 %r$left, %r$left, -1")
       code.go(loop)
-      code.place("stored")
+      code.place(stored)
       store(world, flying.besides)
       code.place(end)
       code("ret")

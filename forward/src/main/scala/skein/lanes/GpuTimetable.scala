@@ -70,7 +70,6 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     val all = java.util.Arrays.copyOf(packed, records * stride + timetable.views.length)
     for i <- timetable.views.indices do
       all(records * stride + i) = layout.reading(i % count, timetable.views(i))
-    packed = null
     all
 
   /** When it is scored, s. */

@@ -22,13 +22,7 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
     "quadrotors" -> VelocityResponses.quadrotor()
   )
 
-  private val loops = Seq(
-    LoopTiming.Paused(),
-    LoopTiming.Sequential(),
-    LoopTiming.Futures(),
-    LoopTiming.Stream(),
-    LoopTiming.Stream(decideThenPace = true)
-  )
+  private val loops = TestLoops.unpredicted
 
   private val weights = Array.tabulate(RectifiedNetwork.Weights)(i => math.sin(i * 1.7))
 

@@ -11,14 +11,7 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
   private val lag  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val drag = ReducedResponse(ReducedModel.AirSim)
 
-  private val loops =
-    Seq(
-      LoopTiming.Paused(),
-      LoopTiming.Sequential(),
-      LoopTiming.Futures(),
-      LoopTiming.Stream(),
-      LoopTiming.Predictive(predictor = lag.predictor)
-    )
+  private val loops = TestLoops.unpredicted :+ LoopTiming.Predictive(predictor = lag.predictor)
 
   private val reductions: Vector[Reduction | OfMoment] =
     Reduction.values.toVector ++ Vector(OfMoment.Newest, OfMoment.FirstWithin(4))
@@ -65,7 +58,7 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
 
   for (name, gpu) <- gpus; (scenario, of) <- scenarios do
     for timing <- loops do
-      test(s"$name, $scenario, ${timing.productPrefix}: the CPU's outcomes, to the bit"):
+      test(s"$name, $scenario, $timing: the CPU's outcomes, to the bit"):
         check(gpu(), of, lag, timing)
     test(s"$name, $scenario with drag: the CPU's outcomes, to the bit"):
       check(gpu(), of, drag, LoopTiming.Stream())

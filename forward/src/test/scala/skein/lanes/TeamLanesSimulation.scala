@@ -15,14 +15,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val links  = Seq[(String, Delays)]("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
 
-  private val loops = Seq(
-    LoopTiming.Paused(),
-    LoopTiming.Sequential(),
-    LoopTiming.Futures(),
-    LoopTiming.Stream(),
-    LoopTiming.Stream(decideThenPace = true),
-    LoopTiming.Predictive(predictor = lag.predictor)
-  )
+  private val loops = TestLoops.unpredicted :+ LoopTiming.Predictive(predictor = lag.predictor)
 
   private def within(random: SplitMix64, least: Double, most: Double) =
     least + (most - least) * random.nextDouble()

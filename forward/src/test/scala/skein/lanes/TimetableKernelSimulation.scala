@@ -57,14 +57,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
     kernel.fly(Timetable.of(2, durationS, timing, link, key, lanes), worlds, captureM)
     kernel
 
-  private val loops =
-    Seq(
-      LoopTiming.Paused(),
-      LoopTiming.Sequential(),
-      LoopTiming.Futures(),
-      LoopTiming.Stream(),
-      LoopTiming.Stream(decideThenPace = true)
-    )
+  private val loops = TestLoops.unpredicted
 
   /** The loop that predicts, by the best model of the vehicles that flies by lanes. */
   private def predicted(model: VelocityResponse): Option[LoopTiming] =
