@@ -3,6 +3,7 @@ package skein.bench
 import skein.forward.*
 import skein.gpu.{CudaGpu, Gpu}
 import skein.lanes.*
+import skein.lanes.gpu.{GpuAccelerator, GpuQuadrotors}
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
@@ -22,6 +23,7 @@ object GpuRates:
   def main(args: Array[String]): Unit =
     val Array(candidates, vehicles) = args.map(_.toInt)
     val gpu                         = CudaGpu.find().fold(sys.error, identity)
+    val accelerator                 = Some(GpuAccelerator(gpu))
     println(s"${gpu.name}; ${Runtime.getRuntime.availableProcessors} processors")
     println("| work | GPU, M/s | its kernels alone, M/s | processors, M/s | times | witness | differ |")
     println("|---|---|---|---|---|---|---|")
@@ -31,7 +33,7 @@ object GpuRates:
     def duels(name: String, timing: LoopTiming, model: VelocityResponse, share: Int, pursuer: Int => Policy) =
       val count    = candidates / share
       val policies = Vector.tabulate(count)(pursuer)
-      val onGpu    = DuelBatch(Duel.paper, timing, model, gpu = Some(gpu))
+      val onGpu    = DuelBatch(Duel.paper, timing, model, accelerator = accelerator)
       val here     = DuelBatch(Duel.paper, timing, model)
       row(name, gpu, 2, count, count / 64)(
         count => onGpu.fly(Duels(count, policies)).meanLast10sM,
@@ -40,7 +42,7 @@ object GpuRates:
     def teams(name: String, vehicles: Int, share: Int, candidate: Int => TeamCandidate) =
       val count = candidates / share
       val teams = Vector.tabulate(count)(i => candidate(i % 1024))
-      val onGpu = TeamBatch(LoopTiming.Stream(), Works.model, gpu = Some(gpu))
+      val onGpu = TeamBatch(LoopTiming.Stream(), Works.model, accelerator = accelerator)
       val here  = TeamBatch(LoopTiming.Stream(), Works.model)
       row(name, gpu, vehicles, count, count / 64)(
         count => onGpu.fly(Teams(count, teams)).values(0),

@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.gpu.CudaGpu
+import skein.lanes.gpu.GpuAccelerator
 import skein.optimise.{CmaEs, SearchState}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
@@ -82,12 +83,14 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       cluster <- options.cluster.checked
       _       <- Expect.that(!options.gpu.value || cluster.isEmpty):
         "--gpu: expected without --workers and --cluster, whose processes fly on processors"
-      gpu   <- if options.gpu.value then CudaGpu.find().map(Some(_)).left.map("--gpu: " + _) else Right(None)
+      gpu <- if options.gpu.value then
+        CudaGpu.find().map(gpu => Some(GpuAccelerator(gpu))).left.map("--gpu: " + _)
+      else Right(None)
       begun <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       ready <- question match
-        case duel: SearchQuestion => duel.setup.map(_.copy(gpu = gpu))
-        case team: TeamQuestion   => team.setup.map(_.copy(gpu = gpu))
+        case duel: SearchQuestion => duel.setup.map(_.copy(accelerator = gpu))
+        case team: TeamQuestion   => team.setup.map(_.copy(accelerator = gpu))
       _ <- Expect.that(gpu.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):

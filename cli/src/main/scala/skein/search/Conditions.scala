@@ -2,8 +2,7 @@ package skein.search
 
 import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
-import skein.gpu.Gpu
-import skein.lanes.DuelBatch
+import skein.lanes.{Accelerator, DuelBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
@@ -51,8 +50,8 @@ final case class Conditions(
 object Conditions:
 
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
-    def batch(threads: Int, gpu: Option[Gpu] = None): DuelBatch =
-      DuelBatch(duel, timing, vehicle.response, threads, gpu)
+    def batch(threads: Int, accelerator: Option[Accelerator] = None): DuelBatch =
+      DuelBatch(duel, timing, vehicle.response, threads, accelerator)
 
     /** Whether the pursuer knows of the evader by a sensor alone. */
     def sees: Boolean = duel.pursuer.eye.isDefined

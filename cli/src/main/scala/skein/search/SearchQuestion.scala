@@ -1,8 +1,7 @@
 package skein.search
 
 import skein.forward.Delays
-import skein.gpu.Gpu
-import skein.lanes.DuelBatch
+import skein.lanes.{Accelerator, DuelBatch}
 import skein.optimise.{
   DuelEvaluator,
   Evaluator,
@@ -105,7 +104,7 @@ object SearchQuestion:
 
 /** A search for a duel's policy, ready to run.
   *
-  * @param gpu on which candidates fly, if that is asked for
+  * @param accelerator on which candidates fly, if that is asked for
   */
 final case class SearchSetup(
     question: SearchQuestion,
@@ -116,7 +115,7 @@ final case class SearchSetup(
     delays: Delays,
     opponent: PolicyFile,
     by: SearchMethod,
-    gpu: Option[Gpu] = None
+    accelerator: Option[Accelerator] = None
 ) extends ReadySearch:
   def space: SearchSpace                       = family.space
   def name: String                             = family.name
@@ -143,7 +142,7 @@ final case class SearchSetup(
 
   private def policy(candidate: Vector[Double]) = PolicyFile(role, family, candidate)
 
-  def batch(threads: Int): DuelBatch = conditions.batch(threads, gpu)
+  def batch(threads: Int): DuelBatch = conditions.batch(threads, accelerator)
 
   /** @param many whether many candidates will meet the same episodes
     */

@@ -1,8 +1,7 @@
 package skein.search
 
 import skein.forward.{Delays, Engagement}
-import skein.gpu.Gpu
-import skein.lanes.{TeamBatch, TeamCandidate}
+import skein.lanes.{Accelerator, TeamBatch, TeamCandidate}
 import skein.optimise.{
   Evaluator,
   RunningStats,
@@ -173,7 +172,7 @@ enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String)
 /** A search over a scenario's settings, ready to run.
   *
   * @param objective of the scenario as it is unless told otherwise
-  * @param gpu on which candidates fly, if that is asked for
+  * @param accelerator on which candidates fly, if that is asked for
   */
 final case class TeamSetup(
     question: TeamQuestion,
@@ -182,7 +181,7 @@ final case class TeamSetup(
     objective: TeamObjective,
     flownBy: TeamEngine,
     by: SearchMethod,
-    gpu: Option[Gpu] = None
+    accelerator: Option[Accelerator] = None
 ) extends ReadySearch:
   export flownBy.{isVirtual, model, vehicles}
 
@@ -214,7 +213,7 @@ final case class TeamSetup(
     space.axes.zip(candidate).map((axis, value) => axis.name + between + number(value)).mkString(", ")
 
   private def batch(of: Conditions.Resolved, threads: Int) =
-    TeamBatch(of.timing, of.vehicle.response, threads, gpu)
+    TeamBatch(of.timing, of.vehicle.response, threads, accelerator)
 
   def judges(threads: Int): Judge => ValueEvaluator = flownBy match
     case TeamEngine.Reduced(conditions, delays) =>

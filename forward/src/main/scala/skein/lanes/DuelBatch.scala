@@ -8,7 +8,6 @@ import skein.forward.{
   QuadrotorResponse,
   VelocityResponse
 }
-import skein.gpu.Gpu
 import skein.policy.Policy
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -19,19 +18,19 @@ import skein.units.Expect
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
   * [[TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar
   * loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the
-  * table. But for a GPU, which engine flies a world depends on the world and on `shareEpisodes` alone, so
-  * results do not depend on threads, on a call's other worlds or on their order. One call at a time.
+  * table. Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do not
+  * depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param duel start, speeds and duration; the policies come from the worlds
-  * @param gpu on which the candidates of [[Worlds.episodesOfEach]] fly, where it knows the loop and all
-  *   policies of a call are formulas; outcomes are the same, to the bit
+  * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] whose policies are formulas, where it
+  *   knows the loop and the vehicles
   */
 final class DuelBatch(
     duel: Duel,
     timing: LoopTiming,
     model: VelocityResponse,
     threads: Int = Runtime.getRuntime.availableProcessors,
-    gpu: Option[Gpu] = None
+    accelerator: Option[Accelerator] = None
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
@@ -80,14 +79,8 @@ final class DuelBatch(
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
 
-  /** The GPU, if there is one, and if it knows the loop. */
-  private val onGpu: Option[Either[String, GpuDuels]] = gpu.map: gpu =>
-    for
-      episodes   <- lanes
-      _          <- Expect.that(!sees)("the GPU flies nobody who sees by a sensor")
-      prediction <- GpuPrediction.of(timing)
-      vehicle    <- GpuVehicle.of(model)
-    yield GpuDuels(gpu, episodes, vehicle, prediction, threads)
+  private val accelerated: Option[Either[String, AcceleratedDuels]] =
+    accelerator.map(each => lanes.flatMap(each.duels(_, model, threads)))
 
   /** What is told where vehicles are flown side by side. */
   private val stepped: Option[String] = SteppedRollouts.told(model, vehicles).filterNot(_ => sees)
@@ -103,18 +96,19 @@ final class DuelBatch(
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
-      case Left(reason)                                    => stepped.getOrElse(s"scalar: $reason")
-      case Right(_) if shares(shareEpisodes) && fliesOnGpu => GpuParts.told(gpu.get)
-      case Right(lanes)                                    =>
-        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) + GpuParts.instead(onGpu)
+      case Left(reason)                                       => stepped.getOrElse(s"scalar: $reason")
+      case Right(_) if shares(shareEpisodes) && isAccelerated => accelerator.get.engine
+      case Right(lanes)                                       =>
+        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) +
+          Accelerator.instead(accelerated)
 
   /** How many candidates that share episodes take no longer than one. */
   def sideBySide(pursuer: Policy, evader: Policy, link: Delays): Int =
     if !fliesByLanes(pursuer, evader, shareEpisodes = true, Seq(link)) then 1
-    else if fliesOnGpu then GpuParts.SideBySide
+    else if isAccelerated then accelerator.get.sideBySide
     else LaneMath.LANES
 
-  private def fliesOnGpu = onGpu.exists(_.isRight)
+  private def isAccelerated = accelerated.exists(_.isRight)
 
   /** Whether all worlds of these policies fly by lanes, or AirSim's quadrotors do at least, over any of the
     * links.
@@ -159,32 +153,30 @@ final class DuelBatch(
   ): DuelOutcomes =
     val outcomes = DuelOutcomes(worlds.size, worlds.asked)
     val together = shares(worlds.shareEpisodes)
-    val flown    = onGpu
+    val came     = accelerated
       .flatMap(_.toOption)
       .filter(_ => together && worlds.episodesOfEach > 0)
-      .flatMap(_.fly(worlds, captureRadiusM.toFloat, outcomes, onProgress, isCancelled))
-    outcomes.flown = flown.getOrElse(fly(worlds, together, captureRadiusM, onProgress, isCancelled, outcomes))
+      .fold(Accelerated.nothing(worlds)):
+        _.fly(worlds, captureRadiusM.toFloat, outcomes, onProgress, isCancelled)
+    outcomes.flown = came.flown +
+      fly(worlds, came.left, captureRadiusM, done => onProgress(came.flown + done), isCancelled, outcomes)
     outcomes
 
   private def fly(
       worlds: DuelWorlds,
-      together: Boolean,
+      numbers: Array[Int],
       captureRadiusM: Double,
       onProgress: Int => Unit,
       isCancelled: () => Boolean,
       outcomes: DuelOutcomes
   ): Int =
-    val batches =
-      if worlds.shareEpisodes then
-        WorldBatches.byEpisode(worlds, workers.head.together.batch)
-      else
-        WorldBatches.inOrder(
-          worlds.size,
-          (if together then workers.head.together else workers.head.alone).batch
-        )
-    LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
-      val flyer = if together then worker.together else worker.alone
-      flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
+    def flyer(of: Worker) = if shares(worlds.shareEpisodes) then of.together else of.alone
+    val most              = flyer(workers.head).batch
+    val batches           =
+      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, numbers, most)
+      else WorldBatches.inOrder(numbers, most)
+    LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, some) =>
+      flyer(worker).fly(worlds, some, captureRadiusM.toFloat, outcomes)
 
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostBytes = 64L << 20

@@ -91,20 +91,23 @@ private[lanes] final class WorldBatches(order: Array[Int], starts: Array[Int]):
     )
 
 private[lanes] object WorldBatches:
-  def inOrder(worlds: Int, most: Int): WorldBatches =
-    WorldBatches(Array.range(0, worlds), Array.range(0, worlds, most))
+  def inOrder(numbers: Array[Int], most: Int): WorldBatches =
+    WorldBatches(numbers, Array.range(0, numbers.length, most))
 
-  /** A batch has worlds of one key and one link. */
-  def byEpisode(worlds: Worlds, most: Int): WorldBatches =
+  /** A batch has worlds of one key and one link.
+    *
+    * @param numbers of those worlds that are flown
+    */
+  def byEpisode(worlds: Worlds, numbers: Array[Int], most: Int): WorldBatches =
     val groups  = java.util.HashMap[(AnyRef, Int), Integer]()
-    val groupOf = Array.tabulate(worlds.size): world =>
+    val groupOf = numbers.map: world =>
       groups.computeIfAbsent((worlds.link(world), worlds.key(world)), _ => groups.size).intValue
     val sizes = Array.ofDim[Int](groups.size)
     for group <- groupOf do sizes(group) += 1
     val ends  = sizes.scanLeft(0)(_ + _)
     val fill  = ends.clone
-    val order = Array.ofDim[Int](worlds.size)
-    for world <- groupOf.indices do
-      order(fill(groupOf(world))) = world
-      fill(groupOf(world)) += 1
+    val order = Array.ofDim[Int](numbers.length)
+    for i <- numbers.indices do
+      order(fill(groupOf(i))) = numbers(i)
+      fill(groupOf(i)) += 1
     WorldBatches(order, sizes.indices.flatMap(group => ends(group) until ends(group + 1) by most).toArray)

@@ -3,7 +3,6 @@ package skein.lanes
 import java.util.IdentityHashMap
 import scala.collection.mutable
 import skein.forward.{Delays, LoopTiming, TabledDelays, VelocityResponse}
-import skein.gpu.Gpu
 import skein.policy.TeamPolicy
 import skein.simd.{LaneFunction, LaneMath}
 import skein.units.Expect
@@ -12,30 +11,27 @@ import skein.units.Expect
   * quantities are formulas fly by lanes: worlds that share episodes by [[TimetableKernel]], all of an episode
   * by one [[Timetable]], which is made once; others by [[LoopKernel]]. Other teams' quadrotors and bodies of
   * MuJoCo are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar
-  * reference ([[skein.forward.Rollout]]), which is told. But for a GPU, which engine flies a world depends on
-  * its candidate, its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other
-  * worlds or on their order. One call at a time.
+  * reference ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate,
+  * its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on
+  * their order. One call at a time.
   *
-  * @param gpu on which the candidates of [[Worlds.episodesOfEach]] fly, where it knows the loop and all
-  *   policies and quantities of a call are formulas; outcomes are the same, to the bit
+  * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] that are formulas, where it knows the
+  *   loop and the vehicles
   */
 final class TeamBatch(
     timing: LoopTiming,
     model: VelocityResponse,
     threads: Int = Runtime.getRuntime.availableProcessors,
-    gpu: Option[Gpu] = None
+    accelerator: Option[Accelerator] = None
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
 
-  /** The GPU, if there is one, and if it knows the loop. */
-  private val onGpu: Option[Either[String, GpuTeams]] = gpu.map: gpu =>
-    for
-      prediction <- GpuPrediction.of(timing)
-      vehicle    <- GpuVehicle.of(model)
-    yield GpuTeams(gpu, vehicle, prediction, threads, timing.periodS, timetable)
+  private val accelerated: Option[Either[String, AcceleratedTeams]] =
+    accelerator.map(_.teams(timing, model, threads, timetable))
+  private val isAccelerated = accelerated.exists(_.isRight)
 
   private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles)
@@ -48,19 +44,19 @@ final class TeamBatch(
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(candidate) match
       case Left(reason) => steppedOf(candidate).getOrElse(s"scalar: $reason")
-      case Right(_) if shares(shareEpisodes) && onGpu.exists(_.isRight) => GpuParts.told(gpu.get)
-      case Right(form)                                                  =>
+      case Right(_) if shares(shareEpisodes) && isAccelerated => accelerator.get.engine
+      case Right(form)                                        =>
         val worlds = if shares(shareEpisodes) then "candidates of an episode" else "worlds"
         LaneSupport.told(
           s"${LaneMath.LANES} $worlds at a time",
           links.map(refusal(form, shares(shareEpisodes), _)),
           steppedOf(candidate)
-        ) + GpuParts.instead(onGpu)
+        ) + Accelerator.instead(accelerated)
 
   /** How many such candidates that share episodes take no longer than one. */
   def sideBySide(candidate: TeamCandidate, link: Delays): Int =
-    if onGpu.exists(_.isRight) && fliesByLanes(candidate, shareEpisodes = true, Seq(link)) then
-      GpuParts.SideBySide
+    if isAccelerated && fliesByLanes(candidate, shareEpisodes = true, Seq(link)) then
+      accelerator.get.sideBySide
     else LaneFunction.COUNT
 
   private def steppedOf(candidate: TeamCandidate) = SteppedRollouts.told(model, candidate.engagement.agents)
@@ -116,25 +112,19 @@ final class TeamBatch(
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
     val together = shares(worlds.shareEpisodes)
-    outcomes.flown = onGpu.flatMap(_.toOption).filter(_ => together && worlds.episodesOfEach > 0) match
-      case Some(gpu) if (0 until worlds.size by worlds.episodesOfEach).forall(prepare(_).form.isDefined) =>
-        gpu.fly(worlds, prepare, outcomes, onProgress, isCancelled)
-      case _ => fly(worlds, Array.tabulate(worlds.size)(prepare), outcomes, onProgress, isCancelled)
-    outcomes
-
-  private def fly(
-      worlds: TeamWorlds,
-      prepared: Array[PreparedTeam],
-      outcomes: TeamOutcomes,
-      onProgress: Int => Unit,
-      isCancelled: () => Boolean
-  ): Int =
+    val came     = accelerated
+      .flatMap(_.toOption)
+      .filter(_ => together && worlds.episodesOfEach > 0)
+      .fold(Accelerated.nothing(worlds))(_.fly(worlds, prepare, outcomes, onProgress, isCancelled))
+    val prepared = Array.ofDim[PreparedTeam](worlds.size)
+    for world <- came.left do prepared(world) = prepare(world)
     val batches =
-      if shares(worlds.shareEpisodes) then
-        WorldBatches.byEpisode(worlds, TimetableKernel.WORLDS)
-      else WorldBatches.inOrder(worlds.size, LoopKernel.WORLDS)
-    LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
-      worker.fly(worlds, prepared, numbers, outcomes)
+      if together then WorldBatches.byEpisode(worlds, came.left, TimetableKernel.WORLDS)
+      else WorldBatches.inOrder(came.left, LoopKernel.WORLDS)
+    outcomes.flown = came.flown +
+      LaneThreads.run(workers, batches, isCancelled, done => onProgress(came.flown + done)): (worker, some) =>
+        worker.fly(worlds, prepared, some, together, outcomes)
+    outcomes
 
   /** One per thread. Mutable. */
   private final class Worker:
@@ -146,11 +136,11 @@ final class TeamBatch(
         worlds: TeamWorlds,
         prepared: Array[PreparedTeam],
         numbers: Array[Int],
+        share: Boolean,
         into: TeamOutcomes
     ): Unit =
       val filled   = mutable.LinkedHashSet.empty[Flight]
       val unfilled = Array.newBuilder[Int]
-      val share    = shares(worlds.shareEpisodes)
       for world <- numbers do
         prepared(world).form match
           case Some(form) if refusal(form, share, worlds.link(world)).isEmpty =>

@@ -46,6 +46,9 @@ private[skein] final class Timetable private[lanes] (
 private[skein] object Timetable:
   val Fields: Int = 6
 
+  /** Numbers of a reading: position and velocity, north and east. */
+  private[lanes] val Read: Int = LaneObservation.READ
+
   /** Of an operation, at least: some clocks tell more. */
   private[lanes] val LeastNumbers: Int = 4
 

@@ -35,7 +35,7 @@ object LaneCompiler:
   ): LaneFunction =
     val passes  = Passes.of(outputs, ofRows = places.distinctBy(_._1).size < places.size)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
-    val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.getOrElse(0)
+    val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.fold(0)(_ + FirstScratch)
     val bytes   = ClassFile
       .of(ClassFile.DebugElementsOption.DROP_DEBUG)
       .build(
@@ -87,6 +87,11 @@ object LaneCompiler:
     val lookup = MethodHandles.lookup().defineHiddenClass(bytes, true)
     lookup.lookupClass.getDeclaredConstructor().newInstance().asInstanceOf[LaneFunction]
 
+  /** Row 0 is unused: an index that is the loop's own counter, with nothing added, the JVM's compiler may
+    * take for the loop's end. Then it peels the loop, for 14 s with some expressions.
+    */
+  private[simd] val FirstScratch = 1
+
 private object Names:
   def vector(name: String): ClassDesc = ClassDesc.of(s"jdk.incubator.vector.$name")
   val float: ClassDesc                = vector("FloatVector")
@@ -120,6 +125,7 @@ private final class PassCompiler(
     places: Vector[(Int, Int)]
 ) extends ExpressionCompiler:
   import Names.*
+  import LaneCompiler.FirstScratch
   private val count          = LaneFunction.COUNT
   private val floatConstants = mutable.HashMap.empty[Int, Int]
   private val bitConstants   = mutable.HashMap.empty[Int, Int]
@@ -176,9 +182,9 @@ private final class PassCompiler(
     code.goto_(head).labelBinding(over).return_(): Unit
 
   private def body(): Unit =
-    for (node, place) <- pass.loads do slots(node) = loaded(3, place * count)
+    for (node, place) <- pass.loads do slots(node) = loaded(3, (FirstScratch + place) * count)
     for node <- pass.computes if !isLeaf(node) do computed(node): Unit
-    for (node, place) <- pass.stores do store(of(node), 3, place * count)
+    for (node, place) <- pass.stores do store(of(node), 3, (FirstScratch + place) * count)
     for (node, output) <- pass.outputs do storeTo(of(node), inputs + output)
 
   private def isLeaf(node: Node) = node.op match

@@ -1,4 +1,4 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.formula.{Node, Trace}
 

@@ -1,7 +1,6 @@
-package skein.lanes
+package skein.gpu
 
 import skein.formula.{Node, Op, Trace}
-import skein.gpu.{Gpu, Ptx, PtxExpressions}
 import skein.signal.SplitMix64
 import skein.simd.{LaneCompiler, LaneFunction}
 

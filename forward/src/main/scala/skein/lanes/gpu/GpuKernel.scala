@@ -1,10 +1,11 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuBuffer, GpuKernel as Compiled, Ptx, PtxExpressions, Variables}
+import skein.lanes.{ScoreLanes, Timetable}
 
-/** [[TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and the threads of a block
-  * fly candidates of the same. So no two threads of a block part ways. What is computed are the same
-  * expressions by the same single operations as on the CPU, and so the outcomes, to the bit.
+/** [[skein.lanes.TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and the
+  * threads of a block fly candidates of the same. So no two threads of a block part ways. What is computed
+  * are the same expressions by the same single operations as on the CPU, and so the outcomes, to the bit.
   *
   * @param sides how many numbers tell who flies, of each side
   * @param scores what the flights are judged by
@@ -205,7 +206,7 @@ private[lanes] abstract class GpuKernel(
     private def predict(self: Int, prediction: GpuPrediction, now: GpuRecord, targets: Vector[String]): Unit =
       part(targets(labels.predict(self))):
         val at = now.place(1)
-        prediction.begin(now, Vector.tabulate(LaneObservation.READ)(code.loadOwn(at, _)))
+        prediction.begin(now, Vector.tabulate(Timetable.Read)(code.loadOwn(at, _)))
       part(targets(labels.carry(self))):
         val command         = now.field(1)
         val (atRest, knows) = (code.label(), code.label())

@@ -1,7 +1,8 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.Duelist
 import skein.gpu.{Gpu, Ptx, PtxExpressions}
+import skein.lanes.{BoundFunction, OfMoment, ScoreLanes, TeamLanes}
 
 /** Teams on a GPU. One side: of each vehicle where it starts and the direction in which it heads, and what
   * its policy flies by; then of each quantity what it differs by.

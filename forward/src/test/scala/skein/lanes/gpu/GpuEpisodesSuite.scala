@@ -1,7 +1,8 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
 import skein.gpu.InterpretedGpu
+import skein.lanes.*
 import skein.simd.WorldRandom
 
 class GpuEpisodesSuite extends munit.FunSuite:

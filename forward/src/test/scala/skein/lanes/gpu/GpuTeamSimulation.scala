@@ -1,7 +1,9 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.*
-import skein.gpu.Gpu
+import skein.gpu.{Gpu, TestGpus}
+import skein.lanes.*
+import skein.policy.TeamPolicy
 import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -31,17 +33,26 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
     def link(world: Int): Delays             = link
     def candidate(world: Int): TeamCandidate = candidates(world / episodes)
 
-  private def check(gpu: Gpu, of: Int => Scenario, model: VelocityResponse, timing: LoopTiming): Unit =
+  private def check(
+      gpu: Gpu,
+      of: Int => Scenario,
+      model: VelocityResponse,
+      timing: LoopTiming,
+      own: Int => Option[TeamPolicy] = _ => None
+  ): Unit =
     val durationS  = 3.0
     val candidates = Vector.tabulate(3): i =>
       val scenario = of(i)
       val judged   =
         for reduction <- reductions
         yield Judged(OffRing(4 + i), reduction, fromS = if reduction == Reduction.Mean then 2 else 0)
-      TeamCandidate(Engagement.of(scenario.fleet, durationS), judged)
+      val plain = Engagement.of(scenario.fleet, durationS)
+      val team  =
+        plain.copy(agents = plain.agents.map(each => each.copy(policy = own(i).getOrElse(each.policy))))
+      TeamCandidate(team, judged)
     val worlds = Worlds(candidates, episodes = 2, DelayTable.vpn)
     val onCpu  = TeamBatch(timing, model, threads = 1)
-    val onGpu  = TeamBatch(timing, model, threads = 1, Some(gpu))
+    val onGpu  = TeamBatch(timing, model, threads = 1, Some(GpuAccelerator(gpu)))
     assertEquals(
       onGpu.engine(candidates(0), shareEpisodes = true, Seq(DelayTable.vpn)),
       s"GPU, ${gpu.name}: a thread a candidate"
@@ -62,3 +73,7 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
         check(gpu(), of, lag, timing)
     test(s"$name, $scenario with drag: the CPU's outcomes, to the bit"):
       check(gpu(), of, drag, LoopTiming.Stream())
+
+  for (name, gpu) <- gpus do
+    test(s"$name: candidates that are no formulas fly beside it"):
+      check(gpu(), scenarios(0)._2, lag, LoopTiming.Stream(), i => Option.when(i == 1)(Zigzag))

@@ -1,4 +1,4 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.{
   Duelist,
@@ -9,6 +9,7 @@ import skein.forward.{
   VelocityResponse
 }
 import skein.gpu.{Ptx, PtxExpressions, Variables}
+import skein.lanes.{BoundFunction, PlantLanes, QuadrotorLanes, TimetableQuadrotors}
 
 /** One vehicle of a team in the world of each thread. Its state stands in variables. */
 private[lanes] trait GpuVehicle:

@@ -1,10 +1,11 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuKernel, Ptx, Variables}
+import skein.lanes.QuadrotorLanes
 import skein.units.Vector3
 import skein.vehicle.Quadrotor
 
-/** [[LaneQuadrotors]] on a GPU: each thread flies one quadrotor with its flight controller under
+/** [[skein.lanes.LaneQuadrotors]] on a GPU: each thread flies one quadrotor with its flight controller under
   * `moveByVelocityZ`, and ends with the same bits.
   */
 private[skein] final class GpuQuadrotors private (gpu: Gpu, lanes: QuadrotorLanes):

@@ -1,10 +1,11 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.{Duelist, LoopTiming}
 import skein.gpu.{Ptx, Variables}
+import skein.lanes.{CoastPredictor, DragPredictor, LagPredictor, PlantLanes, Propagation, TimetablePredictor}
 
 /** Carries readings of one vehicle forward in the world of each thread, command by command; see
-  * [[PredictedVehicles]]. Position and velocity stand in variables meanwhile.
+  * [[skein.lanes.PredictedVehicles]]. Position and velocity stand in variables meanwhile.
   */
 private[lanes] trait GpuPrediction:
   /** From a reading.
@@ -63,7 +64,7 @@ private[lanes] object GpuPrediction:
     val numbers = of.parts(part).numbers
     for i <- 1 until numbers.length do tell(from + i - 1, numbers(i))
 
-/** By [[PredictedLagVehicles]]. */
+/** By [[skein.lanes.PredictedLagVehicles]]. */
 private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) extends GpuPrediction:
   private val predicted = Variables(code, Seq.fill(4)(0f))
   private val speed     = code.constant((duelist.speed * gain).toFloat)
@@ -85,7 +86,7 @@ private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) 
 
   def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
 
-/** By [[PredictedPlants]]. */
+/** By [[skein.lanes.PredictedPlants]]. */
 private final class GpuPlantPrediction(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuPrediction:
   private val zero    = code.constant(0f)
   private val flight  = GpuStages(code, lanes, duelist.speed, zero, zero)

@@ -1,4 +1,6 @@
-package skein.lanes
+package skein.lanes.gpu
+
+import skein.lanes.{OperationKind, Propagation, Timetable}
 
 /** Where a thread of a GPU keeps what its vehicles' readings and commands are: bytes of its own memory.
   *
@@ -12,14 +14,14 @@ private[lanes] final case class GpuLayout(
     readings: Int = 4,
     headings: Int = 4
 ):
-  import LaneObservation.READ
-  private val firstHeading = 4 * READ * vehicles * readings
+  import Timetable.Read
+  private val firstHeading = 4 * Read * vehicles * readings
 
   /** Behind it is room for whatever a kernel keeps besides. */
   val bytes: Int = firstHeading + 8 * vehicles * headings
 
   /** Where a reading begins. */
-  def reading(vehicle: Int, place: Int): Int = 4 * READ * (vehicle * readings + place)
+  def reading(vehicle: Int, place: Int): Int = 4 * Read * (vehicle * readings + place)
 
   /** Where a heading's cosine and sine are, or a commanded velocity. */
   def heading(vehicle: Int, place: Int): Int = firstHeading + 8 * (vehicle * headings + place)
@@ -57,11 +59,11 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
       val kind = timetable.operations(i * Fields)
       val view = timetable.operations(i * Fields + 2)
       // What several vehicles compute of a view is computed once.
-      if layout.shows && kind == TimetableKernel.DECIDE && view != shown then
+      if layout.shows && kind == OperationKind.Decide && view != shown then
         shown = view
         record(labels.show)
         field(1, count * view)
-      if kind == TimetableKernel.PREDICT then predict(i) else operation(kind, i)
+      if kind == OperationKind.Predict then predict(i) else operation(kind, i)
       i += 1
 
   def size: Int = records
@@ -76,7 +78,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
   val scoredAtS: Array[Float] =
     Array
       .range(0, timetable.size)
-      .filter(i => timetable.operations(i * Fields) == TimetableKernel.SCORE)
+      .filter(i => timetable.operations(i * Fields) == OperationKind.Score)
       .map(i => timetable.times(i * timetable.numbers))
 
   private def record(label: Int): Unit =
@@ -94,19 +96,19 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     val agent             = timetable.operations(i * Fields + 1)
     def place(field: Int) = timetable.operations(i * Fields + 1 + field)
     kind match
-      case TimetableKernel.LOOK =>
+      case OperationKind.Look =>
         record(labels.look(agent, withVelocity = place(2) != 0))
         field(1, layout.reading(agent, place(1)))
-      case TimetableKernel.ACT =>
+      case OperationKind.Act =>
         record(labels.act(agent))
         field(1, layout.heading(agent, place(1)))
-      case TimetableKernel.DECIDE =>
+      case OperationKind.Decide =>
         record(labels.decide(agent))
         field(1, count * place(1))
         if count == 2 then field(2, layout.heading(1 - agent, place(2)))
         field(3, layout.heading(agent, place(3)))
         field(4, layout.heading(agent, place(4)))
-      case TimetableKernel.SCORE =>
+      case OperationKind.Score =>
         record(labels.score)
         field(1, count * place(1))
       case other => throw IllegalArgumentException(s"no GPU knows operations of kind $other")

@@ -1,8 +1,17 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import java.util.IdentityHashMap
 import scala.collection.mutable
 import skein.gpu.Gpu
+import skein.lanes.{
+  Accelerated,
+  AcceleratedDuels,
+  DuelEpisodes,
+  DuelNumber,
+  DuelOutcomes,
+  DuelWorlds,
+  PolicyLanes
+}
 import skein.policy.Policy
 
 /** Flies duels' candidates on a GPU, each through the same episodes, by [[GpuDuelKernel]]. Mutable; one call
@@ -16,41 +25,38 @@ private[lanes] final class GpuDuels(
     vehicle: GpuVehicle.Kind,
     prediction: Option[GpuPrediction.Kind],
     threads: Int
-):
+) extends AcceleratedDuels:
   import GpuDuels.*
 
   private val onGpu   = GpuEpisodes(gpu, vehicles = 2, shows = false, threads, GpuParts.MostBytes)
   private val kernels =
     mutable.HashMap.empty[(Vector[PolicyLanes], Set[DuelNumber], GpuLayout), GpuDuelKernel]
 
-  /** Flies all worlds, unless it is cancelled.
-    *
-    * @param worlds with [[Worlds.episodesOfEach]]
-    * @return how many worlds were flown, if all policies are formulas
-    */
   def fly(
       worlds: DuelWorlds,
       captureRadiusM: Float,
       into: DuelOutcomes,
       onProgress: Int => Unit,
       isCancelled: () => Boolean
-  ): Option[Int] =
+  ): Accelerated =
     val each       = worlds.episodesOfEach
     val candidates = GpuEpisodes.candidatesOf(worlds)
     val sides      = Vector(
       Side(candidates, threads, candidate => worlds.evader(candidate * each)),
       Side(candidates, threads, candidate => worlds.pursuer(candidate * each))
     )
-    Option.when(sides.forall(_.areFormulas)):
-      GpuParts(candidates, each, onProgress, isCancelled)
-        .fly(
-          candidate => sides.map(_.formOf(candidate)),
-          _ => 2 * episodes.duel.durationS / episodes.timing.periodS
-        ): (forms, some, numbers) =>
-          val names   = numbers.toVector.map(i => episodes.of(worlds.link(i), worlds.key(i)))
-          val brought = onGpu.bring(names, isCancelled): i =>
-            episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)))
-          brought.map(fly(worlds, forms, some, numbers, sides, _, captureRadiusM, into)).isDefined
+    val (known, unknown) =
+      Array.range(0, candidates).partition(candidate => sides.forall(_.formOf(candidate) != null))
+    val flown = GpuParts(known, each, onProgress, isCancelled)
+      .fly(
+        candidate => sides.map(_.formOf(candidate)),
+        _ => 2 * episodes.duel.durationS / episodes.timing.periodS
+      ): (forms, some, numbers) =>
+        val names   = numbers.toVector.map(i => episodes.of(worlds.link(i), worlds.key(i)))
+        val brought = onGpu.bring(names, isCancelled): i =>
+          episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)))
+        brought.map(fly(worlds, forms, some, numbers, sides, _, captureRadiusM, into)).isDefined
+    Accelerated(flown, GpuEpisodes.worldsOf(unknown, each))
 
   private def fly(
       worlds: DuelWorlds,
@@ -100,7 +106,7 @@ private object GpuDuels:
         if i % Chunk > 0 && (policies(i) eq policies(i - 1)) then forms(i - 1)
         else PolicyLanes.of(policies(i)).getOrElse(null)
 
-    def areFormulas: Boolean                = !forms.contains(null)
+    /** Null where it is no formula. */
     def formOf(candidate: Int): PolicyLanes = forms(candidate)
 
     /** What these candidates fly by, each policy's numbers once, and which of them a candidate's are. */

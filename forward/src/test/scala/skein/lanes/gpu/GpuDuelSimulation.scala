@@ -1,7 +1,8 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.*
-import skein.gpu.Gpu
+import skein.gpu.{Gpu, TestGpus}
+import skein.lanes.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -33,6 +34,9 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
     "a network"                  -> (world => RectifiedNetwork(weights.map(_ * (0.5 + 0.2 * world)), 1.2)),
     "now the one, now the other" -> (world =>
       if world % 2 == 0 then PaperPursuer() else TrendPursuer(3, 0.5, 1)
+    ),
+    "now and then one that is no formula" -> (world =>
+      if world == 1 then DuelBatchSimulation.Straight else PaperPursuer()
     )
   )
 
@@ -59,7 +63,7 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
     val duel   = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = durationS)
     val worlds = Worlds(size, episodes = 2, link, pursuer)
     val onCpu  = DuelBatch(duel, timing, model, threads = 1)
-    val onGpu  = DuelBatch(duel, timing, model, threads = 1, Some(gpu))
+    val onGpu  = DuelBatch(duel, timing, model, threads = 1, Some(GpuAccelerator(gpu)))
     assertEquals(
       onGpu.engine(pursuer(0), PaperEvader(), shareEpisodes = true, Seq(link)),
       s"GPU, ${gpu.name}: a thread a candidate"

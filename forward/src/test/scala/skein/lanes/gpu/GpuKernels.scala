@@ -1,8 +1,9 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import java.nio.file.{Files, Path}
 import skein.forward.{Duel, LoopTiming, Reduced, ReducedResponse, VelocityResponse, VelocityResponses}
 import skein.gpu.InterpretedGpu
+import skein.lanes.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.vehicle.{Quadrotor, ReducedModel}
 

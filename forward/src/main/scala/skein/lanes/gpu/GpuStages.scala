@@ -1,8 +1,10 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.gpu.{Ptx, PtxExpressions, Variables}
+import skein.lanes.{BoundFunction, PlantLanes, PlantStages}
 
-/** A flight by the [[PlantStages]] of one plant in the world of each thread; see [[StagedFlight]].
+/** A flight by the [[PlantStages]] of one plant in the world of each thread; see
+  * [[skein.lanes.StagedFlight]].
   *
   * @param speedMps of a command of length 1
   * @param startX the registers of where it begins, north and east, m

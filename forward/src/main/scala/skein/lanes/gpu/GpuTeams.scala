@@ -1,8 +1,17 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import scala.collection.mutable
 import skein.forward.Delays
 import skein.gpu.Gpu
+import skein.lanes.{
+  Accelerated,
+  AcceleratedTeams,
+  PreparedTeam,
+  TeamForm,
+  TeamOutcomes,
+  TeamWorlds,
+  Timetable
+}
 
 /** Flies teams' candidates on a GPU, each through the same episodes, by [[GpuTeamKernel]]. Mutable; one call
   * at a time.
@@ -16,26 +25,22 @@ private[lanes] final class GpuTeams(
     threads: Int,
     periodS: Double,
     timetable: (Delays, Int, TeamForm) => Timetable
-):
+) extends AcceleratedTeams:
   private val onGpu   = mutable.HashMap.empty[Int, GpuEpisodes]
   private val kernels = mutable.HashMap.empty[(TeamForm, GpuLayout), GpuTeamKernel]
 
-  /** Flies all worlds, unless it is cancelled.
-    *
-    * @param worlds with [[Worlds.episodesOfEach]]
-    * @param prepared a world's candidate, which is a formula
-    * @return how many worlds were flown
-    */
   def fly(
       worlds: TeamWorlds,
       prepared: Int => PreparedTeam,
       into: TeamOutcomes,
       onProgress: Int => Unit,
       isCancelled: () => Boolean
-  ): Int =
+  ): Accelerated =
     val each                   = worlds.episodesOfEach
     def candidate(number: Int) = prepared(number * each)
-    GpuParts(GpuEpisodes.candidatesOf(worlds), each, onProgress, isCancelled)
+    val (known, unknown)       =
+      Array.range(0, GpuEpisodes.candidatesOf(worlds)).partition(candidate(_).form.isDefined)
+    val flown = GpuParts(known, each, onProgress, isCancelled)
       .fly(candidate(_).form.get, form => form.team.count * form.durationS / periodS):
         (form, some, numbers) =>
           val episodes = onGpu.getOrElseUpdate(
@@ -56,6 +61,7 @@ private[lanes] final class GpuTeams(
                 val first   = (outcome.place * flown.size + at) * some.length
                 for i <- some.indices do told(some(i) * each + numbers(at)) = outcome(came(first + i))
             .isDefined
+    Accelerated(flown, GpuEpisodes.worldsOf(unknown, each))
 
   private def fly(
       form: TeamForm,

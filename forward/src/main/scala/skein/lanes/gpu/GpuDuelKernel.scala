@@ -1,7 +1,8 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.forward.Duel
 import skein.gpu.{Gpu, Ptx, PtxExpressions, Variables}
+import skein.lanes.{DuelKernel, DuelNumber, PolicyLanes, ScoreLanes, Timetable}
 import skein.policy.Policy
 
 /** Duels on a GPU: the evader is vehicle 0, and the first side.
@@ -72,7 +73,7 @@ private[lanes] final class GpuDuelKernel(
       val Vector(known, before, after) = Vector(2, 3, 4).map(now.place): @unchecked
       val decided                      = PtxExpressions.write(code, form.nodes(efforts(self)))(
         {
-          case read if read < LaneObservation.READ =>
+          case read if read < Timetable.Read =>
             code.two("sub.rn", code.loadOwn(opponent, read), code.loadOwn(own, read))
           case In.Elapsed     => now.time(0)
           case In.OwnCos      => code.loadOwn(before, 0)

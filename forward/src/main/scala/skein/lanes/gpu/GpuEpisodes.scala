@@ -1,6 +1,7 @@
-package skein.lanes
+package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuBuffer}
+import skein.lanes.{LaneThreads, Timetable, WorldBatches, Worlds}
 
 /** Episodes of so many vehicles, on a GPU. Mutable.
   *
@@ -85,11 +86,15 @@ private[lanes] object GpuEpisodes:
     val stride: Int             = timetable.stride
     val scoredAtS: Array[Float] = timetable.scoredAtS
 
-  /** How many candidates fly these worlds. */
+  /** How many candidates these worlds have. */
   def candidatesOf(worlds: Worlds): Int =
     val each = worlds.episodesOfEach
     require(worlds.size % each == 0, s"${worlds.size} worlds are not $each episodes of every candidate")
     worlds.size / each
+
+  /** All worlds of some candidates. */
+  def worldsOf(candidates: Array[Int], each: Int): Array[Int] =
+    candidates.flatMap(candidate => Array.range(candidate * each, (candidate + 1) * each))
 
   /** Does something with each number below a count.
     *
@@ -99,5 +104,9 @@ private[lanes] object GpuEpisodes:
   def inParallel(count: Int, chunk: Int, threads: Int, isCancelled: () => Boolean = () => false)(
       work: Int => Unit
   ): Int =
-    LaneThreads.run(Vector.fill(threads)(()), WorldBatches.inOrder(count, chunk), isCancelled): (_, some) =>
+    LaneThreads.run(
+      Vector.fill(threads)(()),
+      WorldBatches.inOrder(Array.range(0, count), chunk),
+      isCancelled
+    ): (_, some) =>
       some.foreach(work)

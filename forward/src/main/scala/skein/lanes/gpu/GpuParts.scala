@@ -1,14 +1,13 @@
-package skein.lanes
-
-import skein.gpu.Gpu
+package skein.lanes.gpu
 
 /** A call's candidates and episodes, in parts that a GPU flies at once, so that a call can be cancelled and
   * fits in memory.
   *
+  * @param candidates that fly
   * @param each episodes of a candidate
   */
 private[lanes] final class GpuParts(
-    candidates: Int,
+    candidates: Array[Int],
     each: Int,
     onProgress: Int => Unit,
     isCancelled: () => Boolean
@@ -25,7 +24,7 @@ private[lanes] final class GpuParts(
   def fly[F](formOf: Int => F, decisions: F => Double)(part: (F, Array[Int], Array[Int]) => Boolean): Int =
     var done = 0
     for
-      (form, alike) <- Array.range(0, candidates).groupBy(formOf)
+      (form, alike) <- candidates.groupBy(formOf)
       episodes = (MostBytes / 4 / (BytesOfDecision * decisions(form))).toInt.max(1).min(each)
       numbers <- Array.range(0, each).grouped(episodes)
       some    <- alike.grouped((MostDecisions / (numbers.length * decisions(form))).toInt.max(1))
@@ -44,13 +43,3 @@ private[lanes] object GpuParts:
 
   /** Of a batch's episodes on the GPU. */
   val MostBytes: Long = 1L << 30
-
-  /** Candidates of some episodes that keep a GPU busy. */
-  val SideBySide: Int = 1 << 14
-
-  /** What flies on it, in a line for the user. */
-  def told(gpu: Gpu): String = s"GPU, ${gpu.name}: a thread a candidate"
-
-  /** Behind the line of what flies instead of a GPU. */
-  def instead(onGpu: Option[Either[String, Any]]): String =
-    onGpu.fold("")(_.fold(why => s" ($why)", _ => " (the GPU flies candidates that share episodes)"))

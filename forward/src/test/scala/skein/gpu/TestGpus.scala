@@ -1,7 +1,6 @@
-package skein.lanes
+package skein.gpu
 
 import munit.FunSuite
-import skein.gpu.{CudaGpu, Gpu, InterpretedGpu}
 
 /** Tests on an interpreter of a GPU's instructions, and on this machine's GPU, where there is one. */
 trait TestGpus:

@@ -1,0 +1,83 @@
+package skein.lanes
+
+import skein.forward.{Delays, LoopTiming, VelocityResponse}
+
+/** Flies candidates through shared episodes in place of this machine's processors, as a GPU does. Outcomes
+  * are the same, to the bit.
+  */
+trait Accelerator:
+  /** What flies, in a line for the user. */
+  def engine: String
+
+  /** Candidates of some episodes that keep it busy. */
+  private[lanes] def sideBySide: Int
+
+  /** @param threads that prepare flights
+    * @return or why it flies no such duels
+    */
+  private[lanes] def duels(
+      episodes: DuelEpisodes,
+      response: VelocityResponse,
+      threads: Int
+  ): Either[String, AcceleratedDuels]
+
+  /** @param threads that prepare flights
+    * @param timetable of an episode of teams of a form
+    * @return or why it flies no such teams
+    */
+  private[lanes] def teams(
+      timing: LoopTiming,
+      response: VelocityResponse,
+      threads: Int,
+      timetable: (Delays, Int, TeamForm) => Timetable
+  ): Either[String, AcceleratedTeams]
+
+private[lanes] object Accelerator:
+  /** What is told behind the line of what flies instead.
+    *
+    * @param flights that it offers, or why none
+    */
+  def instead(flights: Option[Either[String, Any]]): String =
+    flights.fold("")(
+      _.fold(why => s" ($why)", _ => " (the GPU flies candidates that share episodes)")
+    )
+
+/** Of duels. One call at a time. */
+private[lanes] trait AcceleratedDuels:
+  /** Flies the candidates whose policies are formulas, unless it is cancelled.
+    *
+    * @param worlds with [[Worlds.episodesOfEach]]
+    */
+  def fly(
+      worlds: DuelWorlds,
+      captureRadiusM: Float,
+      into: DuelOutcomes,
+      onProgress: Int => Unit,
+      isCancelled: () => Boolean
+  ): Accelerated
+
+/** Of teams. One call at a time. */
+private[lanes] trait AcceleratedTeams:
+  /** Flies the candidates that are formulas, unless it is cancelled.
+    *
+    * @param worlds with [[Worlds.episodesOfEach]]
+    * @param prepared a world's candidate
+    */
+  def fly(
+      worlds: TeamWorlds,
+      prepared: Int => PreparedTeam,
+      into: TeamOutcomes,
+      onProgress: Int => Unit,
+      isCancelled: () => Boolean
+  ): Accelerated
+
+/** What came of a call.
+  *
+  * @param flown how many worlds were
+  * @param left the worlds of candidates that are no formulas
+  */
+private[lanes] final case class Accelerated(flown: Int, left: Array[Int])
+
+private[lanes] object Accelerated:
+  /** Everything is left. */
+  def nothing(worlds: Worlds): Accelerated = Accelerated(0, Array.range(0, worlds.size))
