@@ -30,8 +30,8 @@ object Effort:
     *
     * @param together whether candidates that share their episodes fly by lanes
     * @param alone whether worlds with delays of their own do
-    * @param sees whether somebody knows of the other by a sensor: images of a world's own cost several times
-    *   what all else does
+    * @param sees whether somebody knows of the other by a sensor: what follows from images costs several times
+    *   what all else does, and more with images of a world's own
     */
   def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice, sees: Boolean): Effort =
     def level(byLanes: Boolean, isDear: Boolean) = (byLanes, isDear) match
@@ -40,7 +40,12 @@ object Effort:
       case (false, _)    => if vehicle.fliesInSteps then Dearer else Dear
     val candidates = level(together, vehicle.fliesInSteps)
     val worlds     = level(alone, vehicle.fliesInSteps || sees)
-    Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
+    Effort(
+      worlds.freshEpisodes,
+      candidates.landscapeEpisodes / (if sees then 4 else 1),
+      candidates.onMap,
+      worlds.cellEpisodes
+    )
 
   /** Fresh episodes of a team: so few that the scalar engine, too, flies them in seconds. */
   val TeamsFresh = 256

@@ -52,19 +52,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
   private var packed  = Array.ofDim[Int](stride * timetable.size)
   private var records = 0
 
-  locally:
-    var shown = Nothing
-    var i     = 0
-    while i < timetable.size do
-      val kind = timetable.operations(i * Fields)
-      val view = timetable.operations(i * Fields + 2)
-      // What several vehicles compute of a view is computed once.
-      if layout.shows && kind == OperationKind.Decide && view != shown then
-        shown = view
-        record(labels.show)
-        field(1, count * view)
-      if kind == OperationKind.Predict then predict(i) else operation(kind, i)
-      i += 1
+  write()
 
   def size: Int = records
 
@@ -80,6 +68,20 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
       .range(0, timetable.size)
       .filter(i => timetable.operations(i * Fields) == OperationKind.Score)
       .map(i => timetable.times(i * timetable.numbers))
+
+  private def write(): Unit =
+    var shown = Nothing
+    var i     = 0
+    while i < timetable.size do
+      val kind = timetable.operations(i * Fields)
+      val view = timetable.operations(i * Fields + 2)
+      // What several vehicles compute of a view is computed once.
+      if layout.shows && kind == OperationKind.Decide && view != shown then
+        shown = view
+        record(labels.show)
+        field(1, count * view)
+      if kind == OperationKind.Predict then predict(i) else operation(kind, i)
+      i += 1
 
   private def record(label: Int): Unit =
     at = records * stride
