@@ -30,8 +30,8 @@ object Effort:
     *
     * @param together whether candidates that share their episodes fly by lanes
     * @param alone whether worlds with delays of their own do
-    * @param sees whether somebody knows of the other by a sensor: what follows from images costs several times
-    *   what all else does, and more with images of a world's own
+    * @param sees whether somebody knows of the other by a sensor: what follows from images costs several
+    *   times what all else does, and more with images of a world's own
     */
   def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice, sees: Boolean): Effort =
     def level(byLanes: Boolean, isDear: Boolean) = (byLanes, isDear) match
