@@ -11,6 +11,9 @@ public abstract class LaneFunction {
   /** How many numbers {@link #apply} needs to lay results by. */
   public abstract int scratch();
 
+  /** Whether it is one pass: then its outputs may lie where its inputs do. */
+  public abstract boolean isOnePass();
+
   /**
    * Where a world's parameter stands among all: those of worlds that are computed together are one
    * stretch, for a pass through many that are used once reads them as fast as memory comes.
@@ -24,8 +27,8 @@ public abstract class LaneFunction {
 
   /**
    * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An
-   *     output must not lie where an input does, unless nothing reads that input but the output
-   *     itself and what it is computed of.
+   *     output must not lie where an input does, unless the function {@link #isOnePass is one pass},
+   *     or nothing reads that input but the output itself and what it is computed of.
    * @param offsets where in its array each begins
    * @param parameters at their {@link #place places}; where all worlds have the same, one after the other
    * @param scratch of {@link #scratch()} numbers

@@ -1,5 +1,6 @@
 package skein.lanes
 
+import scala.collection.mutable
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace}
 import skein.vehicle.Plant
 
@@ -22,8 +23,30 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   private val firstOwn = 1 + stepOwn.derived.size
   private val readOwn  = angles(reading, firstOwn, stepped)
   private val seen     = reading.outputs.map((_, node) => readOwn.convert(node))
-  private val located  =
-    seen.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(StartX + i)) else node)
+
+  /** The state's numbers that are where the vehicle is, north and east, if nothing else comes of them. They
+    * begin where it starts, then; otherwise the start is added to what is seen.
+    */
+  private val places: Option[Vector[Int]] =
+    val found = Vector(0, 1).flatMap(placeOf)
+    Option.when(found.size == 2)(found)
+
+  private def placeOf(axis: Int): Option[Int] =
+    val order = Trace.needed(stepped ++ seen)
+    stepped.indices.find: number =>
+      val moved               = mutable.HashSet(trace.input(State + number))
+      def isAdded(node: Node) = node.args.count(moved) match
+        case 0 => true
+        case 1 =>
+          moved += node
+          node.op == Op.Add
+        case _ => false
+      def moves(outputs: Vector[Node]) = outputs.indices.filter(i => moved(outputs(i)))
+      order.forall(isAdded) && moves(stepped) == Seq(number) && moves(seen) == Seq(axis)
+
+  private val located =
+    if places.isDefined then seen
+    else seen.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(StartX + i)) else node)
   private val firstTime = firstOwn + readOwn.derived.size
 
   private def angles(formula: Formula, first: Int, leaf: Int => Node) =
@@ -58,8 +81,11 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   /** How many numbers tell a time. */
   val times: Int = ofTime.size
 
-  /** What is kept, of the state and the command. */
-  val begin: BoundFunction = keeping(keeps)
+  /** What is kept, of the state, the command and, if what is kept tells the position, the start. */
+  val begin: BoundFunction =
+    val states = places.toVector.flatten.map(number => trace.input(State + number))
+    keeping(Trace.replaced(keeps, trace): node =>
+      Option.when(states.contains(node))(trace.add(node, trace.input(StartX + states.indexOf(node)))))
 
   /** What is kept of the next step, of what is kept of this one, its time and a new command. */
   val act: BoundFunction = next(State)
@@ -75,9 +101,12 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
       else trace.input(Kept + ofState.size + node.index - North)
   ))
 
+  /** Whether what is kept of the next step may take the place of what is kept of this one. */
+  def isKeptInPlace: Boolean = act.function.isOnePass && goOn.function.isOnePass
+
   private def keeping(of: Vector[Node]) = BoundFunction.of(of, rowOf, areRows = true)
 
-  /** Position, of what is kept, the time and the start. */
+  /** Position, of what is kept, the time and, unless it is kept, the start. */
   val position: BoundFunction = BoundFunction.of(late.slice(count, count + 2), rowOf)
 
   /** Position and velocity, of the same. */

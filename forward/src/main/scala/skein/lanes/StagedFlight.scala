@@ -20,17 +20,20 @@ private[lanes] final class StagedFlight(
   /** That it [[begin]]s with, number by number. */
   val state: Array[Float] = Array.ofDim[Float](lanes.count * WORLDS)
 
-  private val still                   = Array.ofDim[Float](WORLDS)
-  private val begun, next, atRest     = Array.ofDim[Float](stages.kept * WORLDS)
+  private val still         = Array.ofDim[Float](WORLDS)
+  private val begun, atRest = Array.ofDim[Float](stages.kept * WORLDS)
+  private val next          =
+    if stages.isKeptInPlace then begun else Array.ofDim[Float](stages.kept * WORLDS)
   private val (north, east)           = (stages.act.place(North), stages.act.place(East))
   private val (firstNorth, firstEast) = (stages.begin.place(North), stages.begin.place(East))
   private val beginning               = bound(stages.begin, state, begun)
   private var moving                  = Moving(begun, next)
   private var other                   = Moving(next, begun)
+  private val resting                 = bound(stages.begin, state, atRest)
   lanes.rest(state, 0)
-  bound(stages.begin, state, atRest)()
 
-  /** By what is kept of a step in one place; what is kept of the next step goes to another. */
+  /** By what is kept of a step in one place; what is kept of the next step goes to another, or to the same.
+    */
   private final class Moving(val kept: Array[Float], to: Array[Float]):
     val position: LaneCall = bound(stages.position, kept)
     val look: LaneCall     = bound(stages.look, kept)
@@ -49,7 +52,9 @@ private[lanes] final class StagedFlight(
     call
 
   /** Puts one world's to its start, at rest; until its next command it is told to stand still. */
-  def rest(world: Int): Unit = for at <- world until atRest.length by WORLDS do moving.kept(at) = atRest(at)
+  def rest(world: Int): Unit =
+    resting()
+    for at <- world until atRest.length by WORLDS do moving.kept(at) = atRest(at)
 
   /** The first step begins, under a command.
     *

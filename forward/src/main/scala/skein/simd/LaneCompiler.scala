@@ -58,6 +58,12 @@ object LaneCompiler:
               code => code.loadConstant(scratch * LaneFunction.COUNT).ireturn(): Unit
             )
             .withMethodBody(
+              "isOnePass",
+              MethodTypeDesc.of(ConstantDescs.CD_boolean),
+              ClassFile.ACC_PUBLIC,
+              code => code.loadConstant(if passes.size == 1 then 1 else 0).ireturn(): Unit
+            )
+            .withMethodBody(
               "apply",
               Names.apply,
               ClassFile.ACC_PUBLIC,
@@ -185,7 +191,9 @@ private final class PassCompiler(
     for (node, place) <- pass.loads do slots(node) = loaded(3, (FirstScratch + place) * count)
     for node <- pass.computes if !isLeaf(node) do computed(node): Unit
     for (node, place) <- pass.stores do store(of(node), 3, (FirstScratch + place) * count)
-    for (node, output) <- pass.outputs do storeTo(of(node), inputs + output)
+    // All is read before anything is written: see LaneFunction.isOnePass.
+    val written = pass.outputs.map((node, output) => (of(node), inputs + output))
+    for (vector, number) <- written do storeTo(vector, number)
 
   private def isLeaf(node: Node) = node.op match
     case Op.Const | Op.Input | Op.Param | Op.Always => true

@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.testing.Unhurried
-import skein.vehicle.{DrivenCar, PlaneReading, Plant}
+import skein.vehicle.{DrivenCar, PlaneReading, Plant, ReducedModel}
 
 /** Vehicles of a user's own, as they are written. */
 class PlantSimulation extends munit.FunSuite, Unhurried:
@@ -79,6 +79,41 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         Rollout(short, timing, DelayTable.vpn, PlantResponse(GuideExample.Lagging(0.9, 0.8))).fly(key)
       val exact = Rollout(short, timing, DelayTable.vpn, lag).fly(key)
       assertEqualsDouble(plant.meanDistanceM, exact.meanDistanceM, 1e-9)
+
+  for (name, plant, addsStart) <- Seq(
+      ("with drag", ReducedModel.AirSim, false),
+      ("read away from where it is", Bicycle(1.2, 0.3, 4, 0.4), false),
+      ("that looks at where it is", Sheltered, true)
+    )
+  do
+    test(s"a plant $name flies from where it starts as its scalar does"):
+      val stages = PlantLanes.of(plant).fold(fail(_), _.stages)
+      assertEquals(stages.position.inputs.contains(PlantStages.StartX), addsStart)
+      val duel = short.copy(pursuer = short.pursuer.copy(startX = 7, startY = -3))
+      val all  = worlds(shared = true)
+      for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential()) do
+        val flown = DuelBatch(duel, timing, PlantResponse(plant), threads = 1).fly(all)
+        for world <- 0 until all.size by 5 do
+          val own = duel.copy(
+            duel.pursuer.copy(policy = all.pursuer(world)),
+            duel.evader.copy(policy = all.evader(world))
+          )
+          val scalar = Rollout(own, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
+          assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 1e-3)
+
+  /** Faster the farther north of its start. */
+  private object Sheltered extends Plant[PlaneReading]:
+    def initial: PlaneReading     = PlaneReading(0, 0, 0, 0)
+    def stepS: Double             = 0.1
+    def read(state: PlaneReading) = state
+    def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+      val share = 0.8 + 0.01 * state.northM
+      PlaneReading(
+        state.northM + share * northMps * dtS,
+        state.eastM + share * eastMps * dtS,
+        share * northMps,
+        share * eastMps
+      )
 
   test("what does not fly by lanes is told"):
     def engine(plant: Plant[?], shared: Boolean, timing: LoopTiming = LoopTiming.Stream()) =
