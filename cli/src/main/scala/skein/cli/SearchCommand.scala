@@ -83,15 +83,15 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       cluster <- options.cluster.checked
       _       <- Expect.that(!options.gpu.value || cluster.isEmpty):
         "--gpu: expected without --workers and --cluster, whose processes fly on processors"
-      gpu <- if options.gpu.value then
+      accelerator <- if options.gpu.value then
         CudaGpu.find().map(gpu => Some(GpuAccelerator(gpu))).left.map("--gpu: " + _)
       else Right(None)
       begun <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       ready <- question match
-        case duel: SearchQuestion => duel.setup.map(_.copy(accelerator = gpu))
-        case team: TeamQuestion   => team.setup.map(_.copy(accelerator = gpu))
-      _ <- Expect.that(gpu.isEmpty || ready.fliesForward):
+        case duel: SearchQuestion => duel.setup.map(_.copy(accelerator = accelerator))
+        case team: TeamQuestion   => team.setup.map(_.copy(accelerator = accelerator))
+      _ <- Expect.that(accelerator.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
         options.view.serving("search"): task =>

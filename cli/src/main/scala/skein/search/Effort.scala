@@ -23,6 +23,7 @@ object Effort:
       case (false, true)  => 16
 
   private val Cheap  = Effort(4096, 256, Landscape.OnMap, 1000)
+  private val Seeing = Cheap.copy(landscapeEpisodes = 64)
   private val Dear   = Effort(512, 16, 21, 30)
   private val Dearer = Effort(64, 4, 13, 4)
 
@@ -38,14 +39,11 @@ object Effort:
       case (true, false) => Cheap
       case (true, true)  => Dear
       case (false, _)    => if vehicle.fliesInSteps then Dearer else Dear
-    val candidates = level(together, vehicle.fliesInSteps)
-    val worlds     = level(alone, vehicle.fliesInSteps || sees)
-    Effort(
-      worlds.freshEpisodes,
-      candidates.landscapeEpisodes / (if sees then 4 else 1),
-      candidates.onMap,
-      worlds.cellEpisodes
-    )
+    val candidates = level(together, vehicle.fliesInSteps) match
+      case Cheap if sees => Seeing
+      case other         => other
+    val worlds = level(alone, vehicle.fliesInSteps || sees)
+    Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
 
   /** Fresh episodes of a team: so few that the scalar engine, too, flies them in seconds. */
   val TeamsFresh = 256

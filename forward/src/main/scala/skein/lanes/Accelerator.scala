@@ -79,5 +79,15 @@ private[lanes] trait AcceleratedTeams:
 private[lanes] final case class Accelerated(flown: Int, left: Array[Int])
 
 private[lanes] object Accelerated:
-  /** Everything is left. */
-  def nothing(worlds: Worlds): Accelerated = Accelerated(0, Array.range(0, worlds.size))
+  /** What an accelerator flies of worlds before the processors do: nothing, unless they are candidates that
+    * fly through the same episodes.
+    *
+    * @param flights see [[Accelerator.instead]]
+    */
+  def first[F](flights: Option[Either[String, F]], worlds: Worlds, together: Boolean)(
+      fly: F => Accelerated
+  ): Accelerated =
+    flights
+      .flatMap(_.toOption)
+      .filter(_ => together && worlds.episodesOfEach > 0)
+      .fold(Accelerated(0, Array.range(0, worlds.size)))(fly)

@@ -151,32 +151,20 @@ final class DuelBatch(
       onProgress: Int => Unit = _ => (),
       isCancelled: () => Boolean = () => false
   ): DuelOutcomes =
-    val outcomes = DuelOutcomes(worlds.size, worlds.asked)
-    val together = shares(worlds.shareEpisodes)
-    val came     = accelerated
-      .flatMap(_.toOption)
-      .filter(_ => together && worlds.episodesOfEach > 0)
-      .fold(Accelerated.nothing(worlds)):
-        _.fly(worlds, captureRadiusM.toFloat, outcomes, onProgress, isCancelled)
+    val radiusM           = captureRadiusM.toFloat
+    val outcomes          = DuelOutcomes(worlds.size, worlds.asked)
+    val together          = shares(worlds.shareEpisodes)
+    def flyer(of: Worker) = if together then of.together else of.alone
+    val came              = Accelerated.first(accelerated, worlds, together):
+      _.fly(worlds, radiusM, outcomes, onProgress, isCancelled)
+    val most    = flyer(workers.head).batch
+    val batches =
+      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, came.left, most)
+      else WorldBatches.inOrder(came.left, most)
     outcomes.flown = came.flown +
-      fly(worlds, came.left, captureRadiusM, done => onProgress(came.flown + done), isCancelled, outcomes)
+      LaneThreads.run(workers, batches, isCancelled, done => onProgress(came.flown + done)): (worker, some) =>
+        flyer(worker).fly(worlds, some, radiusM, outcomes)
     outcomes
-
-  private def fly(
-      worlds: DuelWorlds,
-      numbers: Array[Int],
-      captureRadiusM: Double,
-      onProgress: Int => Unit,
-      isCancelled: () => Boolean,
-      outcomes: DuelOutcomes
-  ): Int =
-    def flyer(of: Worker) = if shares(worlds.shareEpisodes) then of.together else of.alone
-    val most              = flyer(workers.head).batch
-    val batches           =
-      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, numbers, most)
-      else WorldBatches.inOrder(numbers, most)
-    LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, some) =>
-      flyer(worker).fly(worlds, some, captureRadiusM.toFloat, outcomes)
 
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostBytes = 64L << 20

@@ -112,10 +112,8 @@ final class TeamBatch(
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
     val together = shares(worlds.shareEpisodes)
-    val came     = accelerated
-      .flatMap(_.toOption)
-      .filter(_ => together && worlds.episodesOfEach > 0)
-      .fold(Accelerated.nothing(worlds))(_.fly(worlds, prepare, outcomes, onProgress, isCancelled))
+    val came     = Accelerated.first(accelerated, worlds, together):
+      _.fly(worlds, prepare, outcomes, onProgress, isCancelled)
     val prepared = Array.ofDim[PreparedTeam](worlds.size)
     for world <- came.left do prepared(world) = prepare(world)
     val batches =
