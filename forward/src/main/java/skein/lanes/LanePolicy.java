@@ -51,7 +51,7 @@ class LanePolicy {
     int unasked = withEffort ? 0 : 1;
     decided = form.decided() - unasked;
     function = withEffort ? form.function() : form.functionWithoutEffort();
-    parameters = new float[form.parameters() * WORLDS];
+    parameters = new float[LaneFunction.places(form.parameters())];
     scratch = new float[function.scratch()];
     // What the own readings tell comes last.
     arrays = new float[form.inputs() + form.outputs().size() - unasked + LaneObservation.READ][];

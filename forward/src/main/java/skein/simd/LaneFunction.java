@@ -8,6 +8,13 @@ public abstract class LaneFunction {
   /** Worlds computed by one call: a multiple of every lane count, few enough for the first-level cache. */
   public static final int COUNT = 128;
 
+  /**
+   * So many numbers at the begin of scratch and of parameters are unused. Else the index of the first would
+   * be the loop's counter with nothing added, which the JVM's compiler may take for the loop's end; then it
+   * peels the loop, for 14 s with some expressions.
+   */
+  static final int UNUSED = LaneMath.LANES;
+
   /** How many numbers {@link #apply} needs to lay results by. */
   public abstract int scratch();
 
@@ -22,7 +29,12 @@ public abstract class LaneFunction {
    */
   public static int place(int parameter, int world, int count) {
     int lane = world % LaneMath.LANES;
-    return (world - lane) * count + parameter * LaneMath.LANES + lane;
+    return UNUSED + (world - lane) * count + parameter * LaneMath.LANES + lane;
+  }
+
+  /** How many numbers hold the parameters of all worlds, of which each has so many. */
+  public static int places(int count) {
+    return UNUSED + COUNT * count;
   }
 
   /**

@@ -33,10 +33,21 @@ object LaneCompiler:
       parameters: Int = 0,
       places: Vector[(Int, Int)] = Vector.empty
   ): LaneFunction =
+    val bytes  = classFile(inputs, outputs, differences, parameters, places)
+    val lookup = MethodHandles.lookup().defineHiddenClass(bytes, true)
+    lookup.lookupClass.getDeclaredConstructor().newInstance().asInstanceOf[LaneFunction]
+
+  private[simd] def classFile(
+      inputs: Int,
+      outputs: Vector[Node],
+      differences: Int,
+      parameters: Int,
+      places: Vector[(Int, Int)]
+  ): Array[Byte] =
     val passes  = Passes.of(outputs, ofRows = places.distinctBy(_._1).size < places.size)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
-    val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.fold(0)(_ + FirstScratch)
-    val bytes   = ClassFile
+    val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.fold(0)(laidBy)
+    ClassFile
       .of(ClassFile.DebugElementsOption.DROP_DEBUG)
       .build(
         self,
@@ -55,7 +66,7 @@ object LaneCompiler:
               "scratch",
               MethodTypeDesc.of(ConstantDescs.CD_int),
               ClassFile.ACC_PUBLIC,
-              code => code.loadConstant(scratch * LaneFunction.COUNT).ireturn(): Unit
+              code => code.loadConstant(scratch).ireturn(): Unit
             )
             .withMethodBody(
               "isOnePass",
@@ -90,13 +101,9 @@ object LaneCompiler:
                 ).emit()
             ): Unit
       )
-    val lookup = MethodHandles.lookup().defineHiddenClass(bytes, true)
-    lookup.lookupClass.getDeclaredConstructor().newInstance().asInstanceOf[LaneFunction]
 
-  /** Row 0 is unused: an index that is the loop's own counter, with nothing added, the JVM's compiler may
-    * take for the loop's end. Then it peels the loop, for 14 s with some expressions.
-    */
-  private[simd] val FirstScratch = 1
+  /** Where numbers are laid by in scratch, by place. */
+  private[simd] def laidBy(place: Int): Int = LaneFunction.UNUSED + place * LaneFunction.COUNT
 
 private object Names:
   def vector(name: String): ClassDesc = ClassDesc.of(s"jdk.incubator.vector.$name")
@@ -131,7 +138,7 @@ private final class PassCompiler(
     places: Vector[(Int, Int)]
 ) extends ExpressionCompiler:
   import Names.*
-  import LaneCompiler.FirstScratch
+  import LaneCompiler.laidBy
   private val count          = LaneFunction.COUNT
   private val floatConstants = mutable.HashMap.empty[Int, Int]
   private val bitConstants   = mutable.HashMap.empty[Int, Int]
@@ -188,9 +195,9 @@ private final class PassCompiler(
     code.goto_(head).labelBinding(over).return_(): Unit
 
   private def body(): Unit =
-    for (node, place) <- pass.loads do slots(node) = loaded(3, (FirstScratch + place) * count)
+    for (node, place) <- pass.loads do slots(node) = loaded(3, laidBy(place))
     for node <- pass.computes if !isLeaf(node) do computed(node): Unit
-    for (node, place) <- pass.stores do store(of(node), 3, (FirstScratch + place) * count)
+    for (node, place) <- pass.stores do store(of(node), 3, laidBy(place))
     // All is read before anything is written: see LaneFunction.isOnePass.
     val written = pass.outputs.map((node, output) => (of(node), inputs + output))
     for (vector, number) <- written do storeTo(vector, number)
@@ -306,7 +313,8 @@ private final class PassCompiler(
       code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
     else
       // See LaneFunction.place.
-      code.iload(world).loadConstant(parameters).imul().loadConstant(number * LaneMath.LANES).iadd()
+      code.iload(world).loadConstant(parameters).imul()
+      code.loadConstant(LaneFunction.place(number, 0, parameters)).iadd()
       code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
 
