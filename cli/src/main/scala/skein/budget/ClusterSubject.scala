@@ -4,6 +4,7 @@ import scala.collection.immutable.ArraySeq
 import skein.cluster.BlockSolverFactory
 import skein.optimise.RunningStats
 import skein.scenario.Scenarios
+import skein.search.SearchFile.given
 import skein.search.{BlockExecutor, JsonText}
 import skein.signal.LatencyDistribution
 import skein.units.Expect
@@ -57,7 +58,7 @@ object ClusterSubject:
     * @param probes what each came to at the coordinator in one episode: a worker that comes to anything else,
     *   by a file of another content for example, does not answer the question
     */
-  private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[Long])
+  private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[RunningStats])
       derives ReadWriter
 
   def bytes(
@@ -66,17 +67,15 @@ object ClusterSubject:
   ): Either[String, ArraySeq[Byte]] =
     probes(subjects).map(came => JsonText.bytes(ProbedQuestion(questions, came)))
 
-  private def probes(subjects: Vector[BudgetSubject]): Either[String, Vector[Long]] =
-    Expect.each(subjects)(_.tallies(BudgetCells(Vector(LatencyDistribution.Vpn), 1)).map(tallies =>
-      java.lang.Double.doubleToLongBits(tallies.head.mean)
-    ))
+  private def probes(subjects: Vector[BudgetSubject]): Either[String, Vector[RunningStats]] =
+    Expect.each(subjects)(_.tallies(BudgetCells(Vector(LatencyDistribution.Vpn), 1)).map(_.head))
 
   /** Answers the questions of budgets whose scenarios are known here. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[ProbedQuestion](asked, "a budget's question")
       came  <- subjects(posed).flatMap(probes)
-      _     <- Expect.that(came == posed.probes):
+      _     <- Expect.that(RunningStats.areSame(came, posed.probes)):
         "one episode does not come to the same here and at the " +
           "coordinator; has a file that --plant names another content here?"
     yield () =>

@@ -1,13 +1,13 @@
 package skein.budget
 
 import java.util.concurrent.atomic.AtomicLong
-import skein.flight.{InParallel, VirtualFlights}
+import skein.flight.InParallel
 import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate, TeamOutcomes, TeamWorlds}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, TeamObjective}
 import skein.scenario.{Scenario, Scenarios, Tracks}
-import skein.search.{Conditions, WholeFlights}
+import skein.search.{Conditions, Effort, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -34,7 +34,7 @@ final case class ScenarioQuestion(
         for flown <- conditions.copy(altitudeM = -plane.agents.head.altitudeDownM).resolved
         yield
           if objective.measures.forall(_.reduced.nonEmpty) then TeamSubject(this, plane, flown)
-          else FlownSubject.forward(this, plane, flown)
+          else FlownSubject.forward(this, flown)
 
 object ScenarioQuestion:
 
@@ -75,7 +75,9 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
     cells.engine(candidate, shareEpisodes = false, links.map(DelayTable.of))
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int =
-    if cells.fliesByLanes(candidate, shareEpisodes = false, links.map(DelayTable.of)) then 300 else 10
+    Effort
+      .ofTeam(cells.fliesByLanes(candidate, shareEpisodes = false, links.map(DelayTable.of)))
+      .cellEpisodes
 
   def tallies(asked: BudgetCells): Either[String, Vector[RunningStats]] =
     val outcomes = cells.fly(
@@ -95,24 +97,25 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
 
 /** Whatever its measures are: each is taken of a whole flight.
   *
-  * @param fly one episode over a link by its round trips, or with a world that waits; on the calling thread
+  * @param over how an episode is flown, by its number, over a link by its round trips, or with a world that
+  *   waits; on the calling thread
   */
 final class FlownSubject private (
     question: ScenarioQuestion,
     vehicles: String,
     told: String,
-    val each: Int,
-    fly: (Option[LatencyDistribution], Int) => Either[String, Tracks]
+    effort: Effort,
+    over: Option[LatencyDistribution] => Int => Either[String, Tracks]
 ) extends ScenarioSubject(question, vehicles):
 
   def engine(links: Vector[LatencyDistribution]): String = told
 
-  def cellEpisodes(links: Vector[LatencyDistribution]): Int = each
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int = effort.cellEpisodes
 
   def truth: Either[String, Double] = value(None, 0).map(_.getOrElse(Double.NaN))
 
   private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
-    fly(link, episode).map(WholeFlights.sum(question.objective.terms, _))
+    over(link)(episode).map(WholeFlights.sum(question.objective.terms, _))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()
@@ -131,20 +134,23 @@ final class FlownSubject private (
 object FlownSubject:
 
   /** By forward simulation, world by world. */
-  def forward(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved): FlownSubject =
-    def tracks(timing: LoopTiming, link: Delays, episode: Int) =
-      val key = WorldRandom.key(question.seed, 0, episode)
-      WholeFlights.forward(question.scenario, plane, timing, link, flown.vehicle.response, key)
+  def forward(question: ScenarioQuestion, flown: Conditions.Resolved): FlownSubject =
+    def fly(timing: LoopTiming, link: Delays) = WholeFlights.forward(
+      timing,
+      link,
+      flown.vehicle.response,
+      question.conditions.durationS,
+      question.seed
+    )(question.scenario, _)
     val plain = question.objective.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
     FlownSubject(
       question,
       flown.vehicle.description,
       s"scalar: ${WholeFlights.ofWholeFlights(plain)}",
-      each = 4,
-      (link, episode) =>
-        link.fold(tracks(flown.paused.timing, DelayTable.none, episode))(roundTrip =>
-          tracks(flown.timing, DelayTable.of(roundTrip), episode)
-        )
+      Effort.OfScalarFlights,
+      _.fold(fly(flown.paused.timing, DelayTable.none))(roundTrip =>
+        fly(flown.timing, DelayTable.of(roundTrip))
+      )
     )
 
   /** By flights in virtual time: simulator, link, client and loop as they are. */
@@ -153,18 +159,15 @@ object FlownSubject:
       question,
       WholeFlights.SimulatorsQuadrotor,
       s"flights in virtual time: $reason",
-      each = 2,
-      (link, episode) =>
-        VirtualFlights
-          .result(
-            question.scenario,
-            if link.isEmpty then LoopKind.Paused else loop,
-            link.fold(LatencyProfile.none)(LatencyProfile.Steady("cell", _)),
-            question.seed + episode,
-            Span.ofMillis(question.conditions.periodMs),
-            Span.ofSeconds(question.conditions.durationS)
-          )
-          .map(_.tracks)
+      Effort.OfFlights,
+      link =>
+        WholeFlights.virtual(
+          if link.isEmpty then LoopKind.Paused else loop,
+          link.fold(LatencyProfile.none)(LatencyProfile.Steady("cell", _)),
+          question.conditions.periodMs,
+          question.conditions.durationS,
+          question.seed
+        )(question.scenario, _)
     )
 
 /** A scenario. */

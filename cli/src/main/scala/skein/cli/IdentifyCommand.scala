@@ -119,8 +119,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
               HorizonErrors.of(found.plant, reflown),
               HorizonErrors.of(found.plant, flights)
             )))
-          // A program's other vehicles need not move as these.
-          case Left(reason) if structure != use && scenarios.ownStructures.contains(structure) =>
+          case Left(reason) if structure != use =>
             Console.err.println(s"${structure.label} is not fitted: $reason")
             Right(None)
           case Left(reason) => Left(reason)

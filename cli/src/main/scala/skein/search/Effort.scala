@@ -2,7 +2,14 @@ package skein.search
 
 import skein.settings.VehicleChoice
 
-/** How much is flown beside the search itself: less where an episode costs more. */
+/** How many episodes are flown unless told otherwise: fewer where one costs more.
+  *
+  * @param freshEpisodes that a search's winner is measured on
+  * @param landscapeEpisodes for each point of the objective's landscape
+  * @param onMap points on each side of a landscape of two parameters
+  * @param cellEpisodes for each cell of a budget's map
+  * @param onCurve points of a landscape of one parameter
+  */
 final case class Effort(
     freshEpisodes: Int,
     landscapeEpisodes: Int,
@@ -49,7 +56,10 @@ object Effort:
   val TeamsFresh = 256
 
   /** Of flights in virtual time, some a second. */
-  val OfFlights: Effort = Effort(16, 1, 5, 1, onCurve = 9)
+  val OfFlights: Effort = Effort(16, 1, 5, 2, onCurve = 9)
 
   def ofTeam(byLanes: Boolean): Effort =
-    if byLanes then Effort(TeamsFresh, 16, 21, 30) else Effort(TeamsFresh, 2, 7, 4)
+    if byLanes then Effort(TeamsFresh, 16, 21, 300) else Effort(TeamsFresh, 2, 7, 10)
+
+  /** Of a team whose measures are of whole flights, by the scalar engine. */
+  val OfScalarFlights: Effort = ofTeam(byLanes = false).copy(cellEpisodes = 4)

@@ -83,17 +83,12 @@ object WholeFlights:
 
   /** One episode by forward simulation.
     *
-    * @param key of its random numbers
-    * @return or that its vehicles were not all seen
+    * @return or why it cannot be flown so, or that its vehicles were not all seen
     */
-  def forward(
+  def forward(timing: LoopTiming, link: Delays, response: VelocityResponse, durationS: Double, seed: Long)(
       scenario: Scenario,
-      plane: Engagement,
-      timing: LoopTiming,
-      link: Delays,
-      response: VelocityResponse,
-      key: Int
-  ): Either[String, Tracks] =
+      episode: Int
+  ): Either[String, Tracks] = plane(scenario, durationS).flatMap: plane =>
     val agents  = scenario.agents
     val samples = agents.map(agent =>
       Vector.newBuilder[(Instant, Vector3)] += ((Instant.ofNanos(0), agent.startPositionNed))
@@ -104,12 +99,23 @@ object WholeFlights:
           Instant.ofNanos(0) + Span.ofSeconds(timeS),
           Vector3(x, y, agents(vehicle).startPositionNed.z)
         )): Unit
-    Rollout(plane, timing, link, response).fly(key, observer = observer): Unit
+    Rollout(plane, timing, link, response).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
     Tracks
       .of(agents.zip(samples).map((agent, places) =>
         Track.ofPositions(agent.name, agent.role.name, places.result())
       ))
       .toRight("its vehicles were not all seen")
+
+  /** One episode in virtual time: simulator, link, client and loop as they are.
+    *
+    * @return or why it could not be flown to its end
+    */
+  def virtual(loop: LoopKind, link: LatencyProfile, periodMs: Double, durationS: Double, seed: Long)(
+      scenario: Scenario,
+      episode: Int
+  ): Either[String, Tracks] = VirtualFlights
+    .result(scenario, loop, link, seed + episode, Span.ofMillis(periodMs), Span.ofSeconds(durationS))
+    .map(_.tracks)
 
   /** By forward simulation, world by world.
     *
@@ -121,20 +127,16 @@ object WholeFlights:
       flown.vehicle.name,
       "scalar",
       ofWholeFlights(plain),
-      Effort.ofTeam(byLanes = false),
+      Effort.OfScalarFlights,
       blockEpisodes = 64,
-      (scenario, episode) =>
-        val key = WorldRandom.key(seed, 0, episode)
-        plane(scenario, flown.duel.durationS).flatMap(
-          forward(scenario, _, flown.timing, link, flown.vehicle.response, key)
-        )
+      forward(flown.timing, link, flown.vehicle.response, flown.duel.durationS, seed)
     )
 
   /** Why measures are taken of whole flights. */
   def ofWholeFlights(plain: Seq[String]): String =
     s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself"
 
-  /** By flights in virtual time: simulator, link, client and loop as they are. */
+  /** By flights in virtual time. */
   def virtual(
       conditions: Conditions,
       loop: LoopKind,
@@ -148,17 +150,7 @@ object WholeFlights:
     reason,
     Effort.OfFlights,
     blockEpisodes = 4,
-    (scenario, episode) =>
-      VirtualFlights
-        .result(
-          scenario,
-          loop,
-          link,
-          seed + episode,
-          Span.ofMillis(conditions.periodMs),
-          Span.ofSeconds(conditions.durationS)
-        )
-        .map(_.tracks)
+    virtual(loop, link, conditions.periodMs, conditions.durationS, seed)
   )
 
   /** Why no plant is to be told where flights are virtual.

@@ -6,6 +6,9 @@ package skein.signal
   * `LatencyDistributionSuite`.
   */
 private[skein] object NormalQuantile:
+  /** A normal variable lies within so many standard deviations of its mean with 95 % probability. */
+  val TwoSided95 = 1.959964
+
   private val tail = 0.02425
 
   /** `p` in (0, 1). */

@@ -1,7 +1,9 @@
 package skein.identify
 
 import skein.forecast.Structure
+import skein.signal.NormalQuantile
 import skein.units.Decimals.fixed
+import skein.units.Expect
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** A fitted parameter. The interval covers the truth with 95 % probability.
@@ -41,7 +43,7 @@ object Identification:
   val BlockS          = 5.0
   val DefaultHorizonS = 2.0
 
-  /** @return or what is lacking
+  /** @return or what is lacking, or that the fit did not converge
     */
   def of(
       flights: Vector[TimeHistory],
@@ -61,7 +63,7 @@ object Identification:
       )
     else if !flights.exists(_.arrivals.distinctBy(command => (command.vx, command.vy)).sizeIs > 1) then
       Left("expected flights with changing commands, came none")
-    else Right(fit(flights, windows, blocks.size, structure))
+    else fit(flights, windows, blocks.size, structure)
 
   private def spanS(flown: TimeHistory): Double =
     if flown.samples.isEmpty then 0 else flown.samples.last.atS - flown.samples.head.atS
@@ -103,7 +105,7 @@ object Identification:
       windows: Vector[Window],
       blocks: Int,
       structure: Structure
-  ): Identification =
+  ): Either[String, Identification] =
     val axes     = structure.space.axes
     val samples  = windows.map(_.size).sum
     val solution = LeastSquares.solve(
@@ -111,16 +113,34 @@ object Identification:
       axes.map(_.least).toArray,
       axes.map(_.most).toArray
     )(values => residuals(structure.plant(values.toVector), flights, windows, samples))
-    val deviation = standardErrors(solution, windows, blocks)
+    for
+      _ <- Expect.that(solution.isConverged):
+        s"the fit of ${structure.label} did not converge in ${LeastSquares.MostIterations} steps"
+      deviation <- standardErrors(solution, windows, blocks).toRight:
+        s"the flights do not tell the parameters of ${structure.label} apart"
+    yield fitted(structure, solution, deviation, blocks, samples)
+
+  /** A value so near to a bound, of the span between both, is at it: where the bound is the best value, steps
+    * end beside it.
+    */
+  private val AtBound = 1e-6
+
+  private def fitted(
+      structure: Structure,
+      solution: LeastSquares.Solution,
+      deviation: Array[Double],
+      blocks: Int,
+      samples: Int
+  ): Identification =
     val quantile  = studentQuantile(blocks - 1)
-    val fitted    = axes.zipWithIndex.map: (axis, i) =>
+    val fitted    = structure.space.axes.zipWithIndex.map: (axis, i) =>
       val value = solution.parameters(i)
       Fitted(
         axis.name,
         value,
         value - quantile * deviation(i),
         value + quantile * deviation(i),
-        value <= axis.least || value >= axis.most
+        (value - axis.least).min(axis.most - value) <= AtBound * (axis.most - axis.least)
       )
     val squares                  = solution.residuals.map(error => error * error)
     def rms(offset: Int): Double =
@@ -130,27 +150,30 @@ object Identification:
     val plant = structure.plant(solution.parameters.toVector)
     Identification(structure, fitted, plant, samples, blocks, rms(0), rms(2))
 
-  /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹ with gᵦ = Jᵦᵀrᵦ summed over a block. */
+  /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹ with gᵦ = Jᵦᵀrᵦ summed over a block.
+    *
+    * @return none where JᵀJ is singular
+    */
   private def standardErrors(
       solution: LeastSquares.Solution,
       windows: Vector[Window],
       blocks: Int
-  ): Array[Double] =
-    val n       = solution.parameters.length
-    val normal  = Array.tabulate(n, n)((i, j) => LeastSquares.dot(solution.jacobian(i), solution.jacobian(j)))
-    val inverse = LinearSystem.inverseColumns(normal).getOrElse(Array.fill(n, n)(Double.NaN))
-    val starts  = windows.scanLeft(0)((at, window) => at + PerSample * window.size)
+  ): Option[Array[Double]] =
+    val n      = solution.parameters.length
+    val normal = Array.tabulate(n, n)((i, j) => LeastSquares.dot(solution.jacobian(i), solution.jacobian(j)))
+    val starts = windows.scanLeft(0)((at, window) => at + PerSample * window.size)
     val scores  = windows.indices.groupMap(windows(_).block)(identity).values.map: members =>
       Array.tabulate(n): i =>
         members.iterator
           .flatMap(member => Iterator.range(starts(member), starts(member + 1)))
           .map(k => solution.jacobian(i)(k) * solution.residuals(k))
           .sum
-    val spreads = scores.map: score =>
-      inverse.map(row => LeastSquares.dot(row, score))
-    Array.tabulate(n)(i => math.sqrt(spreads.map(s => s(i) * s(i)).sum * blocks / (blocks - 1)))
+    LinearSystem.inverseColumns(normal).map: inverse =>
+      val spreads = scores.map: score =>
+        inverse.map(row => LeastSquares.dot(row, score))
+      Array.tabulate(n)(i => math.sqrt(spreads.map(s => s(i) * s(i)).sum * blocks / (blocks - 1)))
 
   /** 97.5 % quantile of Student's distribution, by the first term of its expansion about the normal one. */
   private def studentQuantile(degrees: Int): Double =
-    val z = 1.959964
+    val z = NormalQuantile.TwoSided95
     z + (z * z * z + z) / (4 * degrees)

@@ -7,15 +7,16 @@ package skein.identify
 private[identify] object LeastSquares:
 
   /** @param jacobian at the solution: by parameter, then by residual
+    * @param isConverged no step improved it, or the last one was small; else [[MostIterations]] were over
     */
   final case class Solution(
       parameters: Array[Double],
       residuals: Array[Double],
       jacobian: Array[Array[Double]],
-      iterations: Int
+      isConverged: Boolean
   )
 
-  private val MostIterations = 60
+  val MostIterations = 60
 
   /** A step that changes no parameter by more than this share ends the search. */
   private val SmallStep = 1e-7
@@ -46,12 +47,12 @@ private[identify] object LeastSquares:
             .orElse(attempt(damping * 4))
 
       attempt(damping) match
-        case None                      => Solution(at, here, jacobian, iteration)
+        case None                      => Solution(at, here, jacobian, isConverged = true)
         case Some((next, there, less)) =>
           val isSmall =
             at.indices.forall(i => math.abs(next(i) - at(i)) <= SmallStep * (math.abs(at(i)) + 1e-3))
           if isSmall || iteration == MostIterations then
-            Solution(next, there, differences(next, least, most, residuals), iteration)
+            Solution(next, there, differences(next, least, most, residuals), isSmall)
           else go(next, there, less, iteration + 1)
 
     val from = clamped(start)

@@ -1,7 +1,7 @@
 package skein.identify
 
 import skein.fusion.SensorModel
-import skein.signal.LatencyDistribution
+import skein.signal.{LatencyDistribution, NormalQuantile}
 
 /** One detection beside the truth.
   *
@@ -71,9 +71,9 @@ object SensorFit:
       one.workers,
       one.deadlineS
     )
-    val spread        = Z95 / math.sqrt(2.0 * n)
+    val spread        = NormalQuantile.TwoSided95 / math.sqrt(2.0 * n)
     val (least, most) = wilson(detected, inView)
-    val ofBias        = Z95 * rangeSd * bias / math.sqrt(n.toDouble)
+    val ofBias        = NormalQuantile.TwoSided95 * rangeSd * bias / math.sqrt(n.toDouble)
     SensorFit(
       model,
       seeing.map(_.images).sum,
@@ -100,13 +100,11 @@ object SensorFit:
 
   private val Quantiles = 41
 
-  private val Z95 = 1.959964
-
   private def deg(rad: Double) = StrictMath.toDegrees(rad)
 
   /** Wilson's interval of a frequency. */
   private def wilson(share: Double, n: Double): (Double, Double) =
-    val z2     = Z95 * Z95
+    val z2     = NormalQuantile.TwoSided95 * NormalQuantile.TwoSided95
     val middle = (share + z2 / (2 * n)) / (1 + z2 / n)
-    val half   = Z95 / (1 + z2 / n) * math.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+    val half   = NormalQuantile.TwoSided95 / (1 + z2 / n) * math.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
     (middle - half, middle + half)
