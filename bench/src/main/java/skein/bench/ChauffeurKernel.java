@@ -7,13 +7,13 @@ import static jdk.incubator.vector.VectorOperators.LSHL;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.XOR;
+import static skein.bench.Atan2.atan2;
 import static skein.bench.SinCos.sinCos;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.ONE;
 import static skein.simd.LaneMath.SPECIES;
 import static skein.simd.LaneMath.ZERO;
-import static skein.simd.LaneMath.atan2;
 import static skein.simd.LaneMath.constant;
 
 import java.util.Arrays;

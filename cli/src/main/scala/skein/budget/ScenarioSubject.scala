@@ -9,8 +9,6 @@ import skein.optimise.{RunningStats, TeamObjective}
 import skein.scenario.{Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, Effort, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
-import skein.simd.WorldRandom
-import skein.units.*
 
 /** What is asked of a scenario: a sum of its measures, under a loop. */
 final case class ScenarioQuestion(

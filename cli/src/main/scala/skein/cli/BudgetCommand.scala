@@ -6,6 +6,7 @@ import skein.budget.*
 import skein.optimise.WeightedSum
 import skein.record.LoopKind
 import skein.scenario.Scenarios
+import skein.search.TeamQuestion
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.significant
@@ -146,8 +147,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       name,
       set,
       forward.objective,
-      // Teams fly low, where the model of three parameters does not hold.
-      conditions.copy(plant = forward.plant.getOrElse("drag")),
+      conditions.copy(plant = forward.plant.getOrElse(TeamQuestion.Plant)),
       plantIsTold = forward.plant.isDefined,
       forward.seed.getOrElse(1)
     )

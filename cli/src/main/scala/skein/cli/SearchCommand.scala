@@ -137,7 +137,6 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         vary.toVector,
         objective,
         options.method.getOrElse("cma-es"),
-        // Teams fly low, where the model of three parameters does not hold.
         conditions.copy(plant = forward.plant.getOrElse(TeamQuestion.Plant)),
         options.link.getOrElse("vpn"),
         candidates,

@@ -32,13 +32,9 @@ final class Formula private (
   /** The parameters of an object that [[fits]]. */
   def parametersOf(other: AnyRef): Array[Double] = reader.read(other)
 
-  /** The values of these nodes of [[trace]]. */
-  def evaluate(nodes: Vector[Node], input: Array[Double], parameters: Array[Double]): Array[Double] =
-    Evaluation(nodes)(input, parameters)
-
   /** What comes out for doubles: slow, and to the bit what the method itself answers. */
   def evaluate(input: Array[Double], parameters: Array[Double]): Array[Double] =
-    evaluate(outputs.map(_._2), input, parameters)
+    Evaluation(outputs.map(_._2))(input, parameters)
 
 object Formula:
 
@@ -177,118 +173,3 @@ object Formula:
       .toSeq
       .reverse
       .flatMap(_.getDeclaredFields.filterNot(each => Modifier.isStatic(each.getModifiers)))
-
-  /** Fills in the values of these nodes and of all that they need, by number; conditions are 1 or 0. */
-  private[formula] def evaluate(
-      of: Seq[Node],
-      input: Array[Double],
-      parameters: Array[Double],
-      values: Array[Double]
-  ): Unit = compute(Trace.needed(of).toArray, input, parameters, values)
-
-  /** The same of nodes in an order in which each comes after what it needs. */
-  private[formula] def compute(
-      order: Array[Node],
-      input: Array[Double],
-      parameters: Array[Double],
-      values: Array[Double]
-  ): Unit =
-    import Op.{Always, And, Const, Eq, Input, Le, Lt, Not, Or, Param, Where}
-    for node <- order do
-      def a = values(node.args(0).id)
-      def b = values(node.args(1).id)
-      values(node.id) = node.op match
-        case Const        => node.value
-        case Input        => input(node.index)
-        case Param        => parameters(node.index)
-        case Where        => if a != 0 then b else values(node.args(2).id)
-        case Always       => 1
-        case Not          => 1 - a
-        case And          => Math.min(a, b)
-        case Or           => Math.max(a, b)
-        case Lt | Le | Eq => if Op.holds(node.op, a, b) then 1 else 0
-        case op           => if node.args.size == 1 then Op.compute(op, a) else Op.compute(op, a, b)
-
-/** What some nodes of one [[Trace]] come to, again and again: what they need is found once. */
-final class Evaluation(nodes: Vector[Node]):
-  private val order   = Trace.needed(nodes).toArray
-  private val size    = order.iterator.map(_.id + 1).maxOption.getOrElse(0)
-  private val answers = nodes.iterator.map(_.id).toArray
-
-  def apply(input: Array[Double], parameters: Array[Double]): Array[Double] =
-    val values = Array.ofDim[Double](size)
-    Formula.compute(order, input, parameters, values)
-    answers.map(values(_))
-
-/** Whether objects are of one form, by what stands at some places inside of them. */
-private final class FormCheck(guards: Vector[Guard]):
-  private val walk     = PathWalk(guards.map(_.path))
-  private val expected = guards.map(_.expected).toArray
-
-  def fits(root: AnyRef): Boolean =
-    val found = walk(root)
-    var i     = 0
-    while i < expected.length && holds(expected(i), found(walk.places(i))) do i += 1
-    i == expected.length
-
-  private def holds(expected: Any, value: AnyRef): Boolean = expected match
-    case null                => value == null
-    case kind: Class[?]      => value != null && (value.getClass eq kind)
-    case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
-    case number              => value == number
-
-/** Reads numbers inside of objects of one form; those of an array without an object for each, for networks
-  * have hundreds.
-  */
-private final class NumberReader(paths: Vector[Path]):
-  private val walk    = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
-  private val indices = paths.map(indexOf).toArray
-  private def indexOf(of: Path) = of.step match
-    case PathStep.At(index) => index
-    case _                  => -1
-
-  def read(root: AnyRef): Array[Double] =
-    val found   = walk(root)
-    val numbers = Array.ofDim[Double](indices.length)
-    var i       = 0
-    while i < numbers.length do
-      val index = indices(i)
-      numbers(i) = found(walk.places(i)) match
-        case several: Array[Double] if index >= 0 => several(index)
-        case several if index >= 0                => unboxed(java.lang.reflect.Array.get(several, index))
-        case number                               => unboxed(number)
-      i += 1
-    numbers
-
-  private def unboxed(number: AnyRef) = number.asInstanceOf[java.lang.Double].doubleValue
-
-/** Finds what stands at some places inside of objects, each object on the way once. */
-private final class PathWalk(paths: Vector[Path]):
-  private val all                  = mutable.LinkedHashMap.empty[Path, Int]
-  private def place(of: Path): Int =
-    of.before.foreach(place)
-    all.getOrElseUpdate(of, all.size)
-
-  /** Where in what is found each path's end is. */
-  val places: Array[Int] = paths.map(place).toArray
-
-  private val steps  = all.keysIterator.map(_.step).toArray
-  private val before = all.keysIterator.map(_.before.fold(-1)(all)).toArray
-  for case PathStep.Of(field) <- steps do field.setAccessible(true)
-
-  /** Nothing stands behind what is not of the form. */
-  def apply(root: AnyRef): Array[AnyRef] =
-    val found = Array.ofDim[AnyRef](steps.length)
-    var i     = 0
-    while i < steps.length do
-      val from = if before(i) < 0 then root else found(before(i))
-      found(i) = steps(i) match
-        case PathStep.Itself    => root
-        case _ if from == null  => null
-        case PathStep.Of(field) =>
-          if field.getDeclaringClass.isInstance(from) then field.get(from) else null
-        case PathStep.At(index) =>
-          if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)
-          else null
-      i += 1
-    found

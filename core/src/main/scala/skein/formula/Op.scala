@@ -14,6 +14,11 @@ enum Op:
   // Conditions; a comparison with a NaN does not hold.
   case Lt, Le, Eq, Not, And, Or, Always
 
+  /** Whether it takes no arguments. */
+  def isLeaf: Boolean = this match
+    case Const | Input | Param | Always => true
+    case _                              => false
+
   def isCondition: Boolean = ordinal >= Op.Lt.ordinal
 
   /** Whether it costs far more than an addition. */

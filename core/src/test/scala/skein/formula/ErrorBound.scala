@@ -47,7 +47,7 @@ object ErrorBound:
     val values  = Array.ofDim[Double](size)
     val errors  = Array.ofDim[Double](size)
     val margins = Array.fill(size)(Double.NaN)
-    Formula.evaluate(nodes, input, parameters, values)
+    Evaluation.compute(needed.toArray, input, parameters, values)
     for node <- needed do
       def a       = values(node.args(0).id)
       def b       = values(node.args(1).id)

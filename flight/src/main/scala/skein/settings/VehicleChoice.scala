@@ -5,7 +5,6 @@ import skein.forward.{
   PlantResponse,
   QuadrotorResponse,
   Reduced,
-  ReducedResponse,
   SteppedResponse,
   VelocityResponse,
   VelocityResponses
@@ -47,7 +46,7 @@ object VehicleChoice:
       "drag",
       s"reduced model of AirSim's quadrotor at $altitudeM m altitude, lag " +
         s"${model.lagS.fixed(2)} s, with quadratic drag ${model.dragPerM} /m",
-      ReducedResponse(model)
+      PlantResponse(model)
     )
 
   private val quadrotor = VehicleChoice(
@@ -106,7 +105,7 @@ object VehicleChoice:
             else
               file.plant match
                 case model: ReducedModel =>
-                  VehicleChoice(text, s"reduced model ${file.use.label} of $path", ReducedResponse(model))
+                  VehicleChoice(text, s"reduced model ${file.use.label} of $path", PlantResponse(model))
                 case plant => VehicleChoice(text, s"model ${file.use.label} of $path", PlantResponse(plant))
 
   private def read(path: String, altitudeM: Double)(using Scenarios): Either[String, ModelFile] =

@@ -14,7 +14,6 @@ import jdk.incubator.vector.VectorMask;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
-import skein.simd.WorldRandom;
 
 /**
  * The tasks of the {@code futures} loop: each period one for each vehicle, which reads all one
@@ -23,7 +22,7 @@ import skein.simd.WorldRandom;
  * which ends as the n-th from behind, where n may be under way.
  */
 final class FuturesOffers extends LaneOffers {
-  private static final int STEP = Delays.Lines() * WorldRandom.STRIDE;
+  private static final int STEP = LaneDelays.placeOf(1);
 
   /** Tasks last for longer and for shorter by about so much. */
   private static final double AHEAD_S = 0.2;
@@ -116,7 +115,7 @@ final class FuturesOffers extends LaneOffers {
         IntVector.fromArray(INTS, each, i).sub(period).max(past).intoArray(each, i);
       IntVector.fromArray(INTS, began, i).sub(period).max(past).intoArray(began, i);
     }
-    Arrays.fill(places, step * STEP);
+    Arrays.fill(places, LaneDelays.placeOf(step));
     for (int agent = 0; agent < vehicles; agent++) {
       begin(agent, beginAt[agent][slot]);
       delays.drawInTurn(ALL, places, agent, (long) step * periodGrains, beginAt[agent][slot], drawn);

@@ -16,7 +16,6 @@ import jdk.incubator.vector.VectorMask;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
-import skein.simd.WorldRandom;
 
 /**
  * The {@code predictive} loop: every vehicle is asked once a period, and in the middle between two questions
@@ -27,7 +26,7 @@ import skein.simd.WorldRandom;
  * in the same nanosecond, what was known first is first, as in {@code Rollout}.
  */
 final class PredictiveOffers extends LaneOffers {
-  private static final int STEP = Delays.Lines() * WorldRandom.STRIDE;
+  private static final int STEP = LaneDelays.placeOf(1);
 
   /** Long past. */
   private static final int PAST = -1_000_000_000;
@@ -139,7 +138,7 @@ final class PredictiveOffers extends LaneOffers {
     else {
       Arrays.fill(asks, 0);
       Arrays.fill(answers, 0);
-      Arrays.fill(places[vehicle], row * STEP);
+      Arrays.fill(places[vehicle], LaneDelays.placeOf(row));
     }
     long begin = (long) row * periodGrains;
     delays.draw(ALL, places[vehicle], line, begin, asks, there);

@@ -13,14 +13,13 @@ import jdk.incubator.vector.VectorMask;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
-import skein.simd.WorldRandom;
 
 /**
  * The rounds of the {@code sequential} loop: one vehicle is asked after the other, all are offered
  * what was read at the last answer. A round whose question failed offers nothing.
  */
 final class SequentialOffers extends LaneOffers {
-  private static final int STEP = Delays.Lines() * WorldRandom.STRIDE;
+  private static final int STEP = LaneDelays.placeOf(1);
 
   /** Rounds last for longer and for shorter by so much until worlds are apart. */
   private static final double AHEAD_S = 0.5;
@@ -91,7 +90,7 @@ final class SequentialOffers extends LaneOffers {
     if (!isBefore(end, periodGrains)) return false;
     IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
         none = IntVector.broadcast(INTS, NONE),
-        here = IntVector.broadcast(INTS, row * STEP);
+        here = IntVector.broadcast(INTS, LaneDelays.placeOf(row));
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector ends = IntVector.fromArray(INTS, end, i);
       VectorMask<Integer> due = ends.compare(LT, horizon);

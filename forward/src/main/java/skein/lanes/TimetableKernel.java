@@ -90,7 +90,7 @@ final class TimetableKernel {
               operations[field + 3] * WORLDS,
               propagations[operations[field + 4]],
               withVelocity);
-      default ->
+      case DECIDE ->
           agent.decide(
               agents,
               views,
@@ -100,6 +100,7 @@ final class TimetableKernel {
               operations[field + 5] * WORLDS,
               times,
               number);
+      default -> throw new IllegalStateException("no operation of a timetable: " + operations[field]);
     }
   }
 }

@@ -16,7 +16,7 @@ import skein.simd.LaneRandom;
 abstract class SampledBlock extends CandidateBlock {
   private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
 
-  // The sum of the four bytes of a hash: nearly normal, with mean 510 and this deviation.
+  // The sum of the four bytes of a hash: nearly normal, with mean 510; this is one over its standard deviation.
   private static final float NORMAL_SCALE = Draws.Scale();
   private static final int BYTES = 0x00ff00ff;
   private static final int LOWER = 0xffff;
@@ -49,7 +49,7 @@ abstract class SampledBlock extends CandidateBlock {
   }
 
   private void noise(int[] keys, int place, float[] into) {
-    LaneRandom.upperBits(keys, place, 0, bits, SIZE);
+    LaneRandom.bits(keys, place, bits, SIZE);
     IntVector bytes = IntVector.broadcast(INTS, BYTES),
         lower = IntVector.broadcast(INTS, LOWER),
         floatBits = IntVector.broadcast(INTS, FLOAT_BITS);

@@ -17,18 +17,17 @@ public final class LaneRandom {
       IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
 
   /**
-   * The upper {@code 32 - drop} bits at one place of many worlds' sequences.
+   * {@link WorldRandom#bits} at one place of many worlds' sequences.
    *
    * @param count a multiple of the lane count
    */
-  public static void upperBits(int[] keys, int place, int drop, int[] into, int count) {
+  public static void bits(int[] keys, int place, int[] into, int count) {
     int offset = place * WorldRandom.STRIDE;
     for (int i = 0; i < count; i += LANES) {
       IntVector x = IntVector.fromArray(INTS, keys, i).add(offset);
       x = x.lanewise(XOR, x.lanewise(LSHR, 16)).mul(MULTIPLIER_1);
       x = x.lanewise(XOR, x.lanewise(LSHR, 15)).mul(MULTIPLIER_2);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 16));
-      x.lanewise(LSHR, drop).intoArray(into, i);
+      x.lanewise(XOR, x.lanewise(LSHR, 16)).intoArray(into, i);
     }
   }
 }

@@ -31,6 +31,11 @@ public final class WorldRandom {
     return x ^ x >>> 16;
   }
 
+  /** A number from 0 to below 1, of 24 bits, at a place of a world's sequence. */
+  public static double uniform(int key, int place) {
+    return (bits(key, place) >>> 8) * 0x1p-24;
+  }
+
   // SplitMix64's finaliser (Steele, Lea, Flood 2014).
   private static long mix64(long value) {
     long z = value + 0x9e3779b97f4a7c15L;

@@ -1,9 +1,11 @@
 package skein.forward
 
-/** Commands that wait out a vehicle's dead time. Mutable. */
+import java.util.Arrays.copyOf
+
+/** Commands that wait out a vehicle's dead time, at most [[DeadTime.Most]]. Mutable. */
 private[forward] final class DeadTime(seconds: Double):
-  import DeadTime.Pending
-  private val atS, north, east = Array.ofDim[Double](Pending)
+  import DeadTime.{Most, Room}
+  private var atS, north, east = Array.ofDim[Double](Room)
   private var first, afterLast = 0
 
   def clear(): Unit =
@@ -11,11 +13,21 @@ private[forward] final class DeadTime(seconds: Double):
 
   /** A command that came at this time. */
   def put(nowS: Double, northMps: Double, eastMps: Double): Unit =
-    if afterLast - first == Pending then
-      throw IllegalStateException(s"more than $Pending commands within the dead time of $seconds s")
-    val slot = afterLast % Pending
+    if afterLast - first == atS.length then makeRoom()
+    val slot = afterLast % atS.length
     atS(slot) = nowS + seconds; north(slot) = northMps; east(slot) = eastMps
     afterLast += 1
+
+  private def makeRoom(): Unit =
+    val count = atS.length
+    if count == Most then
+      throw IllegalStateException(s"more than $Most commands within the dead time of $seconds s")
+    def inOrder(ring: Array[Double]) =
+      val room = copyOf(ring, 2 * count)
+      for i <- 0 until count do room(i) = ring((first + i) % count)
+      room
+    atS = inOrder(atS); north = inOrder(north); east = inOrder(east)
+    first = 0; afterLast = count
 
   /** Takes out what acts until a time, the first first. */
   inline def until(timeS: Double)(inline act: (Double, Double, Double) => Unit): Unit =
@@ -23,13 +35,15 @@ private[forward] final class DeadTime(seconds: Double):
       val slot = take()
       act(atOf(slot), northOf(slot), eastOf(slot))
 
-  private[forward] def hasUntil(timeS: Double): Boolean = first < afterLast && atS(first % Pending) <= timeS
-  private[forward] def atOf(slot: Int): Double          = atS(slot)
-  private[forward] def northOf(slot: Int): Double       = north(slot)
-  private[forward] def eastOf(slot: Int): Double        = east(slot)
-  private[forward] def take(): Int                      =
+  private[forward] def hasUntil(timeS: Double): Boolean =
+    first < afterLast && atS(first % atS.length) <= timeS
+  private[forward] def atOf(slot: Int): Double    = atS(slot)
+  private[forward] def northOf(slot: Int): Double = north(slot)
+  private[forward] def eastOf(slot: Int): Double  = east(slot)
+  private[forward] def take(): Int                =
     first += 1
-    (first - 1) % Pending
+    (first - 1) % atS.length
 
 private object DeadTime:
-  private val Pending = 64
+  private val Room = 64
+  private val Most = 1 << 16

@@ -6,7 +6,11 @@ import skein.scenario.PaperDuel
 
 /** One vehicle of a duel or of a team, as a rollout flies it.
   *
-  * @param speed of the velocity it commands, where its policy does not choose one
+  * @param speed of the velocity it commands, where its policy does not choose one, m/s
+  * @param startX north, m
+  * @param startY east, m
+  * @param altitudeDownM z of the whole flight, world NED, m
+  * @param startHeadingRad which it is taken to have been commanded before its first decision, from north
   * @param policy see [[skein.policy.Policy]], and [[skein.policy.TeamPolicy]] for engagements; must be a pure
   *   function
   * @param eye by which alone it knows of its one opponent, if it is not told

@@ -252,10 +252,10 @@ private[skein] trait Grounds:
 
 /** Is told what a loop does. */
 trait LoopObserver:
-  /** A vehicle was read: at this time, here, as the answer tells it. */
+  /** A vehicle was read: at this time, here (north and east, m), as the answer tells it. */
   def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit = ()
 
-  /** A vehicle is here when the world is scored, once a period. */
+  /** A vehicle is here (north and east, m) when the world is scored, once a period. */
   def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = ()
 
   /** It was decided for a vehicle, for the first time or so long after the decision before. */

@@ -77,7 +77,7 @@ private[skein] abstract class ImageTiming(world: DuelWorld, agent: Int, model: S
     * @param what [[ImageTiming.Found]] and so on
     */
   protected final def even(number: Int, what: Int): Double =
-    (WorldRandom.bits(key, number * Delays.Lines + Delays.FirstCommand + what) >>> 8) * Step
+    WorldRandom.uniform(key, number * Delays.Lines + Delays.FirstCommand + what)
 
 private[skein] object ImageTiming:
   /** Images of which anything is remembered. */
@@ -94,5 +94,3 @@ private[skein] object ImageTiming:
 
   /** Apart from the sequence of all other delays. */
   private val Stream = 0x65796573L
-
-  private val Step = 1.0 / (1 << 24)

@@ -6,7 +6,7 @@ import skein.simd.WorldRandom
 /** The delays of links that are told by a profile. */
 object LinkDelays:
 
-  /** So much is kept under way, s. */
+  /** The longest round trip that forward simulation flies, s. */
   val LongestRoundTripS = 2.0
 
   /** The delays of a link that forward simulation can fly.
@@ -84,7 +84,4 @@ final case class AlternatingDelays(
     (if isBusy(worldKey, sentAtNs) then busy else quiet).delayNs(worldKey, line, step, number, sentAtNs)
 
   private def uniform(worldKey: Int, stretch: Int): Double =
-    (WorldRandom.bits(worldKey, stretch * Delays.Lines + Delays.Stretch) >>> 8) * AlternatingDelays.Step
-
-private[skein] object AlternatingDelays:
-  private val Step = 1.0 / (1 << 24)
+    WorldRandom.uniform(worldKey, stretch * Delays.Lines + Delays.Stretch)

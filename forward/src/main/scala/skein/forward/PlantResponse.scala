@@ -3,7 +3,8 @@ package skein.forward
 import skein.signal.Kinematics
 import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
-/** Forward simulation by a [[skein.vehicle.Plant]]. Where that is an [[skein.vehicle.ObservedPlant]], the
+/** Forward simulation by a [[skein.vehicle.Plant]], exact between the times at which commands begin to act if
+  * its step is. Where that is an [[skein.vehicle.ObservedPlant]], the
   * loop `predictive` predicts by it, else straight on.
   */
 final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:

@@ -8,18 +8,27 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * thread.
   */
 trait Vehicle:
-  /** Places it at rest, at time 0. */
+  /** Places it at rest, at time 0; world NED, m. */
   def start(x: Double, y: Double, z: Double): Unit
 
-  /** A command (m/s, north and east) that acts from now on. */
+  /** A command (m/s, north and east) that arrives now. It acts after the vehicle's dead time, and until
+    * another does.
+    */
   def command(vx: Double, vy: Double): Unit
 
   /** Flies until this time, s; never earlier than the call before. */
   def advance(timeS: Double): Unit
 
+  /** Position north of the world's origin, m. */
   def x: Double
+
+  /** East, m. */
   def y: Double
+
+  /** Velocity north, m/s. */
   def vx: Double
+
+  /** East, m/s. */
   def vy: Double
 
   // The same as the vehicle tells it when it is asked.

@@ -27,12 +27,19 @@ trait Gpu:
 /** Memory of a GPU. */
 private[skein] trait GpuBuffer extends AutoCloseable:
   def address: Long
+
+  /** What stands in it.
+    *
+    * @throws GpuFailure if it cannot be copied
+    */
   def floats(): Array[Float]
   def close(): Unit
 
+/** A translated kernel. */
 private[skein] trait GpuKernel:
   /** Runs it to its end.
     *
     * @param arguments in the kernel's order: a [[GpuBuffer]], an Int or a Float each
+    * @throws GpuFailure if it does not come to its end
     */
   def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit

@@ -17,7 +17,7 @@ private[skein] trait EventClock:
   * @param told [[PlantStages.tell]] of the plant
   * @param pieceS when the first begins, s
   */
-private[lanes] final class PieceClock(
+private[lanes] final class StepClock(
     lanes: PlantLanes,
     told: Double => Array[Double],
     private var pieceS: Double = 0

@@ -8,7 +8,6 @@ import skein.forward.{
   PlantResponse,
   QuadrotorResponse,
   Reduced,
-  ReducedResponse,
   VelocityResponse
 }
 import skein.units.Expect
@@ -54,16 +53,7 @@ private[skein] object LaneDynamics:
   /** @return or why these do not fly by lanes with this model
     */
   def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, LaneDynamics] = model match
-    case lag: Reduced          => Right(LagDynamics(lag))
-    case ReducedResponse(drag) =>
-      Either
-        .cond(
-          drag.lagS.min(drag.turnLagS) >= LeastLagS,
-          drag,
-          s"the lanes fly models with lags of $LeastLagS s at least"
-        )
-        .flatMap(PlantLanes.of)
-        .map(PlantDynamics(_))
+    case lag: Reduced                 => Right(LagDynamics(lag))
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
@@ -93,9 +83,6 @@ private[skein] object LaneDynamics:
         case predictive: LoopTiming.Predictive =>
           TimetablePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)
-
-  /** Below, powers of e leave what floats hold. */
-  val LeastLagS: Double = TimetablePredictor.LeastLagS
 
   /** AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0
@@ -153,7 +140,7 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
 
-  def clock(): EventClock = PieceClock(lanes, lanes.stages.tell(lanes.plant))
+  def clock(): EventClock = StepClock(lanes, lanes.stages.tell(lanes.plant))
 
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
     PlantFlights(duelist, lanes, loop)

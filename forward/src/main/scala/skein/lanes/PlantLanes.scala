@@ -3,7 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
-import skein.vehicle.{PlaneReading, Plant, PlantState}
+import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
 private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
@@ -53,8 +53,19 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
 private[skein] object PlantLanes:
   private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()
 
-  /** Plants of one form share what is compiled. */
-  def of(plant: Plant[?]): Either[String, PlantLanes] =
+  /** Of a [[skein.vehicle.ReducedModel]]: below, powers of e leave what floats hold. */
+  private val LeastLagS = 0.01
+
+  /** Plants of one form share what is compiled.
+    *
+    * @return or why such plants do not fly by lanes
+    */
+  def of(plant: Plant[?]): Either[String, PlantLanes] = plant match
+    case model: ReducedModel if model.lagS.min(model.turnLagS) < LeastLagS =>
+      Left(s"the lanes know models with lags of $LeastLagS s at least")
+    case _ => ofForm(plant)
+
+  private def ofForm(plant: Plant[?]): Either[String, PlantLanes] =
     val forms = known.computeIfAbsent(plant.getClass, _ => Forms[Plant[?], PlantForm](_.fits(_))(traced))
     forms(plant)
       .flatMap: form =>

@@ -1,14 +1,16 @@
 package skein.lanes
 
 import skein.formula.{Formula, Untraceable}
-import skein.gpu.{Ptx, PtxExpressions, Variables}
 import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
 /** How quadrotors of one form fly many at a time: [[Quadrotor.stepInAir]] itself, compiled, for
   * `moveByVelocityZ` with the yaw held, in calm air.
   */
-private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, formula: FixedFormula):
+private[lanes] final class QuadrotorLanes private (
+    val quadrotor: Quadrotor,
+    private[lanes] val formula: FixedFormula
+):
   import QuadrotorLanes.*
 
   /** The numbers of a vehicle's state by their names, each of which is one row. */
@@ -40,19 +42,6 @@ private[lanes] final class QuadrotorLanes private (val quadrotor: Quadrotor, for
       else call.input(place, goal, (input - rows.size) * TimetableVehicles.WORLDS)
     call.output(0, to, 0)
     call
-
-  /** One step in a kernel.
-    *
-    * @param goal what is commanded, as in the other
-    */
-  def step(code: Ptx, state: Variables, goal: Variables): Unit =
-    state.take(PtxExpressions.write(code, formula.bound.nodes)(
-      place =>
-        val input = formula.bound.inputs(place)
-        if input < rows.size then state(input) else goal(input - rows.size)
-      ,
-      number => code.constant(formula.parameters(number).toFloat)
-    ))
 
 private[lanes] object QuadrotorLanes:
   private val State = "state."

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
+import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.scenario.{Positions, Quantity, Reduction, Separation}
 import skein.units.Expect
 
@@ -60,6 +60,7 @@ private[lanes] final class ScoreLanes private (
       case OfMoment.Newest => Vector(value)
 
   private val derived = angles.map(_.derived)
+  private val numbers = derived.map(Evaluation(_))
 
   /** What is computed from a time on, until the next one's. */
   val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
@@ -86,8 +87,7 @@ private[lanes] final class ScoreLanes private (
   def parameters(number: Int): Int = derived(number).size
 
   def parametersOf(number: Int, quantity: Quantity): Array[Double] =
-    val formula = formulas(number)
-    formula.evaluate(derived(number), Array.emptyDoubleArray, formula.parametersOf(quantity))
+    numbers(number)(Array.emptyDoubleArray, formulas(number).parametersOf(quantity))
 
   /** Whether flights of so many vehicles that are judged so are of this form. */
   def fits(by: Vector[Judged], vehicles: Int): Boolean =

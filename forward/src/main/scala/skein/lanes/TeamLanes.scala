@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable
-import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
+import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.policy.{TeamPolicy, TeamObservation}
 import skein.units.Expect
 
@@ -41,6 +41,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
     Vector(trace.mul(speed, cos), trace.mul(speed, sin), cos, sin)
 
   private val derived = angles.map(_.derived)
+  private val numbers = derived.map(Evaluation(_))
 
   private val common = Common.of(outputs, view)
 
@@ -76,7 +77,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   def parameters(self: Int): Int = derived(self).size
 
   def parametersOf(self: Int, policy: TeamPolicy): Array[Double] =
-    formulas(self).evaluate(derived(self), Array.emptyDoubleArray, formulas(self).parametersOf(policy))
+    numbers(self)(Array.emptyDoubleArray, formulas(self).parametersOf(policy))
 
   /** Whether a team is of this form. */
   def fits(policies: Vector[TeamPolicy]): Boolean =

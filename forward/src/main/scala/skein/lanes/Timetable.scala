@@ -97,7 +97,7 @@ private final class TimetableCompiler(
   java.util.Arrays.sort(order, Comparator.comparingDouble[Note](_.atS))
 
   /** Behind the last score. */
-  private val end = order.lastIndexWhere(_.kind == SCORE) + 1
+  private val end = order.lastIndexWhere(_.isInstanceOf[Note.Score]) + 1
 
   private val readings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.looks(vehicle) + 1))
   private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
@@ -123,15 +123,14 @@ private final class TimetableCompiler(
     for i <- 0 until end do findLastUses(order(i), i)
     for heading <- headings do heading.take(0)
     for i <- 0 until end do
-      val event = order(i)
-      event.kind match
-        case LOOK    => look(event)
-        case DECIDE  => decide(event, i)
-        case ACT     => act(event, i)
-        case SCORE   => score(event, i)
-        case PREDICT => predict(event, i)
-        case EXPOSE  => expose(event, i)
-        case JOIN    => join(event)
+      order(i) match
+        case note: Note.Look    => look(note)
+        case note: Note.Predict => predict(note, i)
+        case note: Note.Decide  => decide(note, i)
+        case note: Note.Act     => act(note, i)
+        case note: Note.Score   => score(note, i)
+        case note: Note.Expose  => expose(note, i)
+        case note: Note.Join    => join(note)
     Timetable(
       vehicles,
       java.util.Arrays.copyOf(operations, size * Fields),
@@ -143,25 +142,24 @@ private final class TimetableCompiler(
       headings.map(_.size).max
     )
 
-  private def findLastUses(event: Note, at: Int): Unit =
-    val agent = event.agent
-    event.kind match
-      case DECIDE =>
-        usedAt(event.view, at)
-        val seen = notes.views(event.view)
-        for vehicle <- 0 until vehicles do decidedUpon(vehicle)(seen(vehicle)) = true
-        headings(agent).usedAt(event.number, at)
-        if vehicles == 2 then headings(1 - agent).usedAt(event.opponent, at)
-        // Its effort is counted even where nobody uses it.
-        headings(agent).usedAt(event.number + 1, at)
-      case ACT            => headings(agent).usedAt(event.number, at)
-      case SCORE | EXPOSE => usedAt(event.view, at)
-      case PREDICT        =>
-        readings(agent).usedAt(event.from, at)
-        decidedUpon(agent)(event.from) = true
-        for part <- event.propagation.parts if part.command > 0 do
-          headings(agent).usedAt(part.command, at)
-      case LOOK | JOIN => ()
+  private def findLastUses(note: Note, at: Int): Unit = note match
+    case decide: Note.Decide =>
+      import decide.{before, vehicle}
+      usedAt(decide.view, at)
+      val seen = notes.views(decide.view)
+      for each <- 0 until vehicles do decidedUpon(each)(seen(each)) = true
+      headings(vehicle).usedAt(before, at)
+      if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
+      // Its effort is counted even where nobody uses it.
+      headings(vehicle).usedAt(before + 1, at)
+    case Note.Act(vehicle, _, decision)            => headings(vehicle).usedAt(decision, at)
+    case score: Note.Score                         => usedAt(score.view, at)
+    case image: Note.Expose                        => usedAt(image.view, at)
+    case Note.Predict(vehicle, _, reading, from, way) =>
+      readings(vehicle).usedAt(from, at)
+      decidedUpon(vehicle)(from) = true
+      for part <- way.parts if part.command > 0 do headings(vehicle).usedAt(part.command, at)
+    case _: Note.Look | _: Note.Join => ()
 
   private def usedAt(view: Int, at: Int): Unit =
     val seen = notes.views(view)
@@ -180,9 +178,8 @@ private final class TimetableCompiler(
       count += 1
     told(view)
 
-  private def look(event: Note): Unit =
-    val vehicle = event.agent
-    val reading = event.number
+  private def look(note: Note.Look): Unit =
+    import note.{reading, vehicle}
     if readings(vehicle).isUsed(reading) then
       operation(
         LOOK,
@@ -190,77 +187,71 @@ private final class TimetableCompiler(
         readings(vehicle).take(reading),
         if decidedUpon(vehicle)(reading) then 1 else 0
       )
-      happens(event, acts = false)
+      happens(vehicle, note.atS, acts = false)
 
-  private def decide(event: Note, at: Int): Unit =
-    val agent = event.agent
-    val own   = event.number
-    val view  = event.view
+  private def decide(note: Note.Decide, at: Int): Unit =
+    import note.{before, vehicle}
     operation(
       DECIDE,
-      agent,
-      tell(view),
-      if vehicles == 2 then headings(1 - agent).place(event.opponent) else 0,
-      headings(agent).place(own),
+      vehicle,
+      tell(note.view),
+      if vehicles == 2 then headings(1 - vehicle).place(note.opponent) else 0,
+      headings(vehicle).place(before),
       // Taken before the one before is given back: its effort is counted from there.
-      headings(agent).take(own + 1)
+      headings(vehicle).take(before + 1)
     )
-    times(size * numbers + 1) = event.ownAgeS.toFloat
-    times(size * numbers + 2) = event.opponentAgeS.toFloat
-    times(size * numbers + 3) = event.aheadS.toFloat
-    took(event.elapsedS)
-    releaseView(view, at)
-    headings(agent).release(own, at)
-    if vehicles == 2 then headings(1 - agent).release(event.opponent, at)
-    headings(agent).release(own + 1, at)
+    took(
+      note.elapsedS,
+      note.ownAgeS,
+      if note.aheadS.isEmpty then note.opponentAgeS else note.atS,
+      note.aheadS.getOrElse(0)
+    )
+    releaseView(note.view, at)
+    headings(vehicle).release(before, at)
+    if vehicles == 2 then headings(1 - vehicle).release(note.opponent, at)
+    headings(vehicle).release(before + 1, at)
 
-  private def predict(event: Note, at: Int): Unit =
-    val vehicle = event.agent
+  private def predict(note: Note.Predict, at: Int): Unit =
+    import note.{from, vehicle}
     operation(
       PREDICT,
       vehicle,
-      readings(vehicle).place(event.from),
+      readings(vehicle).place(from),
       // Taken before the reading is given back: it is carried forward beside it.
-      readings(vehicle).take(event.number),
+      readings(vehicle).take(note.reading),
       placed
     )
-    propagations += event.propagation.placed(headings(vehicle).place)
+    propagations += note.way.placed(headings(vehicle).place)
     placed += 1
     size += 1
-    readings(vehicle).release(event.from, at)
-    for part <- event.propagation.parts if part.command > 0 do
-      headings(vehicle).release(part.command, at)
+    readings(vehicle).release(from, at)
+    for part <- note.way.parts if part.command > 0 do headings(vehicle).release(part.command, at)
 
-  private def act(event: Note, at: Int): Unit =
-    val vehicle = event.agent
-    operation(ACT, vehicle, headings(vehicle).place(event.number))
-    happens(event, acts = true)
-    headings(vehicle).release(event.number, at)
+  private def act(note: Note.Act, at: Int): Unit =
+    import note.{decision, vehicle}
+    operation(ACT, vehicle, headings(vehicle).place(decision))
+    happens(vehicle, note.atS, acts = true)
+    headings(vehicle).release(decision, at)
 
-  private def expose(event: Note, at: Int): Unit =
-    val view = event.view
-    operation(EXPOSE, event.agent, tell(view), event.number % ImageTiming.Ring)
-    times(size * numbers + 1) = event.elapsedS.toFloat
-    times(size * numbers + 2) = event.ownAgeS.toFloat
-    times(size * numbers + 3) = event.opponentAgeS.toFloat
-    took(event.atS)
-    releaseView(view, at)
+  private def expose(note: Note.Expose, at: Int): Unit =
+    operation(EXPOSE, note.vehicle, tell(note.view), note.image % ImageTiming.Ring)
+    took(note.atS, note.bearingError, note.rangeError, if note.isFound then 1 else 0)
+    releaseView(note.view, at)
 
-  private def join(event: Note): Unit =
+  private def join(note: Note.Join): Unit =
     operation(
       JOIN,
-      event.agent,
-      event.number % ImageTiming.Ring,
-      event.opponent,
-      event.from.max(0) % ImageTiming.Ring
+      note.vehicle,
+      note.image % ImageTiming.Ring,
+      if note.isOlder then 1 else 0,
+      note.last.max(0) % ImageTiming.Ring
     )
     size += 1
 
-  private def score(event: Note, at: Int): Unit =
-    val view = event.view
-    operation(SCORE, 0, tell(view))
-    took(event.atS)
-    releaseView(view, at)
+  private def score(note: Note.Score, at: Int): Unit =
+    operation(SCORE, 0, tell(note.view))
+    took(note.atS)
+    releaseView(note.view, at)
 
   private def operation(
       kind: Int,
@@ -276,13 +267,15 @@ private final class TimetableCompiler(
     operations(at + 5) = d
 
   /** Ends an operation that happens to a vehicle. */
-  private def happens(event: Note, acts: Boolean): Unit =
-    clocks(event.agent).tell(event.atS, acts, times, size * numbers)
+  private def happens(vehicle: Int, atS: Double, acts: Boolean): Unit =
+    clocks(vehicle).tell(atS, acts, times, size * numbers)
     size += 1
 
-  /** Ends another operation. */
-  private def took(seconds: Double): Unit =
-    times(size * numbers) = seconds.toFloat
+  /** Ends another operation, with these numbers. */
+  private def took(first: Double, second: Double = 0, third: Double = 0, fourth: Double = 0): Unit =
+    val at = size * numbers
+    times(at) = first.toFloat; times(at + 1) = second.toFloat
+    times(at + 2) = third.toFloat; times(at + 3) = fourth.toFloat
     size += 1
 
 /** Places for numbered things until their last use; as few as possible. */

@@ -11,7 +11,6 @@ import skein.units.Instant
   */
 private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, eyes: Map[Int, SensorModel])
     extends LoopObserver:
-  import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
   /** By vehicle: the readings that entered the forecast. */
@@ -32,13 +31,10 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
   private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
   private val placed     = Array.ofDim[Int](vehicles)
 
-  private def note(kind: Int, vehicle: Int, timeS: Double, number: Int): Note =
-    all += Note(kind, vehicle, timeS, number)
-    all.last
-
   private def look(vehicle: Int, timeS: Double): Int =
     looks(vehicle) += 1
-    note(LOOK, vehicle, timeS, looks(vehicle)).number
+    all += Note.Look(vehicle, timeS, looks(vehicle))
+    looks(vehicle)
 
   /** Several decide upon one view, one after the other. */
   private def viewOf(seen: Array[Int]): Int =
@@ -73,9 +69,8 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
       predicted = viewOf(Array.tabulate(vehicles): vehicle =>
         val start = newest(vehicle, forecast)
         looks(vehicle) += 1
-        val noted = note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
-        noted.from = start.reading
-        noted.propagation = start.propagator.predicted(legs(vehicle).map(plotted(vehicle, _)))
+        val way = start.propagator.predicted(legs(vehicle).map(plotted(vehicle, _)))
+        all += Note.Predict(vehicle, atNs * 1e-9, looks(vehicle), start.reading, way)
         looks(vehicle))
     predicted
 
@@ -83,38 +78,44 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     val seen = upon.forecast match
       case Some(forecast) => predict(forecast, atNs)
       case None           => viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
-    val noted = note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
+    def ageS(of: Int) = (atNs - upon.validAtNs(of)) * 1e-9
+    def aheadS        = upon.forecast.fold(-1.0): forecast =>
+      val now = Instant.ofNanos(atNs)
+      forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
+    val opponent = Option.when(vehicles == 2)(1 - vehicle)
+    all += Note.Decide(
+      vehicle,
+      atNs * 1e-9,
+      seen,
+      decisions(vehicle),
+      elapsed,
+      opponent.fold(0)(upon.sentDecision),
+      opponent.fold(0.0)(_ => ageS(vehicle)),
+      opponent.fold(0.0)(ageS),
+      Option.when(eyes.contains(vehicle))(aheadS)
+    )
     decisions(vehicle) += 1
-    noted.view = seen
-    noted.elapsedS = elapsed
-    if vehicles == 2 then
-      noted.opponent = upon.sentDecision(1 - vehicle)
-      noted.ownAgeS = (atNs - upon.validAtNs(vehicle)) * 1e-9
-      noted.opponentAgeS = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
-    if eyes.contains(vehicle) then
-      noted.opponentAgeS = atNs * 1e-9
-      noted.aheadS = upon.forecast.fold(-1.0): forecast =>
-        val now = Instant.ofNanos(atNs)
-        forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
 
   /** Of each vehicle's images. */
   private val orders = Array.fill(vehicles)(ImageOrder())
 
   override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
-    val seen  = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
-    val noted = note(EXPOSE, vehicle, atNs * 1e-9, number)
-    noted.view = seen
-    noted.elapsedS = SensorModel.normal(image.bearing)
-    noted.ownAgeS = SensorModel.normal(image.range)
-    noted.opponentAgeS = if image.found < eyes(vehicle).detection then 1 else 0
+    val seen = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
+    all += Note.Expose(
+      vehicle,
+      atNs * 1e-9,
+      seen,
+      number,
+      SensorModel.normal(image.bearing),
+      SensorModel.normal(image.range),
+      image.found < eyes(vehicle).detection
+    )
     orders(vehicle).taken(number, atNs)
 
   override def recognised(vehicle: Int, image: Int, atNs: Long): Unit =
     val order = orders(vehicle)
     order.known(image)
-    val noted = note(JOIN, vehicle, atNs * 1e-9, image)
-    noted.opponent = if order.isOlder then 1 else 0
-    noted.from = order.last
+    all += Note.Join(vehicle, atNs * 1e-9, image, order.isOlder, order.last)
 
   override def commanded(
       vehicle: Int,
@@ -125,41 +126,11 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
   ): Unit = decisionOf(vehicle) += decisions(vehicle)
 
   override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
-    note(ACT, vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
+    all += Note.Act(vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
 
   override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
     placed(vehicle) = look(vehicle, timeS)
-    if vehicle == vehicles - 1 then
-      note(SCORE, 0, timeS, 0).view = viewOf(placed.clone)
-
-/** Something that happens.
-  *
-  * @param kind of [[TimetableKernel]]'s operations
-  * @param agent the vehicle
-  * @param atS a decision's: not before
-  * @param number `LOOK`: the reading's. `ACT`: the decision's. `DECIDE`: that of the decision before; the new
-  *   one's is one more. `EXPOSE` and `JOIN`: the image's
-  */
-private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, val number: Int):
-  /** Of a decision; of an image the errors, and whether what is in view is found. */
-  var elapsedS, ownAgeS, opponentAgeS = 0.0
-
-  /** Of a decision by who sees: until when what is believed is carried on. */
-  var aheadS = 0.0
-
-  /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
-  var view = 0
-
-  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for an image that is
-    * older than the one that joined before.
-    */
-  var opponent = 0
-
-  /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the image that joined before. */
-  var from = 0
-
-  /** `PREDICT`: the way to the moment predicted. */
-  var propagation: Propagation = Propagation.Nowhere
+    if vehicle == vehicles - 1 then all += Note.Score(timeS, viewOf(placed.clone))
 
 /** A reading in the forecast.
   *

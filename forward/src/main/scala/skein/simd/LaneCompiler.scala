@@ -5,7 +5,7 @@ import java.lang.constant.{ClassDesc, ConstantDescs, MethodTypeDesc}
 import java.lang.invoke.MethodHandles
 import java.lang.reflect.AccessFlag
 import scala.collection.mutable
-import skein.formula.{Node, Op}
+import skein.formula.Node
 
 /** Compiles expressions to a [[LaneFunction]]: straight passes over blocks of worlds, in which a number stays
   * in a register from where it is computed to where it is used. Elementary functions are the polynomials of
@@ -196,15 +196,12 @@ private final class PassCompiler(
 
   private def body(): Unit =
     for (node, place) <- pass.loads do slots(node) = loaded(3, laidBy(place))
-    for node <- pass.computes if !isLeaf(node) do computed(node): Unit
+    for node <- pass.computes if !node.op.isLeaf do computed(node): Unit
     for (node, place) <- pass.stores do store(of(node), 3, laidBy(place))
     // All is read before anything is written: see LaneFunction.isOnePass.
     val written = pass.outputs.map((node, output) => (of(node), inputs + output))
     for (vector, number) <- written do storeTo(vector, number)
 
-  private def isLeaf(node: Node) = node.op match
-    case Op.Const | Op.Input | Op.Param | Op.Always => true
-    case _                                          => false
 
   // Single operations.
 

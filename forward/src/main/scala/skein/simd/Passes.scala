@@ -52,7 +52,7 @@ private object Passes:
     val ofPass = computed.groupBy(passOf).withDefaultValue(Vector.empty)
     val needs  = Vector.tabulate(number + 1): pass =>
       ofPass(pass).flatMap(argsOf).distinct.filter(arg =>
-        !isLeaf(arg) && passOf(arg) < pass
+        !arg.op.isLeaf && passOf(arg) < pass
       )
     // Conditions are computed again where another pass needs them: a mask is not laid by.
     val again   = needs.map(conditionsOf)
@@ -60,11 +60,11 @@ private object Passes:
       .zip(again)
       .map((each, again) => (each ++ again.flatMap(argsOf)).filterNot(_.op.isCondition).distinct)
     val lastUse = mutable.LinkedHashMap.empty[Node, Int]
-    for (each, pass) <- numbers.zipWithIndex; node <- each if !isLeaf(node) do lastUse(node) = pass
+    for (each, pass) <- numbers.zipWithIndex; node <- each if !node.op.isLeaf do lastUse(node) = pass
     val places = placed(lastUse, passOf, number + 1)
     Vector.tabulate(number + 1): pass =>
       val own    = ofPass(pass)
-      val loaded = numbers(pass).filter(node => !isLeaf(node) && passOf(node) < pass)
+      val loaded = numbers(pass).filter(node => !node.op.isLeaf && passOf(node) < pass)
       Pass(
         again(pass) ++ own,
         loaded.map(node => node -> places(node)).toMap,
@@ -99,7 +99,7 @@ private object Passes:
     val costs   = order.map(LaneCosts.of)
     val needs   = order.map(LaneCosts.constantsOf)
     val lastUse = Array.ofDim[Int](count)
-    for (of, at) <- args.zipWithIndex; arg <- of if !isLeaf(arg) do lastUse(placeOf(arg)) = at
+    for (of, at) <- args.zipWithIndex; arg <- of if !arg.op.isLeaf do lastUse(placeOf(arg)) = at
     val best = Array.fill(count + 1)(Double.PositiveInfinity)
     val from = Array.ofDim[Int](count + 1)
     best(0) = 0
@@ -116,7 +116,7 @@ private object Passes:
         constants ++= needs(first)
         fits = first == end - 1 || size <= most && constants.size <= mostConstants
         if fits then
-          if !isLeaf(node) then fetched -= node
+          if !node.op.isLeaf then fetched -= node
           fetched ++= args(first)
           if lastUse(first) >= end && !node.op.isCondition then laid += 1
           val cost = best(first) + PassCost + fetched.size * FetchCost + laid
@@ -148,9 +148,6 @@ private object Passes:
             most - 1
     places.toMap
 
-  private def isLeaf(node: Node) = node.op match
-    case Op.Const | Op.Input | Op.Param | Op.Always => true
-    case _                                          => false
 
 /** What an operation costs by lanes. */
 private object LaneCosts:

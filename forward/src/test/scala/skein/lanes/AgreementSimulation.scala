@@ -61,8 +61,8 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
 
   private val vehicles = Seq[(String, VelocityResponse)](
     "no lag"        -> VelocityResponses.Ideal,
-    "drag"          -> ReducedResponse(ReducedModel.AirSim),
-    "drag and turn" -> ReducedResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
+    "drag"          -> PlantResponse(ReducedModel.AirSim),
+    "drag and turn" -> PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
     "a bicycle"     -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
     "the quadrotor" -> VelocityResponses.quadrotor()
   )

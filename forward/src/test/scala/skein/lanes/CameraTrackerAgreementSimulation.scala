@@ -35,7 +35,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
   private val plants = Seq[(String, VelocityResponse)](
     "lag"    -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
     "no lag" -> VelocityResponses.Ideal,
-    "drag"   -> ReducedResponse(ReducedModel.AirSim),
+    "drag"   -> PlantResponse(ReducedModel.AirSim),
     "car"    -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
   )
 

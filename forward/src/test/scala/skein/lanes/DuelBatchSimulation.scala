@@ -12,7 +12,6 @@ import skein.forward.{
   PlantResponse,
   RecordedDelays,
   Reduced,
-  ReducedResponse,
   Rollout,
   Steering,
   VelocityResponse,
@@ -135,7 +134,7 @@ class DuelBatchSimulation extends munit.FunSuite:
 
   for (name, model) <- Seq(
       "the quadrotor" -> VelocityResponses.quadrotor(),
-      "drag"          -> ReducedResponse(ReducedModel.AirSim)
+      "drag"          -> PlantResponse(ReducedModel.AirSim)
     )
   do
     test(

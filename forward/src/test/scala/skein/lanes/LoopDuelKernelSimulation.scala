@@ -7,7 +7,7 @@ import skein.forward.{
   Duel,
   LoopTiming,
   Reduced,
-  ReducedResponse,
+  PlantResponse,
   Steering,
   TabledDelays,
   VelocityResponse,
@@ -24,8 +24,8 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
   private val models = Seq[(String, VelocityResponse)](
     "lag"           -> lag,
     "no lag"        -> VelocityResponses.Ideal,
-    "drag"          -> ReducedResponse(ReducedModel.AirSim),
-    "drag and turn" -> ReducedResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02))
+    "drag"          -> PlantResponse(ReducedModel.AirSim),
+    "drag and turn" -> PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02))
   )
 
   private val keys     = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))

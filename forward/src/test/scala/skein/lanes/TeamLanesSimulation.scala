@@ -76,8 +76,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   for
     (name, draw)   <- scenarios
     (model, plant) <- Seq(
-      "drag"          -> ReducedResponse(ReducedModel.AirSim),
-      "drag and turn" -> ReducedResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
+      "drag"          -> PlantResponse(ReducedModel.AirSim),
+      "drag and turn" -> PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
       "quadrotor"     -> VelocityResponses.quadrotor()
     )
   do
@@ -134,7 +134,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   for
     (name, draw)   <- scenarios
     (model, plant) <- Seq(
-      "drag"    -> ReducedResponse(ReducedModel.AirSim),
+      "drag"    -> PlantResponse(ReducedModel.AirSim),
       "bicycle" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
     )
     timing <-

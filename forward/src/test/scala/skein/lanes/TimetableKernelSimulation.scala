@@ -7,7 +7,7 @@ import skein.forward.{
   LinkDelays,
   LoopTiming,
   Reduced,
-  ReducedResponse,
+  PlantResponse,
   Rollout,
   VelocityResponse,
   VelocityResponses
@@ -75,8 +75,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
   // The reduced model meets all links; the others differ from it in their vehicles alone.
   private val models = Seq[(String, VelocityResponse, Seq[(String, Delays)])](
     ("lag", lag, links),
-    ("drag", ReducedResponse(ReducedModel.AirSim), links.filter(_._1 == "vpn")),
-    ("drag and turn", ReducedResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)), links.filter(_._1 == "vpn")),
+    ("drag", PlantResponse(ReducedModel.AirSim), links.filter(_._1 == "vpn")),
+    ("drag and turn", PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)), links.filter(_._1 == "vpn")),
     ("quadrotor", VelocityResponses.quadrotor(), links.filter(link => link._1 == "none" || link._1 == "vpn"))
   )
 

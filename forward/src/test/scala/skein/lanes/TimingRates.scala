@@ -13,7 +13,7 @@ import skein.vehicle.ReducedModel
   val times  = java.lang.management.ManagementFactory.getThreadMXBean
   val models = Seq[(String, VelocityResponse)](
     "lag"       -> Reduced.AirSim,
-    "drag"      -> ReducedResponse(ReducedModel.AirSim),
+    "drag"      -> PlantResponse(ReducedModel.AirSim),
     "quadrotor" -> VelocityResponses.quadrotor(),
     "bicycle"   -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
   )

@@ -1,6 +1,6 @@
 package skein.simd
 
-import skein.formula.{Op, Trace}
+import skein.formula.{Node, Op, Trace}
 
 class LaneMathSuite extends munit.FunSuite:
   private val count = 1 << 16
@@ -11,19 +11,22 @@ class LaneMathSuite extends munit.FunSuite:
   private def spread(from: Double, to: Double): Array[Float] =
     Array.tabulate(count)(i => (from + (to - from) * i / (count - 1)).toFloat)
 
-  private def atan2(ys: Array[Float], xs: Array[Float]): Array[Float] =
-    val out = Array.ofDim[Float](ys.length)
-    LaneMath.atan2(ys, xs, out, ys.length)
-    out
-
   /** A function of one number, compiled. */
-  private def compiled(op: Op, xs: Array[Float]): Array[Float] =
+  private def compiled(op: Op, xs: Array[Float]): Array[Float] = compiled(_.unary(op, _), xs)
+
+  private def atan2(ys: Array[Float], xs: Array[Float]): Array[Float] =
+    compiled((trace, y) => trace.binary(Op.Atan2, y, trace.input(1)), ys, xs)
+
+  /** @param of the first input */
+  private def compiled(of: (Trace, Node) => Node, inputs: Array[Float]*): Array[Float] =
     val trace    = Trace()
-    val function = LaneCompiler.compile(1, Vector(trace.unary(op, trace.input(0))))
-    val into     = Array.ofDim[Float](xs.length)
+    val function = LaneCompiler.compile(inputs.size, Vector(of(trace, trace.input(0))))
+    val into     = Array.ofDim[Float](inputs.head.length)
     val scratch  = Array.ofDim[Float](function.scratch)
-    for at <- xs.indices by LaneFunction.COUNT do
-      function.apply(Array(xs, into), Array(at, at), Array.emptyFloatArray, scratch)
+    for at <- into.indices by LaneFunction.COUNT do
+      val worlds = LaneFunction.COUNT.min(into.length - at)
+      val arrays = (inputs :+ into).toArray
+      function.apply(arrays, arrays.map(_ => at), Array.emptyFloatArray, scratch, worlds)
     into
 
   for

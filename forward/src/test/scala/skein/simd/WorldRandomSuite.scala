@@ -6,8 +6,8 @@ class WorldRandomSuite extends munit.FunSuite:
     val keys = Array.tabulate(256)(WorldRandom.key(1, 2, _))
     val bits = Array.ofDim[Int](256)
     for place <- Seq(0, 1, 17, 9599) do
-      LaneRandom.upperBits(keys, place, 22, bits, 256)
-      for i <- keys.indices do assertEquals(bits(i), WorldRandom.bits(keys(i), place) >>> 22)
+      LaneRandom.bits(keys, place, bits, 256)
+      for i <- keys.indices do assertEquals(bits(i), WorldRandom.bits(keys(i), place))
 
   test("each of 64 bins of a world's sequence is filled evenly"):
     val draws  = 64 * 1000

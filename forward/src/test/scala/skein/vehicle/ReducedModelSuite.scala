@@ -1,6 +1,6 @@
 package skein.vehicle
 
-import skein.forward.{Reduced, ReducedResponse}
+import skein.forward.{Reduced, PlantResponse}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
@@ -58,7 +58,7 @@ class ReducedModelSuite extends munit.FunSuite:
 
   test("without drag and with one lag it is the three-parameter model"):
     val reduced  = Reduced(0.9, 0.8, 0.05)
-    val vehicles = Seq(reduced.create(), ReducedResponse(reduced.model).create())
+    val vehicles = Seq(reduced.create(), PlantResponse(reduced.model).create())
     for vehicle <- vehicles do
       vehicle.start(3, 4, -20)
       for k <- 1 to 40 do
@@ -79,7 +79,7 @@ class ReducedModelSuite extends munit.FunSuite:
     ))
     assertEquals(after(60, 60).velocityNed, Vector3.Zero)
     assert(after(60, 61).velocityNed.x > 0)
-    val expected = ReducedResponse(model).create()
+    val expected = PlantResponse(model).create()
     expected.start(0, 0, -20)
     expected.command(10, 0)
     expected.advance(0.15)

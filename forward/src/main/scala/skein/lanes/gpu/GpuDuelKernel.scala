@@ -18,7 +18,7 @@ private[lanes] final class GpuDuelKernel(
     forms: Vector[PolicyLanes],
     asked: Set[DuelNumber],
     layout: GpuLayout
-) extends GpuKernel(
+) extends GpuFlightKernel(
       gpu,
       layout,
       forms.map(form => form.parameters + form.memories),
@@ -41,7 +41,7 @@ private[lanes] final class GpuDuelKernel(
     case DuelNumber.EvaderEffort  => (scores.initial.size, identity)
     case DuelNumber.PursuerEffort => (outcomes - 1, identity)
     case _                        =>
-      val outcome = GpuKernel.Outcome(scores, judged.indexWhere(_._1 == number), scoredAtS)
+      val outcome = GpuFlightKernel.Outcome(scores, judged.indexWhere(_._1 == number), scoredAtS)
       (outcome.place, outcome(_))
 
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body = new Body:

@@ -2,7 +2,7 @@ package skein.lanes.gpu
 
 import skein.forward.{Duelist, LoopTiming}
 import skein.gpu.{Ptx, Variables}
-import skein.lanes.{CoastPredictor, DragPredictor, LagPredictor, PlantLanes, Propagation, TimetablePredictor}
+import skein.lanes.{CoastPredictor, PlantPredictor, LagPredictor, PlantLanes, Propagation, TimetablePredictor}
 
 /** Carries readings of one vehicle forward in the world of each thread, command by command; see
   * [[skein.lanes.PredictedVehicles]]. Position and velocity stand in variables meanwhile.
@@ -36,7 +36,7 @@ private[lanes] object GpuPrediction:
       TimetablePredictor.of(predictive.predictor).flatMap:
         case CoastPredictor      => Right(Some(GpuLagPrediction(_, _, 0)))
         case lag: LagPredictor   => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
-        case drag: DragPredictor => Right(Some(GpuPlantPrediction(_, _, drag.lanes)))
+        case drag: PlantPredictor => Right(Some(GpuPlantPrediction(_, _, drag.lanes)))
         case _                   => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 

@@ -67,7 +67,7 @@ private[skein] object GpuQuadrotors:
       Iterator.iterate(code.address(code.argument(of), vehicle))(code.address(_, count)).take(rows).toVector
     for (at, row) <- places("state", lanes.rows.size).zipWithIndex do code.load(at, 0, state(row)): Unit
     for (at, row) <- places("goal", 3).zipWithIndex do code.load(at, 0, goal(row)): Unit
-    code.repeat(code.argument("steps"))(lanes.step(code, state, goal))
+    code.repeat(code.argument("steps"))(QuadrotorExpressions.step(code, lanes, state, goal))
     for (at, row) <- places("after", lanes.rows.size).zipWithIndex do code.store(state(row), at)
     code.place(end)
     code("ret")

@@ -17,7 +17,7 @@ private[lanes] final class GpuTeamKernel(
     team: TeamLanes,
     scores: ScoreLanes,
     layout: GpuLayout
-) extends GpuKernel(gpu, layout, Vector(GpuTeamKernel.numbers(team, scores)), scores):
+) extends GpuFlightKernel(gpu, layout, Vector(GpuTeamKernel.numbers(team, scores)), scores):
   import GpuTeamKernel.*
   private val firstDirection = layout.bytes
   private val firstShared    = firstDirection + 8 * team.count

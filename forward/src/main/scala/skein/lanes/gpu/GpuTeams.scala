@@ -57,7 +57,7 @@ private[lanes] final class GpuTeams(
                 (judged, told) <- form.scores.judged.indices.zip(into.values);
                 (episode, at)  <- flown.zipWithIndex
               do
-                val outcome = GpuKernel.Outcome(form.scores, judged, episode.scoredAtS)
+                val outcome = GpuFlightKernel.Outcome(form.scores, judged, episode.scoredAtS)
                 val first   = (outcome.place * flown.size + at) * some.length
                 for i <- some.indices do told(some(i) * each + numbers(at)) = outcome(came(first + i))
             .isDefined

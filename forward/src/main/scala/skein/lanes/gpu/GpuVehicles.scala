@@ -5,7 +5,6 @@ import skein.forward.{
   PlantResponse,
   QuadrotorResponse,
   Reduced,
-  ReducedResponse,
   VelocityResponse
 }
 import skein.gpu.{Ptx, PtxExpressions, Variables}
@@ -36,7 +35,6 @@ private[lanes] object GpuVehicle:
     */
   def of(response: VelocityResponse): Either[String, Kind] = response match
     case lag: Reduced                 => Right(GpuLagVehicle(_, _, _, _, lag))
-    case ReducedResponse(drag)        => PlantLanes.of(drag).map(lanes => GpuPlant(_, _, _, _, lanes))
     case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))
     case quadrotor: QuadrotorResponse =>
       QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
@@ -159,4 +157,4 @@ private[lanes] final class GpuQuadrotor(
     ))
 
   private def fly(record: GpuRecord): Unit =
-    code.repeat(code.wholeOf(record.time(0)))(lanes.step(code, state, goal))
+    code.repeat(code.wholeOf(record.time(0)))(QuadrotorExpressions.step(code, lanes, state, goal))

@@ -18,7 +18,7 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
 
   private val plants = Vector[(String, VelocityResponse)](
     "lag"        -> lag,
-    "drag"       -> ReducedResponse(ReducedModel.AirSim),
+    "drag"       -> PlantResponse(ReducedModel.AirSim),
     "a Plant"    -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
     "quadrotors" -> VelocityResponses.quadrotor()
   )
@@ -79,7 +79,7 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
 
   private val predictors = Seq(
     "its own lag"       -> LoopTiming.Predictive(predictor = lag.predictor),
-    "drag"              -> LoopTiming.Predictive(predictor = ReducedResponse(ReducedModel.AirSim).predictor),
+    "drag"              -> LoopTiming.Predictive(predictor = PlantResponse(ReducedModel.AirSim).predictor),
     "constant velocity" -> LoopTiming.Predictive(predictor = skein.vehicle.ConstantVelocity)
   )
 

@@ -1,7 +1,7 @@
 package skein.bench.jmh
 
 import org.openjdk.jmh.annotations.*
-import skein.bench.SinCos
+import skein.bench.{Atan2, SinCos}
 import skein.simd.LaneMath
 
 /** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions
@@ -34,7 +34,7 @@ class MathBenchmark extends Rate:
   @Benchmark
   @OperationsPerInvocation(1024)
   def atan2ByLanes(): Array[Float] =
-    LaneMath.atan2(numbers, others, into, 1024)
+    Atan2.atan2(numbers, others, into, 1024)
     witnessed()
 
   @Benchmark

@@ -1,6 +1,6 @@
 package skein.lanes.gpu
 
-import skein.gpu.{Gpu, GpuBuffer, GpuKernel as Compiled, Ptx, PtxExpressions, Variables}
+import skein.gpu.{Gpu, GpuBuffer, GpuKernel, Ptx, PtxExpressions, Variables}
 import skein.lanes.{ScoreLanes, Timetable}
 
 /** [[skein.lanes.TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and the
@@ -10,13 +10,13 @@ import skein.lanes.{ScoreLanes, Timetable}
   * @param sides how many numbers tell who flies, of each side
   * @param scores what the flights are judged by
   */
-private[lanes] abstract class GpuKernel(
+private[lanes] abstract class GpuFlightKernel(
     gpu: Gpu,
     layout: GpuLayout,
     sides: Vector[Int],
     protected val scores: ScoreLanes
 ):
-  import GpuKernel.*
+  import GpuFlightKernel.*
 
   /** What is special about those who fly. */
   protected trait Body:
@@ -55,7 +55,7 @@ private[lanes] abstract class GpuKernel(
   /** How many numbers a world comes to. */
   def outcomes: Int
 
-  private lazy val kernel: Compiled = gpu.kernel(text, Name)
+  private lazy val kernel: GpuKernel = gpu.kernel(text, Name)
 
   /** Flies candidates through episodes.
     *
@@ -263,7 +263,7 @@ private[lanes] abstract class GpuKernel(
         code.store(value, at)
         at = code.address(at, worlds)
 
-private[lanes] object GpuKernel:
+private[lanes] object GpuFlightKernel:
   private val Name = "flights"
 
   /** Worlds of a block: all of one episode. */

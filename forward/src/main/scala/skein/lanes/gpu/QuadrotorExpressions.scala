@@ -1,0 +1,19 @@
+package skein.lanes.gpu
+
+import skein.gpu.{Ptx, PtxExpressions, Variables}
+import skein.lanes.QuadrotorLanes
+
+/** A quadrotor's step in a kernel, as [[QuadrotorLanes]] has it compiled. */
+private[gpu] object QuadrotorExpressions:
+  /** @param state the numbers of [[QuadrotorLanes.rows]]
+    * @param goal what is commanded: velocity north and east, m/s, and down, m
+    */
+  def step(code: Ptx, lanes: QuadrotorLanes, state: Variables, goal: Variables): Unit =
+    import lanes.{formula, rows}
+    state.take(PtxExpressions.write(code, formula.bound.nodes)(
+      place =>
+        val input = formula.bound.inputs(place)
+        if input < rows.size then state(input) else goal(input - rows.size)
+      ,
+      number => code.constant(formula.parameters(number).toFloat)
+    ))
