@@ -45,7 +45,9 @@ class ArchitectureSuite extends munit.FunSuite:
         .mkString("\n")
     assert(circles.isEmpty, circles.mkString("\n\n"))
 
-  test("the core and forward simulation know no streams, no files, no sockets and no clock of their own, but for the GPU's driver"):
+  test(
+    "the core and forward simulation know no streams, no files, no sockets and no clock of their own, but for the GPU's driver"
+  ):
     val forbidden =
       Vector(
         "org.apache.pekko",

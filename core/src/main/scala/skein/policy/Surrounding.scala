@@ -46,24 +46,3 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
 
   private def bearing(seen: TeamObservation, vehicle: Int): Double =
     StrictMath.atan2(seen.eastM(vehicle) - seen.eastM(evader), seen.northM(vehicle) - seen.northM(evader))
-
-/** Flees straight away from whoever of the others is nearest, the first of equals. */
-final case class Flee(speedMps: Double) extends TeamPolicy:
-
-  def course(seen: TeamObservation): Course =
-    val self      = seen.self
-    var least     = Double.PositiveInfinity
-    var awayNorth = 0.0
-    var awayEast  = 0.0
-    var other     = 0
-    while other < seen.count do
-      val north    = seen.northM(self) - seen.northM(other)
-      val east     = seen.eastM(self) - seen.eastM(other)
-      val distance = StrictMath.hypot(north, east)
-      if other != self && distance < least then
-        least = distance
-        awayNorth = north
-        awayEast = east
-      other += 1
-    if awayNorth == 0 && awayEast == 0 then Course(seen.headingRad, speedMps)
-    else Course(StrictMath.atan2(awayEast, awayNorth), speedMps)

@@ -1,11 +1,11 @@
 package skein.environment
 
 import java.nio.FloatBuffer
-import skein.lanes.SteppedDuels
+import skein.lanes.LearnerDuels
 import skein.policy.{Policy, Role}
 import skein.signal.SplitMix64
 
-/** Up to [[SteppedDuels.WORLDS]] environments that fly side by side over one link: what befalls their
+/** Up to [[LearnerDuels.WORLDS]] environments that fly side by side over one link: what befalls their
   * messages is the same in all of them. Mutable; one thread at a time.
   *
   * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends before, by a
@@ -24,7 +24,7 @@ private final class DuelGroup(
 ) extends EnvironmentGroup:
   import DuelGroup.*
   import EnvironmentGroup.{CaptureReward, Tolerance}
-  import SteppedDuels.{FIELDS, WORLDS}
+  import LearnerDuels.{FIELDS, WORLDS}
 
   private val settings  = config.settings
   private val vehicles  = config.learners.map(role => if role == Role.Evader then 0 else 1).toArray
@@ -32,7 +32,7 @@ private final class DuelGroup(
   private val duels     =
     val evader  = if isOutside(0) then turning(settings.evaderRateRadPerS) else config.evader
     val pursuer = if isOutside(1) then SteeredPolicy(0) else config.pursuer
-    SteppedDuels(config.duel, config.model, evader, pursuer, isOutside)
+    LearnerDuels(config.duel, config.model, evader, pursuer, isOutside)
 
   private val seeds    = Array.ofDim[Long](WORLDS)
   private val episodes = Array.ofDim[Long](WORLDS)

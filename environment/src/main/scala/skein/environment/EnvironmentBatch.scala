@@ -3,7 +3,7 @@ package skein.environment
 import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
-import skein.lanes.SteppedDuels.WORLDS
+import skein.lanes.LearnerDuels.WORLDS
 import skein.policy.Policy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile

@@ -1,7 +1,7 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder, FloatBuffer}
-import skein.lanes.SteppedDuels.FIELDS
+import skein.lanes.LearnerDuels.FIELDS
 
 /** What an environment batch shares with who steps it: one block of memory, in the machine's byte order. Of A
   * learners (the evader first) and n environments, one after the other:

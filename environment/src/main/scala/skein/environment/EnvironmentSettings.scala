@@ -1,9 +1,10 @@
 package skein.environment
 
 import scala.jdk.CollectionConverters.*
+import scala.jdk.OptionConverters.*
 import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
-import skein.lanes.{SteppedDuels, LaneDynamics}
+import skein.lanes.{LearnerDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
 import skein.port.Moves
@@ -77,9 +78,11 @@ final case class EnvironmentSettings(
       against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
       (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
         if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
-      _ <- Option(
-        SteppedDuels.refusal(evader)
-      ).orElse(Option(SteppedDuels.refusal(pursuer))).map("opponent: " + _).toLeft(())
+      _ <- Vector(evader, pursuer)
+        .flatMap(LearnerDuels.refusal(_).toScala)
+        .headOption
+        .map("opponent: " + _)
+        .toLeft(())
     yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
 
   private[environment] def roles: Either[String, Vector[Role]] = Learners.get(learners).toRight(

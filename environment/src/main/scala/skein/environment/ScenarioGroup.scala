@@ -1,7 +1,7 @@
 package skein.environment
 
 import java.nio.FloatBuffer
-import skein.lanes.SteppedDuels.FIELDS
+import skein.lanes.LearnerDuels.FIELDS
 import skein.policy.{Policy, Role}
 import skein.signal.SplitMix64
 
@@ -18,7 +18,7 @@ private final class ScenarioGroup(
 
   private val settings = side.settings
   private val flights  =
-    Array.tabulate(count)(number => SteppedRollout(side, side.members(number % side.members.size)))
+    Array.tabulate(count)(number => LearnerRollout(side, side.members(number % side.members.size)))
   private val seeds    = Array.ofDim[Long](count)
   private val episodes = Array.ofDim[Long](count)
   private val isDone   = Array.ofDim[Boolean](count)

@@ -3,7 +3,7 @@ package skein.environment
 import java.nio.{ByteBuffer, ByteOrder}
 import skein.forward.{Delays, Duel, DuelOutcome, Reduced, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
-import skein.lanes.SteppedDuels.FIELDS
+import skein.lanes.LearnerDuels.FIELDS
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.Scenarios
 import skein.signal.SplitMix64

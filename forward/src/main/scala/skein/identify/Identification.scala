@@ -132,8 +132,8 @@ object Identification:
       blocks: Int,
       samples: Int
   ): Identification =
-    val quantile  = studentQuantile(blocks - 1)
-    val fitted    = structure.space.axes.zipWithIndex.map: (axis, i) =>
+    val quantile = studentQuantile(blocks - 1)
+    val fitted   = structure.space.axes.zipWithIndex.map: (axis, i) =>
       val value = solution.parameters(i)
       Fitted(
         axis.name,
@@ -162,7 +162,7 @@ object Identification:
     val n      = solution.parameters.length
     val normal = Array.tabulate(n, n)((i, j) => LeastSquares.dot(solution.jacobian(i), solution.jacobian(j)))
     val starts = windows.scanLeft(0)((at, window) => at + PerSample * window.size)
-    val scores  = windows.indices.groupMap(windows(_).block)(identity).values.map: members =>
+    val scores = windows.indices.groupMap(windows(_).block)(identity).values.map: members =>
       Array.tabulate(n): i =>
         members.iterator
           .flatMap(member => Iterator.range(starts(member), starts(member + 1)))

@@ -106,5 +106,6 @@ object SensorFit:
   private def wilson(share: Double, n: Double): (Double, Double) =
     val z2     = NormalQuantile.TwoSided95 * NormalQuantile.TwoSided95
     val middle = (share + z2 / (2 * n)) / (1 + z2 / n)
-    val half   = NormalQuantile.TwoSided95 / (1 + z2 / n) * math.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+    val half   =
+      NormalQuantile.TwoSided95 / (1 + z2 / n) * math.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
     (middle - half, middle + half)

@@ -1,7 +1,7 @@
 package skein.lanes
 
-/** Something that happens in an episode, as [[TimetableNotes]] notes it. Each vehicle's readings and decisions
-  * are numbered, and so are the views of all.
+/** Something that happens in an episode, as [[TimetableNotes]] notes it. Each vehicle's readings and
+  * decisions are numbered, and so are the views of all.
   */
 private[lanes] sealed trait Note:
   /** When, since the episode's begin, s; a decision's: not before. */

@@ -152,9 +152,9 @@ private final class TimetableCompiler(
       if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
       // Its effort is counted even where nobody uses it.
       headings(vehicle).usedAt(before + 1, at)
-    case Note.Act(vehicle, _, decision)            => headings(vehicle).usedAt(decision, at)
-    case score: Note.Score                         => usedAt(score.view, at)
-    case image: Note.Expose                        => usedAt(image.view, at)
+    case Note.Act(vehicle, _, decision)               => headings(vehicle).usedAt(decision, at)
+    case score: Note.Score                            => usedAt(score.view, at)
+    case image: Note.Expose                           => usedAt(image.view, at)
     case Note.Predict(vehicle, _, reading, from, way) =>
       readings(vehicle).usedAt(from, at)
       decidedUpon(vehicle)(from) = true

@@ -28,7 +28,8 @@ final case class RunningStats(count: Int, mean: Double, squares: Double):
   def sd: Double = if count < 2 then 0.0 else math.sqrt(squares / (count - 1))
 
   /** The true mean lies within so much of `mean` with 95 % confidence, by the normal approximation. */
-  def halfWidth95: Double = if count == 0 then Double.PositiveInfinity else NormalQuantile.TwoSided95 * sd / math.sqrt(count)
+  def halfWidth95: Double =
+    if count == 0 then Double.PositiveInfinity else NormalQuantile.TwoSided95 * sd / math.sqrt(count)
 
 object RunningStats:
   /** Whether all are [[RunningStats.isSame the same]], one by one. */

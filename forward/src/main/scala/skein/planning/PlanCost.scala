@@ -3,33 +3,6 @@ package skein.planning
 import skein.scenario.Fence
 import skein.vehicle.PlaneReading
 
-/** What a vehicle may be commanded.
-  *
-  * @param minSpeed m/s
-  * @param maxSpeed m/s; where both are equal, only the heading is planned
-  * @param maxTurnRate rad/s
-  * @param turningRadius m: the turn rate stays below speed / radius; 0 for a vehicle that turns on the spot
-  */
-final case class CommandLimits(
-    minSpeed: Double,
-    maxSpeed: Double,
-    maxTurnRate: Double,
-    turningRadius: Double = 0
-):
-  require(
-    0 <= minSpeed && minSpeed <= maxSpeed && maxTurnRate >= 0 && turningRadius >= 0,
-    s"limits must not be negative, the least speed not above the greatest: $this"
-  )
-
-  /** 1 / m. */
-  def curvature: Double = if turningRadius > 0 then 1 / turningRadius else 1e9
-
-  def turnRateAt(speed: Double): Double = math.min(maxTurnRate, speed * curvature)
-
-object CommandLimits:
-  /** The paper's pursuer: always 10 m/s, and a turning circle of 8 m, so 1.25 rad/s. */
-  val paperPursuer: CommandLimits = CommandLimits(10, 10, 1.25, 8)
-
 /** What is not left.
   *
   * @param marginM kept inside of it

@@ -202,7 +202,6 @@ private final class PassCompiler(
     val written = pass.outputs.map((node, output) => (of(node), inputs + output))
     for (vector, number) <- written do storeTo(vector, number)
 
-
   // Single operations.
 
   protected def constant(value: Float): Int =

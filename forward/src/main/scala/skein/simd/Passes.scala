@@ -148,7 +148,6 @@ private object Passes:
             most - 1
     places.toMap
 
-
 /** What an operation costs by lanes. */
 private object LaneCosts:
   /** About so many vector operations. */

@@ -34,10 +34,10 @@ private[lanes] object GpuPrediction:
   def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
     case predictive: LoopTiming.Predictive =>
       TimetablePredictor.of(predictive.predictor).flatMap:
-        case CoastPredictor      => Right(Some(GpuLagPrediction(_, _, 0)))
-        case lag: LagPredictor   => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
+        case CoastPredictor       => Right(Some(GpuLagPrediction(_, _, 0)))
+        case lag: LagPredictor    => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
         case drag: PlantPredictor => Right(Some(GpuPlantPrediction(_, _, drag.lanes)))
-        case _                   => Left("the GPU does not know what the loop predicts by")
+        case _                    => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 
   /** How many numbers one of a propagation's records has at most. */

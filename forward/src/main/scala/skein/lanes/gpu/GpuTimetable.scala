@@ -31,9 +31,9 @@ private[lanes] final case class GpuLayout(
     def doubled(now: Int, needed: Int) = if needed <= now then now else Integer.highestOneBit(needed * 2 - 1)
     copy(readings = doubled(readings, timetable.readings), headings = doubled(headings, timetable.headings))
 
-/** A [[Timetable]] as [[GpuFlightKernel]] reads it: of each operation [[stride]] words, which are the number of its
-  * label, where in own memory are what it takes and leaves, and its times; then the views, of each where the
-  * readings of all vehicles are.
+/** A [[Timetable]] as [[GpuFlightKernel]] reads it: of each operation [[stride]] words, which are the number
+  * of its label, where in own memory are what it takes and leaves, and its times; then the views, of each
+  * where the readings of all vehicles are.
   */
 private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout):
   import GpuTimetable.*

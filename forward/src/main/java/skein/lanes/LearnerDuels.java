@@ -3,6 +3,7 @@ package skein.lanes;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
 
+import java.util.Optional;
 import jdk.incubator.vector.FloatVector;
 import skein.forward.Duel;
 import skein.policy.Policy;
@@ -15,7 +16,7 @@ import skein.policy.Policy;
  * <p>Who decides from outside is a policy of a single number, which is told before each decision. So
  * a decision takes the same way as any policy's, to the same bits.
  */
-public final class SteppedDuels implements TimetableScores {
+public final class LearnerDuels implements TimetableScores {
   /** Worlds flown together. */
   public static final int WORLDS = LanePolicy.WORLDS;
 
@@ -46,7 +47,7 @@ public final class SteppedDuels implements TimetableScores {
    * @param evader of a single number where it decides from outside
    * @param isOutside whether the evader, and whether the pursuer does
    */
-  public SteppedDuels(
+  public LearnerDuels(
       Duel duel, LaneDynamics model, Policy evader, Policy pursuer, boolean[] isOutside) {
     this.isOutside = isOutside.clone();
     policies = new LanePolicy[] {LanePolicy.of(evader, false), LanePolicy.of(pursuer, false)};
@@ -63,10 +64,11 @@ public final class SteppedDuels implements TimetableScores {
     kernel = new TimetableKernel(agents, this);
   }
 
-  /** Why a policy does not fly so, for a person; null where it does. */
-  public static String refusal(Policy policy) {
+  /** Why a policy does not fly so, for a person; nothing where it does. */
+  public static Optional<String> refusal(Policy policy) {
     return PolicyLanes.of(policy).fold(
-        refused -> "expected a policy that is a formula: " + refused.getMessage(), form -> null);
+        refused -> Optional.of("expected a policy that is a formula: " + refused.getMessage()),
+        form -> Optional.empty());
   }
 
   /**

@@ -11,8 +11,8 @@ import skein.simd.WorldRandom
   *
   * @param learner the vehicle, by its place in the scenario
   */
-private final class SteppedRollout(side: ScenarioSide, learner: Int) extends AutoCloseable:
-  import SteppedRollout.*
+private final class LearnerRollout(side: ScenarioSide, learner: Int) extends AutoCloseable:
+  import LearnerRollout.*
 
   private val flying                 = Resumed(fly)
   private var next                   = Option.empty[(Long, Option[Policy])]
@@ -21,7 +21,7 @@ private final class SteppedRollout(side: ScenarioSide, learner: Int) extends Aut
   private val (rateRadPerS, turnRad) = side.settings.mostTurn(side.role)
 
   /** What the vehicle sees now, as [[PlanarObservation.fromOwnHeading]] has it. */
-  val seen: Array[Float] = Array.ofDim(skein.lanes.SteppedDuels.FIELDS)
+  val seen: Array[Float] = Array.ofDim(skein.lanes.LearnerDuels.FIELDS)
 
   /** How it is to turn now, −1 to 1. */
   var share: Double = 0
@@ -103,7 +103,7 @@ private final class SteppedRollout(side: ScenarioSide, learner: Int) extends Aut
         leastM = leastM.min(distanceM)
         loss += side.loss(distanceM, northM, eastM)
 
-private object SteppedRollout:
+private object LearnerRollout:
   private object Anew extends RuntimeException(null, null, false, false)
 
   /** Over the link, of which each episode meets one. */

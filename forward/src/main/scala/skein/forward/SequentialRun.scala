@@ -1,0 +1,28 @@
+package skein.forward
+
+/** [[LoopTiming.Sequential]]. */
+private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protected val world: DuelWorld)
+    extends LoopRun:
+  private val periodNs               = Nanos.of(timing.periodS)
+  private val observation            = DuelObservation(world.count)
+  val controllers: Array[Controller] =
+    Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
+
+  def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
+
+  def tick(vehicle: Int, number: Int): Unit =
+    val _ = world.ask(0, 0, number)
+
+  def answered(vehicle: Int, question: Int): Unit =
+    val step = world.stepOf(vehicle, question)
+    observation.take(world, vehicle, question)
+    if vehicle + 1 < world.count then
+      val _ = world.ask(0, vehicle + 1, step)
+    else
+      observation.takeSent(controllers)
+      for controller <- controllers do controller.offer(observation)
+      goOn(step)
+
+  def timedOut(vehicle: Int, question: Int): Unit = goOn(world.stepOf(vehicle, question))
+
+  private def goOn(step: Int): Unit = world.schedule(world.nowNs + periodNs, DuelWorld.Tick, 0, step + 1)

@@ -1,0 +1,35 @@
+package skein.lanes
+
+/** Which worlds fly together. */
+private[lanes] final class WorldBatches(order: Array[Int], starts: Array[Int]):
+  def count: Int = starts.length
+
+  /** Numbers of the worlds. */
+  def apply(batch: Int): Array[Int] =
+    java.util.Arrays.copyOfRange(
+      order,
+      starts(batch),
+      if batch + 1 < starts.length then starts(batch + 1) else order.length
+    )
+
+private[lanes] object WorldBatches:
+  def inOrder(numbers: Array[Int], most: Int): WorldBatches =
+    WorldBatches(numbers, Array.range(0, numbers.length, most))
+
+  /** A batch has worlds of one key and one link.
+    *
+    * @param numbers of those worlds that are flown
+    */
+  def byEpisode(worlds: Worlds, numbers: Array[Int], most: Int): WorldBatches =
+    val groups  = java.util.HashMap[(AnyRef, Int), Integer]()
+    val groupOf = numbers.map: world =>
+      groups.computeIfAbsent((worlds.link(world), worlds.key(world)), _ => groups.size).intValue
+    val sizes = Array.ofDim[Int](groups.size)
+    for group <- groupOf do sizes(group) += 1
+    val ends  = sizes.scanLeft(0)(_ + _)
+    val fill  = ends.clone
+    val order = Array.ofDim[Int](numbers.length)
+    for i <- numbers.indices do
+      order(fill(groupOf(i))) = numbers(i)
+      fill(groupOf(i)) += 1
+    WorldBatches(order, sizes.indices.flatMap(group => ends(group) until ends(group + 1) by most).toArray)

@@ -1,0 +1,56 @@
+package skein.optimise
+
+import skein.forward.Delays
+import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
+import skein.policy.{Policy, PolicyFamily, Role}
+import skein.simd.WorldRandom
+
+/** Flies a family's candidates against one opponent in [[DuelBatch]].
+  *
+  * @param role of the candidates
+  * @param opponent of the other role
+  * @param seed of the delays
+  * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]: for many candidates; one alone flies faster without
+  */
+final class DuelEvaluator(
+    batch: DuelBatch,
+    durationS: Double,
+    family: PolicyFamily,
+    role: Role,
+    opponent: Policy,
+    link: Delays,
+    objective: Objective,
+    seed: Long,
+    shareEpisodes: Boolean = true
+) extends ValueEvaluator:
+
+  override def sideBySide: Int =
+    val policy = family.defaultPolicy
+    if shareEpisodes then batch.sideBySide(pursuer(policy), evader(policy), link) else 1
+
+  def valuesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Array[Double]]] =
+    val policies = candidates.map(family.policy).toArray
+    val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
+    val worlds   = Worlds(policies, keys)
+    val outcomes = batch.fly(worlds, objective.captureRadiusM, isCancelled = isCancelled)
+    Option.when(outcomes.flown == worlds.size):
+      Vector.tabulate(policies.length): candidate =>
+        Array.tabulate(keys.length): episode =>
+          objective.value(outcomes, candidate * keys.length + episode, role, durationS)
+
+  private def pursuer(candidate: Policy): Policy = if role == Role.Pursuer then candidate else opponent
+  private def evader(candidate: Policy): Policy  = if role == Role.Evader then candidate else opponent
+
+  /** The candidate does not enter the key: all meet the same delays. */
+  private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
+    def size: Int                       = policies.length * keys.length
+    override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
+    override def episodesOfEach: Int    = keys.length
+    override def asked: Set[DuelNumber] = objective.asked(role)
+    def key(world: Int): Int            = keys(world % keys.length)
+    def link(world: Int): Delays        = DuelEvaluator.this.link
+    def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
+    def evader(world: Int): Policy      = DuelEvaluator.this.evader(policies(world / keys.length))
