@@ -90,7 +90,8 @@ final class DuelBatch(
 
   /** Which engine flies worlds of these policies, and why, in a line for the user.
     *
-    * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]
+    * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]; on a GPU, only worlds fly that tell
+    *   [[Worlds.episodesOfEach]] too
     * @param links that the worlds fly over: where delays are long for the period, or are recorded ones, no
     *   lanes know them
     */

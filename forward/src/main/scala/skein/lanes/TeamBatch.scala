@@ -38,7 +38,8 @@ final class TeamBatch(
 
   /** Which engine flies such a team, and why, in a line for the user.
     *
-    * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]
+    * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]; on a GPU, only worlds fly that tell
+    *   [[Worlds.episodesOfEach]] too
     * @param links that the worlds fly over
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
