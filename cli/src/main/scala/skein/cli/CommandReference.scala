@@ -14,5 +14,5 @@ object CommandReference:
       |
       |`./skein COMMAND --help` shows the same. `source <(./skein completion bash)` completes commands, options and known values; `zsh` works too.
       |
-      |Exit status: 0 done, 1 failed, 2 wrong arguments. Progress and errors go to standard error, results to standard output.
+      |Exit status: 0 done; 1 failed, or told of what cannot be flown; 2 unknown options, or values of the wrong kind. Progress and errors go to standard error, results to standard output.
       |""".stripMargin

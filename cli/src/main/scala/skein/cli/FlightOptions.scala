@@ -156,6 +156,9 @@ final case class FlightOptions(
       kind <- ScenarioSettings.kind(merged)
       told <- Arguments.settings(set).map(_.map((key, value) => ("--set", key, value)))
       keys = kind.settings.map(ConfigKeys.ofField)
+      _ <- Expect.all((short ++ told).groupBy(_._2).values.filter(_.sizeIs > 1).toVector): twice =>
+        Left(s"${twice.map((flag, _, _) => flag).mkString(" and ")}: expected '${twice.head._2}' once, " +
+          s"came ${twice.map((_, _, value) => value).mkString(" and ")}")
       known <- Expect.all(short ++ told): (flag, key, value) =>
         Either.cond(
           keys.contains(key),

@@ -169,7 +169,7 @@ final class FlyCommand(using Scenarios)
       Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n")).flatMap: flights =>
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
         val written =
-          Report.write(flights, out).map(output => shown.say(s"Report: ${output.page}"))
+          Report.write(flights, out).map(_.told.foreach(shown.say))
         val ended = landed.filter(_.outcome == FlightOutcome.Stopped).map(_.plan.id).toSet
         all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)

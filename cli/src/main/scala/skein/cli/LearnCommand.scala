@@ -33,7 +33,7 @@ final case class LearnOptions(
     @arg(doc = "time between decisions for one vehicle (default: 100ms)")
     period: Option[String],
     forward: ForwardOptions,
-    @arg(doc = "decisions to learn from, of all environments together (default: 600000; ppo: 2000000)")
+    @arg(doc = "decisions to learn from, of all environments together, rounded up to whole rounds (default: 600000; ppo: 2000000)")
     steps: Option[Long],
     @arg(doc = "widths of the hidden layers of all networks (default: 32x32)")
     network: Option[String],
@@ -141,7 +141,7 @@ final class LearnCommand(program: String)(using Scenarios)
          |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
-         |${question.environments} environments, ${setup.rounds * setup.stepsOfRound} steps; engine: ${setup.engine}""".stripMargin
+         |${question.environments} environments, ${steps(setup)}; engine: ${setup.engine}""".stripMargin
     )
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
@@ -170,6 +170,12 @@ final class LearnCommand(program: String)(using Scenarios)
       val sharing = setup.game.scenario.agents.count(_.role == setup.role)
       s"of ${setup.game.scenario.title}, which " +
         s"${if sharing == 1 then "one flies" else s"$sharing fly"}; ${setup.game.text}"
+
+  private def steps(setup: LearnSetup): String =
+    val flown   = setup.rounds * setup.stepsOfRound
+    val rounded =
+      if flown == setup.question.steps then "" else f" (${setup.question.steps}%,d in whole rounds)"
+    f"$flown%,d steps$rounded"
 
   private def progress(setup: LearnSetup, state: LearnState): String =
     val unit = setup.game.unit

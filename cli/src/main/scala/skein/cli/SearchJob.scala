@@ -60,9 +60,11 @@ private[cli] final class SearchJob(
     val axes = shownAxes.mkString(", ") + (if more > 0 then s" and $more more" else "")
     s"""${ready.text}: ${ready.subject(axes)}
        |loop ${ready.under}, every ${ready.periodMs.significant(4)} ms; ${ready.vehicles}
-       |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engines}${ready.rate(
+       |${ready.method}, about ${numbered(ready.search.expected)} episodes; engine: ${ready.engines}${ready.rate(
         threads
       ).fold("")("; " + _)}""".stripMargin
+
+  private def numbered(count: Long) = f"$count%,d"
 
   private def progress(state: SearchState): String =
     state.best.fold("no candidate measured yet"): best =>
@@ -74,12 +76,14 @@ private[cli] final class SearchJob(
     // Somebody who stops a search does not wait for long.
     val most         = if state.isDone then Int.MaxValue else effort.freshEpisodes
     val fresh        = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
+    say(f"measuring the best on $fresh%,d fresh episodes")
     val found        = SearchResult.measured(ready, runner(_), state, fresh)
     val result       = SearchResult(ready, found)
     val (name, text) = ready.file(found)
     for
       file <- OutFolder.write(folder, Seq(OutFolder.text(name, text)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
+      _ = found.doubt(ready.baseline.label).foreach(say)
       pictures <- if state.isDone then landscape(found.best, effort.within(fresh)) else Right(Vector.empty)
     yield say(s"written: ${(file ++ pictures).mkString(", ")}")
 

@@ -79,7 +79,7 @@ object HtmlReport:
     )
 
   private def cutShort(set: FlightSet): Seq[TypedTag[String]] =
-    (SummaryTables.cutShort(set) ++ SummaryTables.paused(set)).map(line => p(cls := "note", strong(line)))
+    SummaryTables.remarks(set).map(line => p(cls := "note", strong(line)))
 
   private def parameters(set: FlightSet): TextTable =
     TextTable(

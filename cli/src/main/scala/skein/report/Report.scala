@@ -2,6 +2,8 @@ package skein.report
 
 import java.io.IOException
 import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
 import skein.figures.Figure
 import skein.flight.InParallel
 import skein.measure.{FlightSet, FlightSummary}
@@ -22,8 +24,20 @@ object Report:
   /** What was written.
     *
     * @param withoutPng why there are no PNG files, where there are none
+    * @param isReplaced whether there was such a page before
+    * @param others recordings in the folder that it does not show
     */
-  final case class Output(page: Path, withoutPng: Option[String])
+  final case class Output(page: Path, withoutPng: Option[String], isReplaced: Boolean, others: Vector[String]):
+    /** Where it is, in lines for the user. */
+    def told: Vector[String] =
+      val shown = if others.size <= MostNamed then others else others.take(MostNamed) :+ "…"
+      s"Report: $page${if isReplaced then ", in the place of the one before" else ""}" +:
+        Option.when(others.nonEmpty)(
+          s"it does not show ${shown.mkString(", ")}, which are there too: " +
+            s"./skein report ${page.resolveSibling("*.duckdb")}"
+        ).toVector
+
+  private val MostNamed = 4
 
   /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which
     * is made if need be; files of these names are replaced.
@@ -32,15 +46,21 @@ object Report:
     */
   def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
     val figures = ReportFigures.of(set)
-    write(directory.resolve("report.html"), HtmlReport.render(set, figures), figures)
+    write(directory.resolve("report.html"), HtmlReport.render(set, figures), figures, set.all)
 
   /** Writes `spread.html` and its figures likewise. */
   def writeSpread(flights: Seq[FlightSummary], directory: Path)(using Scenarios): Either[String, Output] =
     val figures = ReportFigures.spread(flights)
-    write(directory.resolve("spread.html"), HtmlReport.spread(flights, figures), figures)
+    write(directory.resolve("spread.html"), HtmlReport.spread(flights, figures), figures, flights)
 
-  private def write(page: Path, text: String, figures: Vector[Figure]): Either[String, Output] =
+  private def write(
+      page: Path,
+      text: String,
+      figures: Vector[Figure],
+      flights: Seq[FlightSummary]
+  ): Either[String, Output] =
     try
+      val isReplaced = Files.exists(page)
       val folder = Files.createDirectories(page.resolveSibling("figures"))
       val _      = Files.writeString(page, text)
       for figure <- figures do
@@ -48,8 +68,20 @@ object Report:
       val (unpainted, painted) =
         onAllCores(figures)(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
       for (name, bytes) <- painted do Files.write(folder.resolve(s"$name.png"), bytes)
-      Right(Output(page, unpainted.headOption))
+      Right(Output(page, unpainted.headOption, isReplaced, others(page, flights.map(_.flight.id).toSet)))
     catch case failed: IOException => Left(s"cannot write the report to $page: $failed")
+
+  private def others(page: Path, shown: Set[String]): Vector[String] =
+    Using.resource(Files.list(page.toAbsolutePath.getParent)): files =>
+      files.iterator.asScala
+        .map(_.getFileName.toString)
+        .filter(_.endsWith(DuckDb))
+        .map(_.stripSuffix(DuckDb))
+        .filterNot(shown)
+        .toVector
+        .sorted
+
+  private val DuckDb = ".duckdb"
 
   /** What `f` makes of each, in their order. */
   private def onAllCores[A, B](items: Seq[A])(f: A => B): Vector[B] =

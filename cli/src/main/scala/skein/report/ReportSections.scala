@@ -31,12 +31,12 @@ object ReportSections:
     )
 
   /** All of a report, for the terminal: the tables, how far each loop was off the truth, and what was cut
-    * short or paused.
+    * short, paused or is not known here.
     */
   def text(set: FlightSet)(using Scenarios): String =
     val said = Vector(
       Verdict.sentences(set.deviations),
-      SummaryTables.cutShort(set) ++ SummaryTables.paused(set)
+      SummaryTables.remarks(set)
     ).filter(_.nonEmpty).map(_.mkString("\n"))
     (Section.text(of(set)) +: said).mkString("\n\n")
 

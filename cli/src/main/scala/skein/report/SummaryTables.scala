@@ -132,8 +132,11 @@ object SummaryTables:
           )
     )
 
+  /** What is to be known of single flights, a line each. */
+  def remarks(set: FlightSet): Vector[String] = cutShort(set) ++ paused(set) ++ unknown(set)
+
   /** A line for each flight that ended before its time. */
-  def cutShort(set: FlightSet): Vector[String] =
+  private def cutShort(set: FlightSet): Vector[String] =
     for
       summary <- set.all
       reason  <- summary.cutShort
@@ -141,8 +144,14 @@ object SummaryTables:
       val flown = s"${summary.flownS.fixed(1)} of ${summary.flight.duration.toSeconds.brief} s"
       s"${summary.flight.id} was cut short, after $flown: $reason"
 
+  /** A line for each scenario that is not known here. */
+  private def unknown(set: FlightSet): Vector[String] =
+    set.all.filter(_.scenario.isEmpty).groupBy(_.scenarioName).toVector.sortBy(_._1).map: (name, flights) =>
+      s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
+        "its measures, limits and pictures are left out; the program that flew it has them"
+
   /** A line for each flight that somebody paused. */
-  def paused(set: FlightSet): Vector[String] =
+  private def paused(set: FlightSet): Vector[String] =
     for
       summary <- set.all
       span    <- summary.paused

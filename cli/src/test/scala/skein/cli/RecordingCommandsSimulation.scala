@@ -76,7 +76,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     val row    = first("rows").arr.find(row => row(0).str == "stream").getOrElse(fail(text))
     assertEquals(row.arr.size, first("columns").arr.size)
     assert(row(2).num > 10, row.toString)
-    assert(err.contains("report in"), err)
+    assert(err.contains("Report: "), err)
 
   private val flown = FunFixture[Path](
     _ =>

@@ -18,7 +18,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       ("stream", "direct"),
       ("stream", "vpn")
     ).zipWithIndex.map:
-      case ((loop, link), index) => SyntheticFlight(loop, link, seed = index, seconds = 15)
+      case ((loop, link), index) => SyntheticFlight(loop, link, seed = index)
   )
 
   folder.test("a report is one page and its figures, each as SVG and PNG"): folder =>

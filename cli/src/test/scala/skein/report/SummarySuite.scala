@@ -130,20 +130,32 @@ class SummarySuite extends munit.FunSuite:
     assertEqualsDouble(set.deviation(set.flights(1)).get, means(1) / means(0) - 1, 1e-12)
     assertEquals(Report.of(Seq(stream)).deviation(set.flights(1)), None)
 
+  test("a flight is held against paused ones of its own period, duration and settings alone"):
+    def flight(recording: Recording)(change: FlightRow => FlightRow) =
+      recording.copy(heading = recording.heading.copy(flight = change(recording.heading.flight)))
+    val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 20)
+    val paused = SyntheticFlight("paused", "none", seed = 3, seconds = 20)
+    def against(truth: Recording) =
+      val set = Report.of(Seq(stream, truth))
+      set.deviation(set.flights.find(_.flight.loop == "stream").get)
+    assert(against(paused).isDefined)
+    assertEquals(against(SyntheticFlight("paused", "none", seed = 3, seconds = 15)), None)
+    assertEquals(against(flight(paused)(_.copy(period = Span.ofMillis(400)))), None)
+
   test("a published flight stands beside ours of the same loop and link, paused beside any"):
     assertEquals(Published.flight(LoopKind.Stream, "vpn").flatMap(_.distance).map(_.mean), Some(8.5))
     assertEquals(Published.flight(LoopKind.Paused, "none").flatMap(_.distance).map(_.mean), Some(8.53))
     assertEquals(Published.flight(LoopKind.Stream, "none"), None)
 
-  test("a flight that has not ten seconds has no last ten, and the paper's figure does not stand beside it"):
+  test("a flight that has not ten seconds has no last ten; the paper's figures stand beside flights of a minute"):
     def rows(seconds: Int) =
       SummaryTables.distances(Report.of(Seq(SyntheticFlight("stream", "direct", 1, seconds))))
     val (header, short) = (rows(6).header, rows(6).rows.head)
-    val long            = rows(12).rows.head
+    val (longer, long)  = (rows(12).rows.head, rows(60).rows.head)
     val (last, paper)   = (header.indexOf("last 10 s m"), header.indexOf("paper m"))
     assertEquals((short(last), short(paper)), ("< 10 s", ""))
-    assertEquals(long(paper), "9.31")
-    assert(long(last).toDouble > 0)
+    assertEquals((longer(paper), long(paper)), ("", "9.31"))
+    assert(longer(last).toDouble > 0)
 
   test("a flight that was cut short is marked in tables and page, stands beside nothing, and says why"):
     val whole                                          = SyntheticFlight("stream", "direct", 1, 20)

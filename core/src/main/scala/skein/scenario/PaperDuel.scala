@@ -48,7 +48,7 @@ final case class PaperDuel(
       PaperDuel.distance.leastAt("at")
     ).map(measure => Measure(measure.name, measure.unit)(tracks => measure.of(tracks.first(2))))
 
-  override def isPapersGame: Boolean  = true
+  override def isPapersGame: Boolean  = altitudeM == PaperDuel.AltitudeM
   override def isAsPublished: Boolean = asPublished
 
   override def note: String = "Horizontal distance between pursuer and evader."

@@ -11,13 +11,14 @@ enum Window:
   case After(seconds: Double)
 
   /** Instants of it; never empty. */
-  def of(tracks: Tracks): Option[Range] = this match
-    case Whole          => Some(tracks.instants)
+  def of(tracks: Tracks): Option[Range] = of(tracks.instants, tracks.stepS)
+
+  /** The same of instants that are so many seconds apart, the first at 0. */
+  def of(instants: Range, stepS: Double): Option[Range] = this match
+    case Whole          => Some(instants)
     case After(seconds) =>
-      val settled = tracks.instants.dropWhile(tracks.timeS(_) < seconds)
-      Some(if settled.isEmpty then tracks.instants else settled)
+      val settled = instants.dropWhile(_ * stepS < seconds)
+      Some(if settled.isEmpty then instants else settled)
     case Last(seconds) =>
-      val many = (seconds / tracks.stepS).toInt
-      Option.when(tracks.instants.size >= 0.95 * many)(
-        tracks.instants.drop(tracks.instants.size - 1 - many max 0)
-      )
+      val many = (seconds / stepS).toInt
+      Option.when(instants.size >= 0.95 * many)(instants.drop(instants.size - 1 - many max 0))

@@ -10,28 +10,15 @@ final case class Deviation(loop: String, name: String, link: String, clock: Stri
 
 object Deviation:
 
-  /** In the order of the flights, scenario by scenario; empty without a paused flight. A flight is held
-    * against the truth of the same policies, and of its own clock where there is one. Without the truth
-    * itself, and without those that a truth of 0 says nothing about.
+  /** In the order of the flights, scenario by scenario: each against its [[Truth]]. Empty without a paused
+    * flight.
     */
   def of(flights: Seq[FlightSummary]): Vector[Deviation] =
-    flights.toVector.map(_.scenario).distinct.flatMap(scenario =>
-      ofOne(flights.filter(_.scenario == scenario))
-    )
-
-  private def ofOne(flights: Seq[FlightSummary]): Vector[Deviation] =
-    val flown                           = flights.toVector.filter(one => one.headline.isDefined)
-    val truths                          = flown.filter(_.flight.isPaused)
-    def key(one: FlightSummary)         = (one.name, one.flight.link, one.flight.clock)
-    def mean(of: Vector[FlightSummary]) = Distribution.of(of.flatMap(_.headline)).map(_.mean)
-    def truthFor(policy: Option[String], clock: String): Option[Double] =
-      val same = truths.filter(_.policy == policy)
-      mean(same.filter(_.flight.clock == clock)).orElse(mean(same))
-    val others = flown.filterNot(_.flight.isPaused)
-    for
-      same <- others.map(key).distinct
-      group = others.filter(key(_) == same)
-      first = group.head
-      truth <- truthFor(first.policy, first.flight.clock) if truth != 0
-      share <- Distribution.of(group.flatMap(_.headline).map(_ / truth - 1))
-    yield Deviation(first.flight.loop, first.name, first.flight.link, first.flight.clock, share)
+    def key(one: FlightSummary) = (one.scenario, one.name, one.flight.link, one.flight.clock)
+    val keys                    = flights.map(_.scenario).distinct.zipWithIndex.toMap
+    val off = flights.toVector.flatMap(one => Truth.deviation(one, flights).map(one -> _))
+    off.map((one, _) => key(one)).distinct.sortBy((scenario, _, _, _) => keys(scenario)).flatMap: same =>
+      val group = off.filter((one, _) => key(one) == same)
+      val first = group.head._1
+      Distribution.of(group.map(_._2)).map: share =>
+        Deviation(first.flight.loop, first.name, first.flight.link, first.flight.clock, share)

@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.scenario.Track
+import skein.scenario.{Track, Window}
 import skein.units.*
 
 /** The horizontal distance between two vehicles at equal instants of the simulator's clock.
@@ -14,15 +14,12 @@ final case class DistanceCurve private (points: Vector[(Double, Double)]):
 
   /** Distances over the last 10 s, evenly spaced in time, m; absent for a curve that has not as much. */
   val lastTenSeconds: Option[Distribution] =
-    val end = points.last._1
-    if end < 10 - DistanceCurve.marginS then None
-    else Distribution.of(points.collect { case (time, distance) if time >= end - 10 => distance })
+    Window.Last(10).of(points.indices, DistanceCurve.step.toSeconds).flatMap(instants =>
+      Distribution.of(instants.map(points(_)._2))
+    )
 
 object DistanceCurve:
   private val step = Span.ofMillis(20)
-
-  /** Readings begin after a flight's start and end before its end, s. */
-  private val marginS = 0.5
 
   /** Over the time for which both tracks run; none if there is no such time. */
   def between(one: Track, other: Track): Option[DistanceCurve] =

@@ -14,10 +14,8 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
 
   /** The flight that the others are measured against. */
-  val truth: Option[FlightSummary] = truthOf(None)
-
-  private def truthOf(policy: Option[String]): Option[FlightSummary] =
-    flights.find(summary => summary.flight.isPaused && summary.policy == policy)
+  val truth: Option[FlightSummary] =
+    flights.find(summary => summary.flight.isPaused && summary.policy.isEmpty)
 
   /** Those of one kind of scenario. */
   def ofKind(name: String): FlightSet =
@@ -35,15 +33,8 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   /** By loop and link. */
   def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
 
-  /** What stands for a flight against that of the truth with the same policies, as a share of it; absent for
-    * the truth itself.
-    */
-  def deviation(flight: FlightSummary): Option[Double] =
-    for
-      truth <- truthOf(flight.policy) if truth != flight
-      from  <- truth.distance.flatMap(_.lastTenSeconds)
-      own   <- flight.distance.flatMap(_.lastTenSeconds)
-    yield own.mean / from.mean - 1
+  /** What a flight comes to against its [[Truth]]. */
+  def deviation(flight: FlightSummary): Option[Double] = Truth.deviation(flight, all)
 
 object FlightSet:
   private val linkOrder = Vector("none", "direct", "vpn", "vpn-mixed")

@@ -83,16 +83,15 @@ final case class FlightSummary(
   def headline: Option[Double] =
     result.filter(_ => cutShort.isEmpty && paused.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
 
-  /** The paper's flight of this loop over this link, if this is of the paper's game. No flight that was cut
-    * short or paused stands beside it.
+  /** The paper's flight of this loop over this link, if this is of the paper's game, as long and with as long
+    * a period. No flight that was cut short or paused stands beside it.
     */
   def published: Option[Published.Flight] =
-    if !scenario.exists(
-        _.isPapersGame
-      ) || policy.isDefined || solver.isDefined || cutShort.isDefined || paused.isDefined
-    then
-      None
-    else flight.loopKind.flatMap(Published.flight(_, flight.link))
+    val isAlike = scenario.exists(_.isPapersGame) && flight.period == Published.Period &&
+      flight.duration == Published.Duration && policy.isEmpty && solver.isEmpty
+    if isAlike && cutShort.isEmpty && paused.isEmpty then
+      flight.loopKind.flatMap(Published.flight(_, flight.link))
+    else None
 
   def count(kind: EventKind): Int = events.getOrElse(kind, 0)
 

@@ -2,6 +2,7 @@ package skein.measure
 
 import skein.policy.Role
 import skein.record.LoopKind
+import skein.units.Span
 
 /** The paper's results, from its text and its published result files (RoboticsDesignLab/StreamingSimPaper).
   */
@@ -33,6 +34,10 @@ object Published:
     */
   def flight(loop: LoopKind, link: String): Option[Flight] =
     flights.find(flight => flight.loop == loop && (flight.link == link || loop == LoopKind.Paused))
+
+  /** Between two decisions for a vehicle, and of a flight. */
+  val Period: Span   = Span.ofMillis(100)
+  val Duration: Span = Span.ofSeconds(60)
 
   val flights: Vector[Flight] = Vector(
     Flight(

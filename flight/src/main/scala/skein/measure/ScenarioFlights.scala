@@ -10,20 +10,16 @@ final case class ScenarioFlights(flights: Vector[ScenarioFlights.Flown]):
   /** The flight that the others are measured against. */
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)
 
-  /** The first measure against the truth's, as a share of the truth's; absent for the truth itself, and where
-    * that came to 0.
-    */
+  /** The first measure against that of the flight's [[Truth]]. */
   def deviation(flight: ScenarioFlights.Flown): Option[Double] =
-    for
-      truth <- truth if truth != flight
-      from  <- truth.summary.headline if from != 0
-      own   <- flight.summary.headline
-    yield own / from - 1
+    Truth.deviation(flight.summary, flights.map(_.summary))
 
-  /** Root mean square distance from the truth's places at the same time, m; absent for the truth itself. */
+  /** Root mean square distance from the places of its [[Truth]] at the same time, m; absent for the truth
+    * itself.
+    */
   def offTruthM(flight: ScenarioFlights.Flown): Option[Double] =
-    truth.filter(_ != flight).map(truth =>
-      flight.result.tracks.rmsFrom(truth.result.tracks, inSpace = !scenario.isPlanar)
+    Truth.of(flight.summary, flights.map(_.summary)).headOption.flatMap(_.result).map(truth =>
+      flight.result.tracks.rmsFrom(truth.tracks, inSpace = !scenario.isPlanar)
     )
 
 object ScenarioFlights:

@@ -215,9 +215,10 @@ object FlySettings:
       Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
         "links: expected at least one link for any loop but paused, came none"
       ),
-      Option.when(
-        settings.duration <= Span.Zero
-      )(s"duration: expected more than 0, came ${settings.duration.toSeconds} s"),
+      Option.when(settings.duration < settings.period * 2)(
+        s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
+          s"came ${settings.duration.toMillis} ms"
+      ),
       Option.when(
         settings.period < Span.ofMillis(1)
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
