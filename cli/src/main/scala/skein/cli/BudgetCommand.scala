@@ -27,9 +27,9 @@ final case class BudgetOptions(
     forward: ForwardOptions,
     @arg(doc = "time between decisions for one vehicle; each of several gets a map (default: 100ms)")
     period: Seq[String],
-    @arg(name = "most-mean", doc = "mean latency at which the map ends (default: 200ms)")
+    @arg(name = "most-mean", doc = "the map's mean latencies are below this (default: 200ms of a round trip)")
     mostMean: Option[String],
-    @arg(name = "most-jitter", doc = "jitter at which the map ends (default: 100ms)")
+    @arg(name = "most-jitter", doc = "the map's jitters are below this (default: 100ms of a round trip)")
     mostJitter: Option[String],
     @arg(doc = "cells along the latency (default: 40; of a scenario 10)")
     means: Option[Int],
@@ -74,6 +74,8 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       tolerance  <- toleranceOf(options)
       atJitterMs <- milliseconds("--at-jitter", options.atJitter, 20, legs)
       axes       <- axesOf(options, legs)
+      _          <- Expect.that(options.atJitter.isEmpty || atJitterMs <= axes.jittersMs.last):
+        s"--at-jitter: expected what the map has, up to ${(axes.jittersMs.last / legs.perRoundTrip).significant(3)} ms"
       _          <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
         s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
       periods <- Expect.all(if options.period.isEmpty then Seq("100ms") else options.period)(
@@ -88,17 +90,22 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       _        <- Expect.that(subjects.forall(_.loop != LoopKind.Paused.label)):
         "--loop: the paused loop is the truth and feels no latency; expected another"
       folder <- OutFolder.made("--out", options.out)
-      maps   <- options.view.serving("budget"): task =>
-        elsewhere(cluster, options, questions, subjects, folder, threads):
-          fly(options, _, tolerance, axes, legs, task)
-      files <- write(maps, folder)
-    yield
-      val shown = Shown(options.json.value)
-      if options.json.value then Console.out.println(BudgetMap.json(maps))
-      for map <- maps do
-        shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
-        map.markLines.foreach(line => shown.say(s"  $line"))
-      shown.say(s"written: ${files.mkString(", ")}")
+      _      <- OutFolder.alone(folder):
+        for
+          maps <- options.view.serving("budget"): task =>
+            elsewhere(cluster, options, questions, subjects, folder, threads):
+              fly(options, _, tolerance, axes, legs, task)
+          _ = tell(options, maps, atJitterMs)
+          files <- write(maps, folder)
+        yield Shown(options.json.value).say(s"written: ${files.mkString(", ")}")
+    yield ()
+
+  private def tell(options: BudgetOptions, maps: Vector[BudgetMap], atJitterMs: Double): Unit =
+    val shown = Shown(options.json.value)
+    if options.json.value then Console.out.println(BudgetMap.json(maps))
+    for map <- maps do
+      shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
+      map.markLines.foreach(line => shown.say(s"  $line"))
 
   private def scenario(options: BudgetOptions) = options.scenario.orElse(scenarios.firstWithoutGame)
 
@@ -166,11 +173,10 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
         .bytes(questions, subjects)
         .flatMap: question =>
           val shown = Shown(options.json.value)
-          OutFolder.alone(folder):
-            ClusterRun.using(asked, program, QuestionKind.Budget.of(question), folder, threads, shown): run =>
-              fly(subjects.zipWithIndex.map((one, number) =>
-                ClusterSubject(one, number, run, () => run.share, asked.block)
-              ))
+          ClusterRun.using(asked, program, QuestionKind.Budget.of(question), folder, threads, shown): run =>
+            fly(subjects.zipWithIndex.map((one, number) =>
+              ClusterSubject(one, number, run, () => run.share, asked.block)
+            ))
 
   private def milliseconds(option: String, text: Option[String], otherwise: Double, legs: Legs) =
     text

@@ -49,7 +49,9 @@ private[cli] final class SearchJob(
         candidates.others(ready.engine(ready.space.defaults, Judge.Candidates)).foreach(say)
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
-        else conclude(state).map(_ => if !state.isDone then say(goOn))
+        else if !state.best.get.tally.mean.isFinite then
+          Left(s"${ready.formula}: even the best candidate comes to no number; choose another objective")
+        else conclude(state, () => stopped).map(_ => if !state.isDone then say(goOn))
 
   private def introduction: String =
     val shownAxes =
@@ -71,7 +73,7 @@ private[cli] final class SearchJob(
       s"best ${best.tally.mean.significant(4)} ${ready.unit} with ${ready.label(best.candidate)}"
 
   /** Measures the winner on fresh episodes and writes it with pictures. */
-  private def conclude(state: SearchState): Either[String, Unit] =
+  private def conclude(state: SearchState, isStopped: () => Boolean): Either[String, Unit] =
     val effort = ready.effort
     // Somebody who stops a search does not wait for long.
     val most         = if state.isDone then Int.MaxValue else effort.freshEpisodes
@@ -84,26 +86,41 @@ private[cli] final class SearchJob(
       file <- OutFolder.write(folder, Seq(OutFolder.text(name, text)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       _ = found.doubt(ready.baseline.label).foreach(say)
-      pictures <- if state.isDone then landscape(found.best, effort.within(fresh)) else Right(Vector.empty)
+      pictures <-
+        if state.isDone then landscape(found.best, effort.within(fresh), isStopped) else Right(Vector.empty)
     yield say(s"written: ${(file ++ pictures).mkString(", ")}")
 
-  private def landscape(best: Vector[Double], effort: Effort): Either[String, Vector[Path]] =
+  private def landscape(
+      best: Vector[Double],
+      effort: Effort,
+      isStopped: () => Boolean
+  ): Either[String, Vector[Path]] =
     say("drawing the landscape")
+    val line = ProgressLine(effort.onMap, Console.err)
     val land = Landscape.of(
       ready.space,
       best,
       runner(Judge.Candidates),
       SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
+      isStopped,
       onCurve = effort.onCurve,
       onMap = effort.onMap,
-      onRow = onShow.landscape
+      onRow = rows =>
+        line.show(rows.cells.size, "rows of the landscape")
+        onShow.landscape(rows)
     )
-    val title = s"${ready.title}, model ${ready.model}"
-    OutFolder.write(
-      folder,
-      OutFolder.picture("landscape", LandscapeFigure(land, title, ready.measure), title) :+
-        OutFolder.text("landscape.csv", land.csv)
-    )
+    line.end()
+    land match
+      case None =>
+        say(s"stopped; ./skein search --resume $folder draws the landscape")
+        Right(Vector.empty)
+      case Some(land) =>
+        val title = s"${ready.title}, model ${ready.model}"
+        OutFolder.write(
+          folder,
+          OutFolder.picture("landscape", LandscapeFigure(land, title, ready.measure), title) :+
+            OutFolder.text("landscape.csv", land.csv)
+        )
 
   private def say(text: String): Unit = shown.say(lines(text))
 

@@ -41,43 +41,50 @@ object Landscape:
   private val Probes = 9
 
   /** @param episodes of every cell
+    * @param isStopped asked now and then, from any thread
     * @param onMap points along each axis of a map
     * @param onRow told of the map after each of its rows
+    * @return none if it was stopped
     */
   def of(
       space: SearchSpace,
       best: Vector[Double],
       evaluator: Evaluator,
       episodes: Range,
+      isStopped: () => Boolean,
       onCurve: Int = OnCurve,
       onMap: Int = OnMap,
       onRow: Landscape => Unit = _ => ()
-  ): Landscape =
+  ): Option[Landscape] =
+    def tallies(candidates: Vector[Vector[Double]]) =
+      evaluator.talliesUnless(isStopped)(candidates, episodes)
     def values(axis: Int, count: Int) =
       Vector.tabulate(count)(i => space.axes(axis).least + space.axes(axis).width * i / (count - 1))
     if space.dimension == 1 then
       val xs = values(0, onCurve)
-      Landscape(space, best, 0, None, xs, Vector(0), Vector(evaluator.tallies(xs.map(Vector(_)), episodes)))
+      tallies(xs.map(Vector(_))).map(row => Landscape(space, best, 0, None, xs, Vector(0), Vector(row)))
     else
-      val Vector(x, y) = mostSensitive(space, best, evaluator, episodes): @unchecked
-      val (xs, ys)     = (values(x, onMap), values(y, onMap))
-      ys.foldLeft(Landscape(space, best, x, Some(y), xs, ys, Vector.empty)): (below, yValue) =>
-        val row  = evaluator.tallies(xs.map(xValue => best.updated(x, xValue).updated(y, yValue)), episodes)
-        val land = below.copy(cells = below.cells :+ row)
-        onRow(land)
-        land
+      mostSensitive(space, best)(tallies).flatMap: (x, y) =>
+        val (xs, ys) = (values(x, onMap), values(y, onMap))
+        val empty    = Landscape(space, best, x, Some(y), xs, ys, Vector.empty)
+        ys.foldLeft(Option(empty)): (below, yValue) =>
+          for
+            below <- below
+            row   <- tallies(xs.map(xValue => best.updated(x, xValue).updated(y, yValue)))
+          yield
+            val land = below.copy(cells = below.cells :+ row)
+            onRow(land)
+            land
 
   /** The two axes along which the objective's mean varies most, in the order of the space. */
-  private def mostSensitive(
-      space: SearchSpace,
-      best: Vector[Double],
-      evaluator: Evaluator,
-      episodes: Range
-  ): Vector[Int] =
+  private def mostSensitive(space: SearchSpace, best: Vector[Double])(
+      tallies: Vector[Vector[Double]] => Option[Vector[RunningStats]]
+  ): Option[(Int, Int)] =
     val axes   = space.axes.indices.toVector
     val probes = axes.flatMap: axis =>
       Vector.tabulate(Probes): i =>
         best.updated(axis, space.axes(axis).least + space.axes(axis).width * i / (Probes - 1))
-    val varied = evaluator.tallies(probes, episodes).map(_.mean).grouped(Probes).map: means =>
-      RunningStats.of(means.size)(means).sd
-    axes.zip(varied.toVector).sortBy(-_._2).take(2).map(_._1).sorted
+    tallies(probes).map: told =>
+      val varied   = told.map(_.mean).grouped(Probes).map(means => RunningStats.of(means.size)(means).sd)
+      val Seq(x, y) = axes.zip(varied.toVector).sortBy(-_._2).take(2).map(_._1).sorted: @unchecked
+      (x, y)

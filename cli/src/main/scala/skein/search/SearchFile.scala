@@ -3,8 +3,16 @@ package skein.search
 import skein.optimise.{CmaEs, MethodState, Scored, SearchState, RunningStats}
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
 
-/** A search as it stands on disk: the question, and the state it has come to. */
-final case class SearchFile(version: Int, question: SearchFile.Question, state: SearchState)
+/** A search as it stands on disk: the question, and the state it has come to.
+  *
+  * @param files [[NamedFiles.digests]] of what the question names
+  */
+final case class SearchFile(
+    version: Int,
+    question: SearchFile.Question,
+    state: SearchState,
+    files: Map[String, String] = Map.empty
+)
 
 object SearchFile:
   val Name           = "search.json"
@@ -13,6 +21,13 @@ object SearchFile:
   export onDisk.{json, parse, read, write}
 
   type Question = SearchQuestion | TeamQuestion
+
+  /** What a question names, some of which may be files. */
+  def named(question: Question): Seq[String] =
+    val (link, conditions) = question match
+      case duel: SearchQuestion => (duel.link, duel.conditions)
+      case team: TeamQuestion   => (team.link, team.conditions)
+    Seq(link, conditions.plant) ++ conditions.eye
 
   given ReadWriter[RunningStats]        = ReadWriter.derived
   private given ReadWriter[Scored]      = ReadWriter.derived

@@ -15,6 +15,8 @@ final class SearchRun(
 ):
   import SearchRun.*
 
+  private val files = NamedFiles.digests(SearchFile.named(question))
+
   /** @param isStopped asked now and then, from any thread; the step under way is given up then
     * @param onStep told of every state
     * @return the last state, or why it could not be kept
@@ -40,7 +42,7 @@ final class SearchRun(
     saved.flatMap(_ => save(state)).map(_ => state)
 
   private def save(state: SearchState) =
-    SearchFile.write(folder, SearchFile(SearchFile.Version, question, state))
+    SearchFile.write(folder, SearchFile(SearchFile.Version, question, state, files))
 
 object SearchRun:
   private val FirstStep = 256

@@ -64,6 +64,8 @@ final case class TeamQuestion(
       _     <- Expect.that(vary.nonEmpty)("--vary: expected a setting to search, for example ring-m=4..12")
       plain <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
       axes  <- Expect.each(vary)(axis(kind, plain, _))
+      _     <- Expect.that(!vary.exists(each => set.contains(each.key))):
+        s"--set: ${vary.map(_.key).filter(set.contains).mkString(", ")} is searched by --vary; expected one of both"
       _     <- Expect.that(axes.map(_.name).distinct.size == axes.size):
         s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
       space = SearchSpace(axes)

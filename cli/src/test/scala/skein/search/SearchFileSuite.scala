@@ -41,6 +41,18 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
         ready.search.step(read.state, evaluator, 17)
       assertEquals(broken, unbroken)
 
+  test("files that a question names are known by what they held"):
+    val folder = temporaryFolder()
+    val file   = Files.writeString(folder.resolve("link.txt"), "20\n30\n")
+    val before = NamedFiles.digests(Seq(s"file:$file", "reduced", "vpn"))
+    assertEquals(before.keySet, Set(file.toString))
+    assertEquals(NamedFiles.changed(before), Vector.empty)
+    Files.writeString(file, "150\n200\n")
+    assertEquals(NamedFiles.changed(before), Vector(file.toString))
+    Files.delete(file)
+    assertEquals(NamedFiles.changed(before), Vector(file.toString))
+    Files.delete(folder)
+
   test("a run leaves its last state in the folder, and nothing half-written"):
     val folder = temporaryFolder()
     val ready  = setup("cma-es")

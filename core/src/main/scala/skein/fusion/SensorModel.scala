@@ -33,7 +33,8 @@ final case class SensorModel(
     deadlineS: Double = 0.3,
     fusion: FusionSettings = FusionSettings()
 ):
-  require(everyS > 0, s"expected a positive time between images, came $everyS s")
+  require(everyS >= 0.001, s"expected a millisecond or more between images, came $everyS s")
+  require(takes.quantile(0) >= Span.Zero, s"expected a recognition that takes no negative time, came $takes")
   require(fovRad > 0 && fovRad < math.Pi, s"expected a field of view between 0 and π, came $fovRad rad")
   require(farthestM > 0, s"expected a positive largest range, came $farthestM m")
   require(detection >= 0 && detection <= 1, s"expected a detection between 0 and 1, came $detection")

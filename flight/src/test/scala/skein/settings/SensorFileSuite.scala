@@ -18,12 +18,15 @@ class SensorFileSuite extends munit.FunSuite:
     val lines = (whole ++ changed).map((key, value) => s"$key = $value")
     SensorFile.parse(lines.mkString("skein.sensor {\n", "\n", "\n}"), "sensor.conf")
 
+  test("a recognition that ends before it began is told as the mistake"):
+    assert(read("takes-ms" -> "[-5]").left.exists(_.contains("takes no negative time")), read("takes-ms" -> "[-5]"))
+
   test("a file of which no value is wrong is a sensor"):
     assert(read().isRight, read())
 
   for
     (key, value, mistake) <- Seq(
-      ("every-s", "0", "expected a positive time between images, came 0.0 s"),
+      ("every-s", "1e-7", "expected a millisecond or more between images, came 1.0E-7 s"),
       ("farthest-m", "-1", "expected a positive largest range, came -1.0 m"),
       ("detection.value", "1.5", "expected a detection between 0 and 1, came 1.5"),
       ("range-bias.value", "0", "expected a positive bias of the range, of 1 where it is exact, came 0.0"),

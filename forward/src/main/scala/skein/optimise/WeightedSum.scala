@@ -1,5 +1,7 @@
 package skein.optimise
 
+import skein.units.Expect
+
 /** What is made small or large, as users write it: `0.7*last10s + 0.3*effort`, with `minimise` or `maximise`
   * before it or not.
   *
@@ -10,8 +12,9 @@ final case class WeightedSum[M](terms: Vector[(Double, M)], stated: Option[Direc
 
 object WeightedSum:
   private val Number   = """(?:(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*\*\s*)?"""
+  private val Most     = 1e9
   private val Plain    = term("""[A-Za-z]\w*""")
-  private val Hyphened = term("""[A-Za-z]\w*(?:-[A-Za-z]\w*)*""")
+  private val Hyphened = term("""[A-Za-z]\w*(?:-\w+)*""")
   private val Directed = """\s*(minimi[sz]e|maximi[sz]e)\s+(.*)""".r
 
   private def term(name: String) = s"""\\s*([+-])?\\s*$Number($name)\\s*(?:\\(([^)]*)\\))?\\s*""".r
@@ -38,6 +41,9 @@ object WeightedSum:
           case Some(term) if read.isEmpty || term.group(1) != null =>
             val size = Option(term.group(2)).fold(1.0)(_.toDouble)
             for
+              _ <- Expect.that(size <= Most):
+                s"objective '$text', at character ${offset + from + 1}: expected a weight up to $Most, " +
+                  s"came ${term.group(2)}"
               measure <- measureOf(term.group(3), Option(term.group(4)))
                 .left
                 .map(mistake =>

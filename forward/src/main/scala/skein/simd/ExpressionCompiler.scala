@@ -104,7 +104,10 @@ private[skein] abstract class ExpressionCompiler:
       case Op.Hypot =>
         val (x, y) = (a, b)
         sqrt(fma(x, x, mul(y, y)))
-      case Op.Exp   => exp(within(a, constant(-87f), constant(88f)))
+      case Op.Exp   =>
+        val x      = a
+        val finite = choose(exp(x), constant(Float.PositiveInfinity), isLess(constant(88f), x))
+        choose(finite, constant(0f), isLess(x, constant(-87f)))
       case Op.Tanh  => tanh(a)
       case Op.Acos  => acos(node.args(0))
       case Op.Asin  => sub(constant(1.57079633f), acos(node.args(0)))
@@ -179,6 +182,7 @@ private[skein] abstract class ExpressionCompiler:
     val angle  = choose(third, sub(constant(3.14159265f), third), isLess(x, constant(0f)))
     ofBits(orBits(bitsOf(angle), andBits(bitsOf(y), bitConstant(Int.MinValue))))
 
+  /** From −87 to 88: beyond, what it comes to is no float. */
   private def exp(x: Int): Int =
     val rounded = fma(x, constant(1.44269504f), constant(Round))
     val power   = sub(rounded, constant(Round))
@@ -201,13 +205,15 @@ private[skein] abstract class ExpressionCompiler:
     val power  = exp(add(inside, inside))
     div(sub(power, constant(1f)), add(power, constant(1f)))
 
-  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. */
+  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. What is above 1 by rounding counts as 1; beyond,
+    * the root is no number.
+    */
   private def acos(of: Node): Int =
     val x     = this.of(of)
     val plain = isPositive(of)
     val one   = constant(1f)
     val whole = if plain then x else abs(x)
-    val size  = choose(whole, one, isLess(one, whole))
+    val size  = choose(whole, one, and(isLess(one, whole), isLess(whole, constant(1.000001f))))
     val rise  = series(
       size,
       -0.0012624911f,
@@ -239,14 +245,37 @@ private[skein] abstract class ExpressionCompiler:
   private def signed(x: Int, sign: Int): Int = ofBits(xorBits(bitsOf(x), sign))
 
   /** The limit where it is beyond the value: in two instructions, where a machine's own `min` and `max` take
-    * up to six. What is no number stays so within limits that are.
+    * up to six. What is no number stays so: it is the value, if only one of the two may be none.
     *
     * @param isBeyond whether a limit is, of a limit and a value
     */
   private def extreme(node: Node)(isBeyond: (Int, Int) => Int): Int =
-    val Vector(a, b)   = node.args
-    val (value, limit) = if b.isConst || b.op == Op.Param then (of(a), of(b)) else (of(b), of(a))
-    choose(value, limit, isBeyond(limit, value))
+    val Vector(a, b) = node.args
+    val (value, limit) =
+      if b.isConst || b.op == Op.Param || !isNumber(a) && isNumber(b) then (a, b) else (b, a)
+    val (of, most) = (this.of(value), this.of(limit))
+    val beyond     = isBeyond(most, of)
+    choose(of, most, if isNumber(limit) then beyond else or(beyond, not(isEqual(most, most))))
+
+  private val numbers = mutable.HashMap.empty[Node, Boolean]
+
+  /** Whether it is a number where the inputs are, and nothing is greater than floats hold. */
+  private def isNumber(node: Node): Boolean =
+    // Expressions may be deeper than a stack of calls.
+    val asked = mutable.Stack(node)
+    while asked.nonEmpty do
+      val unknown = asked.top.args.filterNot(numbers.contains)
+      if unknown.nonEmpty then asked.pushAll(unknown)
+      else
+        val known = asked.pop()
+        numbers(known) = known.op match
+          case Op.Div | Op.Remainder =>
+            known.args(1).isConst && !known.args(1).is(0) && numbers(known.args(0))
+          case Op.Sqrt           => isPositive(known.args(0)) && numbers(known.args(0))
+          case Op.Asin | Op.Acos => false
+          case Op.Const          => !known.value.isNaN
+          case _                 => known.args.forall(numbers)
+    numbers(node)
 
   private def within(value: Int, least: Int, most: Int): Int =
     val low = choose(value, most, isLess(most, value))

@@ -77,6 +77,22 @@ class LaneMathSuite extends munit.FunSuite:
     val error = (0 until count).map(i => math.abs(out(i) / math.exp(xs(i)) - 1)).max
     assert(error < 2.5e-7, error)
 
+  test("what floats do not hold, and what is no number, comes to what doubles come to"):
+    val lanes                                = LaneFunction.COUNT
+    def one(op: Op, x: Double)               = compiled(op, Array.fill(lanes)(x.toFloat)).head
+    def two(op: Op, x: Double, y: Double)    =
+      // Quotients, which may be no numbers.
+      val of = (trace: Trace, x: Node) =>
+        trace.binary(op, trace.div(x, trace.input(1)), trace.div(trace.input(2), trace.input(1)))
+      compiled(of, Array.fill(lanes)(x.toFloat), Array.fill(lanes)(1f), Array.fill(lanes)(y.toFloat)).head
+    assertEquals((one(Op.Exp, 89), one(Op.Exp, -100)), (Float.PositiveInfinity, 0f))
+    for op <- Seq(Op.Exp, Op.Asin, Op.Acos, Op.Tanh) do assert(one(op, Double.NaN).isNaN, op)
+    for x <- Seq(1.5, -1.5, 20, -20); op <- Seq(Op.Asin, Op.Acos) do assert(one(op, x).isNaN, s"$op($x)")
+    assertEquals(one(Op.Acos, 1.0000005), 0f)
+    for op <- Seq(Op.Min, Op.Max); (x, y) <- Seq((Double.NaN, 1.0), (1.0, Double.NaN)) do
+      assert(two(op, x, y).isNaN, s"$op($x, $y)")
+    assertEquals((two(Op.Min, 2, 1), two(Op.Max, 2, 1)), (1f, 2f))
+
   test("the angle of a point errs by less than 3e-7 in all directions and at all distances"):
     val angles = spread(-math.Pi, math.Pi)
     for distance <- Seq(1e-3, 1.0, 1e5) do
