@@ -11,7 +11,7 @@ import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.scene.Scene
 import skein.settings.{FlightPlan, FlySettings, Wire}
-import skein.units.{Clock, Expect}
+import skein.units.{Clock, Decimals, Expect}
 import skein.view.Shows
 
 /** Options of `./skein fly`. */
@@ -126,7 +126,7 @@ final class FlyCommand(using Scenarios)
         yield
           FlyCommand.warm ++= settings.loops
           Console.err.println(
-            s"warmed up by $flights virtual flights and $decisions decisions " +
+            s"warmed up by ${Decimals.counted(flights, "virtual flight")} and $decisions decisions " +
               "over loopback, so that none waits for the compiler"
           )
       finally

@@ -5,7 +5,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.link.*
 import skein.signal.{Bandwidth, LatencyProfile}
-import skein.units.{Clock, Span}
+import skein.units.{Clock, Decimals, Span}
 
 /** Options of `./skein link`. */
 final case class LinkOptions(
@@ -116,7 +116,7 @@ object LinkCommand
     else s"${profile.toServer.name} to the server, ${profile.toClient.name} to the client"
 
   private def summary(counts: LinkCounts): String =
-    s"${counts.connections} connections, ${counts.bytesToServer} bytes to the server, " +
+    s"${Decimals.counted(counts.connections, "connection")}, ${counts.bytesToServer} bytes to the server, " +
       s"${counts.bytesToClient} bytes to the client, ${counts.bytesLost} bytes lost, " +
       s"${counts.stalls} stalls, ${counts.disconnects} disconnects, ${counts.bytesHeldBack} " +
       s"bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent"

@@ -8,6 +8,7 @@ import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.Svg
 import skein.record.FlightRow
 import skein.scenario.Scenarios
+import skein.units.Decimals
 import skein.units.Decimals.brief
 
 /** The report as one page that needs nothing beside itself: no script, no font, no link to anywhere. */
@@ -34,8 +35,8 @@ object HtmlReport:
 
   private def heading(set: FlightSet): String =
     set.flights.map(_.flight.scenario).distinct match
-      case Vector(scenario) => s"Skein: ${set.flights.size} flights, scenario $scenario"
-      case _                => s"Skein: ${set.flights.size} flights"
+      case Vector(scenario) => s"Skein: ${Decimals.counted(set.flights.size, "flight")}, scenario $scenario"
+      case _                => s"Skein: ${Decimals.counted(set.flights.size, "flight")}"
 
   private def abstractOf(set: FlightSet): String =
     def named(values: FlightRow => String) =

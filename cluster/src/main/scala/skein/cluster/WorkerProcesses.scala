@@ -11,7 +11,7 @@ import skein.cluster.jars.Fetched
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from
   * it, whose end it watches for ([[WorkerProcesses.endWithParent]]).
   *
-  * A process that dies is replaced, unless several have ended soon after their start and computed nothing.
+  * A process that ends is replaced, unless several in a row computed nothing: they die, or are refused.
   *
   * @param command of a worker
   * @param log of a worker by its number, from 1
@@ -31,7 +31,9 @@ final class WorkerProcesses(
   private var processes = Map.empty[Int, Process]
   private var isStarted = false
   private var isClosing = false
-  private val early     = AtomicInteger()
+
+  /** How many ended in a row that had computed nothing. */
+  private val idle = AtomicInteger()
 
   /** Once, however often it is called. */
   def start(): Unit =
@@ -46,21 +48,20 @@ final class WorkerProcesses(
       val builder = ProcessBuilder(command*)
       builder.redirectErrorStream(true)
       builder.redirectOutput(ProcessBuilder.Redirect.appendTo(log(number).toFile))
-      val begun   = System.nanoTime()
       val process = builder.start()
       processes += number -> process
-      process.onExit.thenAccept(_ => ended(number, process, System.nanoTime() - begun)): Unit
+      process.onExit.thenAccept(_ => ended(number, process)): Unit
 
-  private def ended(number: Int, process: Process, livedNanos: Long): Unit =
-    val isSound = onEnd(WorkerNode.nameOf(process.pid())) || livedNanos > Soon
-    if isSound then early.set(0)
+  private def ended(number: Int, process: Process): Unit =
+    val hasComputed = onEnd(WorkerNode.nameOf(process.pid()))
+    if hasComputed then idle.set(0)
     val again = synchronized:
       processes -= number
-      !isClosing && (isSound || early.incrementAndGet() <= MostEarly)
+      !isClosing && (hasComputed || idle.incrementAndGet() <= MostIdle)
     if again then begin(number)
     else if synchronized(!isClosing && processes.isEmpty) then
       onGivenUp(
-        "the workers on this machine end soon after their start, with " +
+        "the workers on this machine end before they have computed anything, with " +
           s"status ${process.exitValue}: see ${log(number)}"
       )
 
@@ -76,9 +77,8 @@ final class WorkerProcesses(
         process.destroyForcibly(): Unit
 
 object WorkerProcesses:
-  private val Soon      = 10_000_000_000L
-  private val MostEarly = 3
-  private val Grace     = 5_000_000_000L
+  private val MostIdle = 3
+  private val Grace    = 5_000_000_000L
 
   /** What `X.jsa` is to this program, `X-worker.jsa` is to its workers. */
   private[cluster] def ofWorkers(option: String): String =

@@ -4,6 +4,12 @@ import java.util.Locale
 
 /** Numbers in what Skein says: the same digits and the same point in every locale. */
 object Decimals:
+  /** `1 flight`, `2 flights`.
+    *
+    * @param one of them
+    */
+  def counted(count: Long, one: String): String = if count == 1 then s"1 $one" else s"$count ${one}s"
+
   extension (number: Double)
     /** With so many digits behind the point. */
     def fixed(decimals: Int): String = String.format(Locale.ROOT, s"%.${decimals}f", number)

@@ -1,6 +1,7 @@
 package skein.settings
 
 import com.typesafe.config.{Config, ConfigException, ConfigValue}
+import java.nio.file.{Files, Path}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
@@ -107,7 +108,8 @@ object PolicyFile:
   def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =
     summon[Scenarios].family(text) match
       case Right(family) => roleOf(family, asked.map(name)).map(ofDefaults(_, family))
-      case Left(_)       => read(text, asked)
+      case Left(mistake) =>
+        if text.exists("/.:\\".contains(_)) || Files.exists(Path.of(text)) then read(text, asked) else Left(s"$mistake; or a policy file")
 
   /** Reads a file; `evader:FILE` says whose an ONNX file is that does not note it.
     *
