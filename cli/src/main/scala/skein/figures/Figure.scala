@@ -67,7 +67,8 @@ object Figure:
     val above = Figure(
       s"$name-trajectories",
       s"$title: trajectories",
-      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends.",
+      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends. In the legend " +
+        "the vehicles of a role stand in the fleet's order.",
       ScenarioFigure.trajectories(flown)
     )
     val altitudes = Option.when(!flown.scenario.isPlanar)(Figure(

@@ -35,14 +35,16 @@ object ScenarioFigure:
     )
 
   private def paths(panel: Panel, result: Result): Vector[Mark] =
-    val track = result.tracks
+    val track   = result.tracks
+    val strokes = VehicleTheme.of(result.scenario, 1)
     track.vehicles.toVector.flatMap: vehicle =>
-      val colour           = colourOf(result.scenario, vehicle)
+      val stroke           = strokes(vehicle)
+      val colour           = stroke.colour
       def at(instant: Int) = panel.at(track.eastM(vehicle)(instant), track.northM(vehicle)(instant))
       Vector(
         panel.curve(
           track.eastM(vehicle).toVector.zip(track.northM(vehicle).toVector),
-          Stroke(colour.faded(0.8), 1)
+          stroke.copy(colour = colour.faded(0.8))
         ),
         Mark.Disc(at(track.instants.head), 2.8, Some(Stroke(colour, 1.2)), Some(FlightTheme.halo)),
         Mark.Disc(at(track.instants.last), 3, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
@@ -72,10 +74,11 @@ object ScenarioFigure:
         plotWidth / 2,
         plotHeight
       )
-      val lines = track.vehicles.toVector.map: vehicle =>
+      val strokes = VehicleTheme.of(flight.result.scenario, 1.2)
+      val lines   = track.vehicles.toVector.map: vehicle =>
         panel.curve(
           track.instants.map(instant => (track.timeS(instant), track.altitudeM(vehicle, instant))),
-          Stroke(colourOf(flight.result.scenario, vehicle), 1.2)
+          strokes(vehicle)
         )
       val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(plotWidth / 2 + 76, plotHeight + 84, (title +: panel.axes) ++ lines)
@@ -134,17 +137,6 @@ object ScenarioFigure:
   private val red       = Colour(0xcc0000)
   private val boundLine = Stroke(red, 1, Vector(4, 3))
 
-  /** Okabe and Ito's, as for the loops: here by what a vehicle is to the others. */
-  private val colours = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xaa4499).map(Colour(_))
-  private val lead    = Colour(0x404040)
-
-  /** Of one alone in its role among others grey. */
-  private def colourOf(scenario: Scenario, vehicle: Int): Colour =
-    if isAlone(scenario, vehicle) then lead else colours(scenario.shade(vehicle) % colours.size)
-
-  private def isAlone(scenario: Scenario, vehicle: Int) =
-    scenario.agents.sizeIs > 1 && scenario.agents.count(_.role == scenario.agents(vehicle).role) == 1
-
   private def legend(flown: ScenarioFlights): Seq[Legend.Item] =
     val anyBroken = flown.flights.exists(_.result.violations.nonEmpty)
     roles(flown.scenario) ++ Seq(
@@ -153,25 +145,28 @@ object ScenarioFigure:
     ) ++ Option.when(anyBroken)(disc("a limit broken", 5, Some(Stroke(red, 1.2)), None))
 
   private def roles(scenario: Scenario): Seq[Legend.Item] =
-    val places = scenario.agents.indices
-    places.map(scenario.agents(_).role).distinct.map: role =>
-      val same = places.filter(scenario.agents(_).role == role)
-      val name = role.name.toLowerCase(Locale.ROOT)
-      if isAlone(scenario, same.head) then Legend.line(name, Stroke(lead, 2.2))
-      else
-        many(
-          if same.size == 1 then name else s"${name}s",
-          same.map(scenario.shade).distinct.size.min(colours.size)
-        )
+    val strokes = VehicleTheme.of(scenario, 2.2)
+    scenario.agents.map(_.role).distinct.map: role =>
+      val same = strokes.zip(scenario.agents).collect { case (stroke, agent) if agent.role == role => stroke }
+      val kinds = same.distinct
+      val name  = role.name.toLowerCase(Locale.ROOT)
+      if same.size == 1 then Legend.line(name, kinds.head)
+      else if kinds.size <= MostInLegend then many(s"${name}s", kinds)
+      else many(s"${name}s, the first $MostInLegend", kinds.take(MostInLegend))
 
   private def disc(label: String, radius: Double, edge: Option[Stroke], fill: Option[Colour]): Legend.Item =
     Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), radius, edge, fill)))
 
-  private def many(label: String, count: Int): Legend.Item = Legend.Item(
-    label,
-    count * 9.0,
-    at =>
-      Vector.tabulate(count)(index =>
-        Mark.line(at.moved(index * 9, 0), at.moved(index * 9 + 8, 0), Stroke(colours(index), 2.2))
-      )
-  )
+  /** Dashed lines are as long as it takes to tell them apart. */
+  private def many(label: String, strokes: Vector[Stroke]): Legend.Item =
+    val lengths = strokes.map(stroke => if stroke.dash.isEmpty then 11.0 else 27.0)
+    val starts  = lengths.scanLeft(0.0)(_ + _ + 6)
+    Legend.Item(
+      label,
+      starts.last - 6,
+      at =>
+        strokes.zip(starts.zip(lengths)).map: (stroke, place) =>
+          Mark.line(at.moved(place._1, 0), at.moved(place._1 + place._2, 0), stroke)
+    )
+
+  private val MostInLegend = 12

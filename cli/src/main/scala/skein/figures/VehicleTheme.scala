@@ -1,0 +1,38 @@
+package skein.figures
+
+import skein.plot.{Colour, Stroke}
+import skein.scenario.Scenario
+
+/** How the vehicles of a scenario are drawn: one line for each [[Scenario.shade]] of each role, no two alike.
+  */
+object VehicleTheme:
+  /** Okabe and Ito's, as for the loops, and two of Tol's: here by what a vehicle is to the others. */
+  private val colours = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9).map(Colour(_))
+  private val lead    = Colour(0x404040)
+  private val dashes  =
+    Vector(Nil, Seq(7, 3), Seq(2, 2), Seq(8, 2, 2, 2), Seq(12, 4), Seq(6, 2, 2, 2, 2, 2))
+      .map(_.map(_.toDouble).toVector)
+  private val lightness = Vector(1.0, 0.65, 0.4)
+
+  /** As many lines as differ. */
+  private[figures] val Most: Int = colours.size * dashes.size * lightness.size
+
+  /** By vehicle. Grey is the first that is alone in its role among others; the rest take colours in turn,
+    * then the colours again with dashes, then lighter.
+    *
+    * @param width of the lines, in the drawing's units
+    */
+  def of(scenario: Scenario, width: Double): Vector[Stroke] =
+    val agents = scenario.agents
+    val kinds  = agents.indices.map(vehicle => (agents(vehicle).role, scenario.shade(vehicle)))
+    val alone  = agents.map(_.role).find(role => agents.sizeIs > 1 && agents.count(_.role == role) == 1)
+    val styles = kinds.distinct.filterNot((role, _) => alone.contains(role)).zipWithIndex.toMap
+    kinds.toVector.map(kind => styles.get(kind).fold(Stroke(lead, width))(numbered(_, width)))
+
+  private def numbered(index: Int, width: Double): Stroke =
+    val dash = index / colours.size
+    Stroke(
+      colours(index % colours.size).tinted(lightness(dash / dashes.size % lightness.size)),
+      width,
+      dashes(dash % dashes.size)
+    )
