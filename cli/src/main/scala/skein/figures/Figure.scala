@@ -29,10 +29,11 @@ object Figure:
     PredictionFigure(groups).toVector.map: drawing =>
       Figure(
         PredictionFigure.name,
-        "Prediction error against age",
+        "Prediction error",
         "Distance between where a vehicle was predicted to be and where it then was, " +
           "by how far its reading was carried forward, in bins of " +
-          s"${PredictionErrors.BinMs} ms; full lines are medians, dashed ones 95 % quantiles.",
+          s"${PredictionErrors.BinMs} ms; full lines are medians, dashed ones 95 % quantiles; " +
+          s"bins with fewer than ${PredictionErrors.Fewest} predictions are left out.",
         drawing
       )
 

@@ -14,7 +14,7 @@ object PredictionTable:
         "<of",
         "made",
         "unverified",
-        "age ms",
+        "carried by ms",
         "p50 mm",
         "p95 mm",
         "p95 at 100 ms, mm"

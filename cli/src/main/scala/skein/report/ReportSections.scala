@@ -59,7 +59,7 @@ object ReportSections:
       named(DeviationFigure.name, figures)
     ),
     Section(
-      "Prediction error against age",
+      "Prediction error",
       "",
       Some(PredictionTable.of(predictions)),
       named(PredictionFigure.name, figures)

@@ -1,8 +1,10 @@
 package skein.report
 
 import skein.flight.VirtualFlights
+import skein.figures.PredictionFigure
 import skein.loop.LoopKind
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionErrors, PredictionGroup}
+import skein.plot.Mark
 import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
@@ -21,6 +23,42 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEquals(errors.around(100).map(_.count), Some(40))
     assertEqualsDouble(errors.around(100).get.quantile(0.95), 0.95 * 0.039, 1e-9)
     assertEquals(errors.around(200), None)
+    assertEquals(errors.samples.count(_._1 == 50.0), PredictionErrors.Fewest - 1)
+    assertEquals(errors.around(60), None)
+
+  test("the table, too, has no 95 % quantile of few"):
+    def p95(count: Int) =
+      val errors = PredictionErrors(count, Vector.fill(count)((100.0, 0.012)))
+      PredictionTable.of(Vector(PredictionGroup("stream", "vpn", errors, PredictionErrors(0, Vector.empty))))
+        .rows.head.last
+    assertEquals((p95(PredictionErrors.Fewest - 1), p95(PredictionErrors.Fewest)), ("", "12.0"))
+
+  private def measured(agesMs: Int*) =
+    val samples = agesMs.toVector.flatMap(age => Vector.fill(PredictionErrors.Fewest)((age.toDouble, 0.01)))
+    PredictionErrors(samples.size, samples)
+
+  test("ages between which nothing was measured are not joined"):
+    assertEquals(
+      measured(40, 60, 140, 160, 180, 240).stretches.map(_.map(_._1)),
+      Vector(Vector(40, 60), Vector(140, 160, 180), Vector(240))
+    )
+    assertEquals(measured().stretches, Vector.empty)
+
+  test("curves break where nothing was measured, and the legend names what is drawn alone"):
+    def texts(of: PredictionGroup) =
+      PredictionFigure(Vector(of)).get.shapes.collect { case text: Mark.Text => text.content }
+    def curves(of: PredictionGroup) = PredictionFigure(Vector(of)).get.shapes.count:
+      case Mark.Path(points, Some(_), None, false) => points.size >= 3
+      case _                                       => false
+    val own  = PredictionGroup("predictive", "vpn", measured(20, 40, 60, 120, 140, 160), measured())
+    val both = own.copy(others = measured(20, 40, 60))
+    // Of each stretch the median and the 95 % quantile.
+    assertEquals((curves(own), curves(both)), (4, 6))
+    assert(
+      texts(own).exists(_.contains("own vehicle")) && !texts(own).exists(_.contains("others")),
+      texts(own)
+    )
+    assert(texts(both).contains("others, median"), texts(both))
 
   private lazy val flights =
     fly(List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive), Span.ofMillis(100))
@@ -77,5 +115,5 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
       )
     for page <- pages do
       assert(
-        page.contains("Deviation from the paused truth") && page.contains("Prediction error against age")
+        page.contains("Deviation from the paused truth") && page.contains("Prediction error")
       )

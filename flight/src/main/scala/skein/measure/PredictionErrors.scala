@@ -6,7 +6,7 @@ import skein.record.Recording
   *
   * @param made predictions made; of those that are no `samples` the moment was never read, or read with too
   *   wide a gap around it
-  * @param samples of those verified: age of the reading carried forward, ms, and error, m
+  * @param samples of those verified: age, from the reading to the moment predicted for, ms, and error, m
   */
 final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
   def unverified: Int = made - samples.size
@@ -17,10 +17,9 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
   def errors: Option[Distribution] = Distribution.of(samples.map(_._2))
 
   /** Errors of predictions whose age rounds to `ageMs`, to the nearest multiple of
-    * [[PredictionErrors.BinMs]].
+    * [[PredictionErrors.BinMs]]; absent where they are fewer than [[PredictionErrors.Fewest]].
     */
-  def around(ageMs: Int): Option[Distribution] =
-    Distribution.of(samples.collect { case (age, error) if PredictionErrors.bin(age) == ageMs => error })
+  def around(ageMs: Int): Option[Distribution] = byAge.collectFirst { case (`ageMs`, errors) => errors }
 
   /** By age, ms, ascending; ages with fewer than [[PredictionErrors.Fewest]] samples are left out. */
   def byAge: Vector[(Int, Distribution)] =
@@ -31,6 +30,13 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
       .flatMap((age, errors) =>
         Distribution.of(errors).filter(_.count >= PredictionErrors.Fewest).map(age -> _)
       )
+
+  /** [[byAge]], apart where ages between are left out. */
+  def stretches: Vector[Vector[(Int, Distribution)]] =
+    byAge.foldLeft(Vector.empty[Vector[(Int, Distribution)]]): (found, next) =>
+      found.lastOption match
+        case Some(last) if next._1 - last.last._1 == PredictionErrors.BinMs => found.init :+ (last :+ next)
+        case _                                                              => found :+ Vector(next)
 
 object PredictionErrors:
   val BinMs: Int = 20
