@@ -4,6 +4,7 @@ import skein.optimise.LatencyBudget.Bound
 import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.{fixed, signed, significant}
+import skein.units.Interval
 import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with what is said of it.
@@ -45,7 +46,7 @@ final case class BudgetMap(
     val (factor, offUnit)                = tolerance.shown(unit)
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
     def told(text: String, unit: String) = s"$text $unit".trim
-    val value = s"${mark.tally.mean.significant(4)} ± ${mark.tally.halfWidth95.significant(4)}"
+    val value                            = Interval.of(mark.tally.mean, mark.tally.halfWidth95).text
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
       s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
 

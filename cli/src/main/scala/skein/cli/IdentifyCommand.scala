@@ -10,7 +10,7 @@ import skein.record.{Recording, RecordingReader}
 import skein.report.{Section, TextTable}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{Fit, ModelFile, SensorFile}
-import skein.units.{Expect, Span}
+import skein.units.{Expect, Interval, Span}
 
 /** Options of `./skein identify`. */
 final case class IdentifyOptions(
@@ -190,8 +190,8 @@ final class IdentifyCommand(using scenarios: Scenarios)
     ) :+ Section("Off the readings", table = Some(horizons(fits, _.againstReadings)))
 
   private def interval(fitted: Fitted): String =
-    val half = f"${fitted.value}%.4f ± ${(fitted.most - fitted.least) / 2}%.4f"
-    if fitted.atBound then s"$half (bound)" else half
+    val text = Interval.of(fitted.value, (fitted.most - fitted.least) / 2).text
+    if fitted.atBound then s"$text (bound)" else text
 
   private def horizons(fits: Vector[Fit], errors: Fit => Vector[HorizonError]): TextTable =
     val cells = Vector(

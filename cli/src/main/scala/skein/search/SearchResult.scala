@@ -1,8 +1,9 @@
 package skein.search
 
-import java.util.Locale
 import skein.optimise.{Evaluator, RunningStats, SearchState}
 import skein.report.{Section, TextTable}
+import skein.units.Decimals.significant
+import skein.units.Interval
 
 /** What a search came to, for the terminal and as a table. */
 final case class SearchResult(ready: ReadySearch, found: Found):
@@ -13,7 +14,7 @@ final case class SearchResult(ready: ReadySearch, found: Found):
 
   /** For the terminal. */
   def summary: String =
-    val shown = parameters.take(MostShown).map((name, value) => s"$name = ${number(value)}")
+    val shown = parameters.take(MostShown).map((name, value) => s"$name = ${value.significant(4)}")
     val more  = parameters.size - shown.size
     s"""best:   ${shown.mkString(", ")}${if more > 0 then s" and $more more" else ""}
        |        ${ready.formula} = ${interval(fresh)} (95 %, ${fresh.count} fresh episodes)
@@ -64,10 +65,7 @@ object SearchResult:
 
   /** A mean with the half width of its interval of 95 %. */
   def interval(tally: RunningStats, unit: String): String =
-    s"${number(tally.mean)} ± ${number(tally.halfWidth95)}${if unit.isEmpty then "" else s" $unit"}"
-
-  /** Four significant digits. */
-  def number(value: Double): String = String.format(Locale.ROOT, "%.4g", value)
+    s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
 
   /** The head of a policy file's remarks: what its policy came to, and the paper's beside it. */
   def objective(

@@ -190,7 +190,7 @@ final case class TeamSetup(
       "plain",
       s"plain ${kind.name}",
       space.axes.map(_.name).zip(space.defaults),
-      told(space.defaults, " = ")(SearchResult.number)
+      told(space.defaults, " = ")(_.significant(4))
     )
 
   private def told(candidate: Vector[Double], between: String)(number: Double => String) =

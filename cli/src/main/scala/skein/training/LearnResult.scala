@@ -5,7 +5,7 @@ import skein.plot.Drawing
 import skein.report.{Section, TextTable}
 import skein.search.{Judge, SearchResult}
 import skein.settings.PolicyFile
-import skein.units.Decimals.significant
+import skein.units.Interval
 
 /** What was learned, measured on episodes that learning never met.
   *
@@ -25,14 +25,8 @@ final case class LearnResult(
   /** As a table. */
   def section: Section =
     def row(policy: String, where: String, tally: RunningStats, unit: String) =
-      Vector(
-        policy,
-        where,
-        tally.mean.significant(4),
-        tally.halfWidth95.significant(4),
-        tally.count.toString,
-        unit
-      )
+      val interval = Interval.of(tally.mean, tally.halfWidth95)
+      Vector(policy, where, interval.mean, interval.half, tally.count.toString, unit)
     val episodes = s"fresh episodes, ${game.formula}"
     Section(
       s"Learned by ${question.algorithm} under ${question.conditions.loop} over ${question.link}",
