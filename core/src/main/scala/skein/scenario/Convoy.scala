@@ -2,6 +2,7 @@ package skein.scenario
 
 import skein.policy.*
 import skein.units.*
+import skein.units.Decimals.significant
 import skein.vehicle.{ReducedModel, VehicleKind}
 
 /** Two cars drive round a circuit, one behind the other, and three drones escort them: one ahead of the cars
@@ -67,9 +68,9 @@ final case class Convoy(
     )
 
   override def note: String =
-    s"Off places: distance of the drones to their places after the first $SettlingS s, root mean square. " +
+    s"Off places: distance of the drones to their places after the first ${SettlingS.significant(3)} s, root mean square. " +
       "Between cars: in the plane. Out of view: how long a car " +
-      s"had no drone within $sightM m, seen from above."
+      s"had no drone within ${sightM.significant(3)} m, seen from above."
 
   private def offPlaces =
     val (ahead, right) = places.unzip

@@ -1,6 +1,7 @@
 package skein.scenario
 
 import skein.policy.*
+import skein.units.Decimals.significant
 import skein.units.Metres
 
 /** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing; everyone
@@ -62,7 +63,7 @@ final case class Crossing(
 
   override def note: String =
     "Smallest separation of any two vehicles, and how often two came nearer than the " +
-      s"set minimum of $minimumM m; arrived: within $ArrivedM m of the goal."
+      s"set minimum of ${minimumM.significant(3)} m; arrived: within ${ArrivedM.significant(3)} m of the goal."
 
   /** By stream. */
   override def shade(vehicle: Int): Int = vehicle % streams

@@ -2,6 +2,7 @@ package skein.scenario
 
 import skein.policy.*
 import skein.units.*
+import skein.units.Decimals.significant
 
 /** Vehicles side by side cross a forest, each along a lane of its own, and know of the trees and of one
   * another by lidar alone.
@@ -52,7 +53,7 @@ final case class Forest(
   )
 
   override def note: String =
-    s"To cross: mean time to $lengthM m to the north, of the " +
+    s"To cross: mean time to ${lengthM.significant(3)} m to the north, of the " +
       "vehicles that came there. Trees are known by lidar alone."
 
   private def crossedS(tracks: Tracks): Vector[Double] =

@@ -1,6 +1,7 @@
 package skein.scenario
 
 import skein.policy.*
+import skein.units.Decimals.significant
 
 /** A wedge flies a circuit, two straights joined by half turns; the leader first, followers behind it to the
   * right and left in turn.
@@ -61,7 +62,7 @@ final case class Formation(
 
   override def note: String =
     "Distance of the followers to their slots after the first " +
-      s"$SettlingS s: root mean square, and the largest."
+      s"${SettlingS.significant(3)} s: root mean square, and the largest."
 
   private def offSlots =
     val (ahead, right) = slots.unzip

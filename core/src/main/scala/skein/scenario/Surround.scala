@@ -1,6 +1,7 @@
 package skein.scenario
 
 import skein.policy.*
+import skein.units.Decimals.significant
 
 /** Pursuers close a ring around an evader, which flees from the nearest of them.
   *
@@ -45,7 +46,7 @@ final case class Surround(
     )
 
   override def note: String =
-    s"Over the last 10 s: how far the pursuers are from the ring of $ringM m, root mean " +
+    s"Over the last 10 s: how far the pursuers are from the ring of ${ringM.significant(3)} m, root mean " +
       "square; their mean distance to the evader, the smallest, and the mean of the largest " +
       s"angle between neighbours as the evader sees them (${(360.0 / (vehicles - 1)).round}° " +
       "is even); surrounded: from when on no such angle reaches 180°."

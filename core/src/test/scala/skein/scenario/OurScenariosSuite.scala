@@ -31,8 +31,16 @@ class OurScenariosSuite extends munit.FunSuite:
     )
     assertEquals(Surround().agents.map(_.role).distinct, Vector(Role.Evader, Role.Pursuer))
     assert(Surround(vehicles = 6).note.contains("72° is even"), Surround().note)
+    assert(Surround(ringM = 4.185774264457861).note.contains("the ring of 4.19 m,"))
     assertEquals(Surround(vehicles = 2).mistakes, Seq("vehicles: expected 3 to 100, came 2"))
     assertEquals((0 to 3).map(Surround().shade), Seq(0, 0, 1, 2))
+
+  test("notes tell lengths with three digits at most"):
+    assert(Surround().note.contains("the ring of 8 m,"), Surround().note)
+    assert(Crossing(minimumM = 2.5).note.contains("minimum of 2.5 m; arrived: within 3 m"), Crossing().note)
+    assert(Formation().note.contains("first 10 s:"), Formation().note)
+    val scenarios = Seq(Convoy(), Forest(), Surround(), Crossing(), Formation())
+    assertEquals(scenarios.filter(_.note.contains(".0 ")).map(_.note), Nil)
 
   test("formation: a wedge behind its leader, right and left in turn"):
     assertEquals(
