@@ -118,8 +118,11 @@ private[cli] final class SearchJob(
         val title = s"${ready.title}, model ${ready.model}"
         OutFolder.write(
           folder,
-          OutFolder.picture("landscape", LandscapeFigure(land, title, ready.measure), title) :+
-            OutFolder.text("landscape.csv", land.csv)
+          OutFolder.picture(
+            "landscape",
+            LandscapeFigure(land, title, ready.measure, ready.search.direction),
+            title
+          ) :+ OutFolder.text("landscape.csv", land.csv)
         )
 
   private def say(text: String): Unit = shown.say(lines(text))

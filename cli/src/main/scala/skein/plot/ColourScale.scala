@@ -1,7 +1,18 @@
 package skein.plot
 
-/** Colours for values between two ends; values beyond get the end's colour. */
-final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
+import skein.units.Decimals.significant
+
+/** Colours for values between two ends; values beyond get the end's colour.
+  *
+  * @param beyond which ends stand for values beyond them, too; the bar says so
+  */
+final case class ColourScale(
+    from: Double,
+    to: Double,
+    stops: Vector[Int],
+    beyond: Set[ColourScale.End] = Set.empty
+):
+  import ColourScale.End
 
   def of(value: Double): Colour =
     val place = if to > from then ((value - from) / (to - from)).max(0).min(1) else 0.5
@@ -22,13 +33,22 @@ final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
         (bottom - height * i / slices + 0.5).min(bottom),
         of(from + (to - from) * (i + 0.5) / slices)
       )
-    val axis  = PlotAxis.exactly(label, from, if to > from then to else from + 1)
-    val ticks = axis.ticks.map: tick =>
-      val at = Point(left + width + 5, bottom - height * axis.share(tick) + 3.5)
-      Mark.Text(at, axis.text(tick), Theme.tickSize, Theme.tickColour)
-    boxes ++ ticks :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize)
+    val axis = PlotAxis.exactly(label, from, if to > from then to else from + 1)
+    def text(value: Double, content: String) =
+      val at = Point(left + width + 5, bottom - height * axis.share(value) + 3.5)
+      Mark.Text(at, content, Theme.tickSize, Theme.tickColour)
+    val ends = Vector(End.Low -> (axis.from, "≤"), End.High -> (axis.to, "≥")).collect:
+      case (end, (value, sign)) if beyond(end) => (value, text(value, s"$sign ${value.significant(3)}"))
+    // Ticks that would touch the text of an end are left out.
+    val ticks = axis.ticks
+      .filter(tick => ends.forall((value, _) => height * (axis.share(tick) - axis.share(value)).abs >= 12))
+      .map(tick => text(tick, axis.text(tick)))
+    boxes ++ ticks ++ ends.map(_._2) :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize)
 
 object ColourScale:
+  enum End:
+    case Low, High
+
   /** Matplotlib's viridis by nine of its colours: even in lightness, also for colour-blind readers. */
   def viridis(from: Double, to: Double): ColourScale = ColourScale(
     from,

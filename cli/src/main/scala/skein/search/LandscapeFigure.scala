@@ -1,5 +1,6 @@
 package skein.search
 
+import skein.optimise.Direction
 import skein.plot.*
 import skein.units.Decimals.significant
 
@@ -14,9 +15,23 @@ object LandscapeFigure:
   private val plain  = Colour(0x111111)
 
   /** @param value what the objective is, with its unit, for the axis or the scale
+    * @param direction where the objective is to go
     */
-  def apply(landscape: Landscape, title: String, value: String): Drawing =
-    if landscape.y.isEmpty then curve(landscape, title, value) else map(landscape, title, value)
+  def apply(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
+    if landscape.y.isEmpty then curve(landscape, title, value) else map(landscape, title, value, direction)
+
+  private val MostNamed = 3
+
+  /** At which values the parameters are that are not drawn, if there are any: a few by their names. */
+  private[search] def fixed(landscape: Landscape): Option[String] =
+    val drawn  = landscape.x +: landscape.y.toVector
+    val others = landscape.space.axes.indices.toVector.filterNot(drawn.contains)
+    Option.when(others.nonEmpty):
+      if others.sizeIs > MostNamed then s"${others.size} others at the best"
+      else
+        others
+          .map(axis => AxisTitle.of(landscape.space.axes(axis).name).at(landscape.best(axis)))
+          .mkString("at the best: ", ", ", "")
 
   private def curve(landscape: Landscape, title: String, value: String): Drawing =
     val axis   = landscape.space.axes(landscape.x)
@@ -24,7 +39,7 @@ object LandscapeFigure:
     val low    = points.map((_, tally) => tally.mean - tally.sd).min
     val high   = points.map((_, tally) => tally.mean + tally.sd).max
     val panel  = Panel(
-      PlotAxis.exactly(axis.name, axis.least, axis.most),
+      PlotAxis.exactly(AxisTitle.of(axis.name).text, axis.least, axis.most),
       PlotAxis.around(value, low, high),
       left = 62,
       top = 52,
@@ -57,18 +72,19 @@ object LandscapeFigure:
       )
     )
 
-  private def map(landscape: Landscape, title: String, value: String): Drawing =
+  private def map(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
     val (xAxis, yAxis) = (landscape.space.axes(landscape.x), landscape.space.axes(landscape.y.get))
+    val subtitle       = fixed(landscape)
     val panel          = Panel(
-      PlotAxis.exactly(xAxis.name, xAxis.least, xAxis.most),
-      PlotAxis.exactly(yAxis.name, yAxis.least, yAxis.most),
+      PlotAxis.exactly(AxisTitle.of(xAxis.name).text, xAxis.least, xAxis.most),
+      PlotAxis.exactly(AxisTitle.of(yAxis.name).text, yAxis.least, yAxis.most),
       left = 62,
-      top = 52,
+      top = if subtitle.isEmpty then 52 else 70,
       height * 1.2,
       height
     )
     val heat  = HeatMap(landscape.xs, landscape.ys, landscape.cells.map(_.map(tally => Some(tally.mean))))
-    val scale = heat.range
+    val scale = LandscapeScale.of(landscape.cells.flatten.map(_.mean), direction)
     def mark(x: Double, y: Double, colour: Colour) =
       Mark.Disc(panel.at(x, y), 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
     val best   = mark(landscape.best(landscape.x), landscape.best(landscape.y.get), found)
@@ -81,8 +97,10 @@ object LandscapeFigure:
     Drawing(
       panel.right + 120,
       panel.bottom + 44,
-      Vector(panel.title(title).moved(0, -22)) ++ legend.shapes.map(_.moved(0, 22)) ++
-        heat.cells(panel, ColourScale.viridis(scale._1, scale._2)) ++
-        ColourScale.viridis(scale._1, scale._2).bar(panel.right + 24, panel.top, panel.bottom, value) ++
+      (Mark.Text(Point(panel.left, 20), title, Theme.titleSize, Theme.titleColour, bold = true) +:
+        subtitle.map(text => Mark.Text(Point(panel.left, 36), text)).toVector) ++
+        legend.shapes.map(_.moved(0, panel.top - 30)) ++
+        heat.cells(panel, scale) ++
+        scale.bar(panel.right + 24, panel.top, panel.bottom, value) ++
         panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
     )

@@ -1,7 +1,7 @@
 package skein.search
 
-import skein.optimise.{Evaluator, RunningStats}
-import skein.plot.Mark
+import skein.optimise.{Direction, Evaluator, RunningStats}
+import skein.plot.{ColourScale, Mark}
 import skein.policy.{Axis, SearchSpace}
 import skein.testing.Optimised
 
@@ -35,6 +35,66 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val land = Landscape.of(line, Vector(0.0), parabola, 0 until 2, () => false).get
     assertEquals(land.y, None)
     assertEqualsDouble(land.cells.head.map(_.mean).min, 0, 1e-12)
-    val drawing = LandscapeFigure(land, "title", "value")
+    val drawing = LandscapeFigure(land, "title", "value", Direction.Minimise)
     val texts   = drawing.shapes.collect { case text: Mark.Text => text.content }
     assert(texts.contains("title") && texts.contains("x") && texts.contains("value"), texts)
+
+  private def at(dimension: Int) =
+    val names = Vector("turnRateRadPerS", "lead", "captureRadiusM", "gain", "speedRatio", "w")
+    val space = SearchSpace(names.take(dimension).map(Axis(_, 0, 2)))
+    val best  = Vector(0.5, 1.23456, 1.5, 1.75, 0.25, 0.125).take(dimension)
+    Landscape(space, best, 0, Some(1), Vector(0, 2), Vector(0, 2), Vector.fill(2, 2)(RunningStats(3, 1, 0)))
+
+  test("what is not drawn is told with its value, of many how many there are"):
+    assertEquals(LandscapeFigure.fixed(at(2)), None)
+    assertEquals(LandscapeFigure.fixed(at(3)), Some("at the best: capture radius = 1.5 m"))
+    assertEquals(LandscapeFigure.fixed(at(4)), Some("at the best: capture radius = 1.5 m, gain = 1.75"))
+    assertEquals(LandscapeFigure.fixed(at(6)), Some("4 others at the best"))
+    val texts = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes.collect:
+      case text: Mark.Text => text.content
+    assert(
+      Set("title", "turn rate, rad/s", "lead", "at the best: capture radius = 1.5 m").subsetOf(texts.toSet),
+      texts
+    )
+
+  test("parameters are called what they are, with their units"):
+    val names = Seq(
+      "turnRateRadPerS",
+      "turningRadiusM",
+      "most-rad-per-s",
+      "drag-per-m",
+      "dead-time-s",
+      "pursuerMps",
+      "gain",
+      "s",
+      "w12"
+    )
+    assertEquals(
+      names.map(AxisTitle.of(_).text),
+      Seq(
+        "turn rate, rad/s",
+        "turning radius, m",
+        "most, rad/s",
+        "drag, 1/m",
+        "dead time, s",
+        "pursuer, m/s",
+        "gain",
+        "s",
+        "w12"
+      )
+    )
+
+  test("a map's colours end before outliers on the worse side, and the bar says so"):
+    val even                                               = Vector.tabulate(101)(_ / 10.0)
+    val outliers                                           = even.init :+ 1000.0
+    def scale(means: Vector[Double], direction: Direction) =
+      val found = LandscapeScale.of(means, direction)
+      (found.from, found.to, found.beyond)
+    assertEquals(scale(even, Direction.Minimise), (0.0, 10.0, Set.empty[ColourScale.End]))
+    assertEquals(scale(outliers, Direction.Minimise), (0.0, 9.0, Set(ColourScale.End.High)))
+    assertEquals(scale(outliers.map(-_), Direction.Maximise), (-9.0, -0.0, Set(ColourScale.End.Low)))
+    assertEquals(scale(outliers, Direction.Maximise), (0.0, 1000.0, Set.empty[ColourScale.End]))
+    assertEquals(scale(Vector(1.0, 1.0, 1.0), Direction.Minimise), (1.0, 1.0, Set.empty[ColourScale.End]))
+    val texts = LandscapeScale.of(outliers, Direction.Minimise).bar(0, 0, 340, "m").collect:
+      case text: Mark.Text => text.content
+    assertEquals(texts, Vector("0", "2", "4", "6", "8", "≥ 9", "m"))

@@ -54,7 +54,7 @@ enum MethodState:
 final class Search(
     space: SearchSpace,
     method: SearchMethod,
-    direction: Direction,
+    val direction: Direction,
     seed: Long,
     leastPlayOff: Int = Search.LeastPlayOff
 ):
