@@ -75,8 +75,8 @@ object ScenarioTables:
 
   private val MostListed = 5
 
-  /** A row per loop and link: of each measure mean ± standard deviation, least … most over the flights; of
-    * counts the total and the flights that have any.
+  /** A row per loop and link: of each measure mean ± standard deviation, least … most over the flights, and
+    * how many have no value and why; of counts the total and the flights that have any.
     */
   def spread(flown: ScenarioFlights): TextTable =
     val groups = flown.flights.groupBy(flight => (flight.summary.name, flight.summary.flight.link))
@@ -96,8 +96,12 @@ object ScenarioTables:
     val values = measures.flatMap(_.value)
     if measures.head.measure.isCount then inFlights(values)
     else
-      val missing = measures.size - values.size
-      spreadText(values) + (if missing > 0 then s", $missing never" else "")
+      val missing  = measures.filter(_.value.isEmpty)
+      val tooShort = missing.count(_.isTooShort)
+      val never    = missing.size - tooShort
+      val reasons  = Seq((never, Never), (tooShort, TooShort)).collect:
+        case (count, why) if count > 0 => s"$count $why"
+      (Option.when(values.nonEmpty)(spreadText(values)) ++ reasons).mkString(", ")
 
   private def inFlights(counts: Vector[Double]): String =
     s"${counts.sum.fixed(0)} in ${counts.count(_ > 0)} flights"
@@ -108,8 +112,15 @@ object ScenarioTables:
       s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
     )
 
+  /** What happened in no part of the flight. */
+  private val Never = "never"
+
+  /** Of a flight that ended before there was what is measured, such as its last 10 s. */
+  private val TooShort = "too short"
+
   private def text(measured: Measured): String = measured.value match
-    case None                                    => "never"
+    case None if measured.isTooShort             => TooShort
+    case None                                    => Never
     case Some(value) if measured.measure.isCount => value.fixed(0)
     case Some(value)                             => value.fixed(2)
 

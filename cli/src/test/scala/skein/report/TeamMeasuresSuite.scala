@@ -194,6 +194,20 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEquals(streams(column(spread, "to goal s")), "8.00 ± 0.00, 8.00 … 8.00, 1 never")
     assertEquals(spread.rows.map(_.size).distinct, Vector(spread.header.size))
 
+  test("of a flight shorter than what is measured, the tables say so; what did not happen, never did"):
+    val scenario = Surround(vehicles = 3)
+    // Both pursuers stand on one side of the evader.
+    val beside = (vehicle: Int, _: Double) => (10.0 * vehicle, 0.0)
+    val set    = Report.of(Seq(flown(scenario, 5)(beside), flown(scenario, 12)(beside))).scenarios.head
+    val each   = ScenarioTables.flights(set)
+    def column(table: TextTable, name: String) =
+      table.rows.map(_(table.header.map(_.stripPrefix("<")).indexOf(name)))
+    assertEquals(column(each, "ring m"), Vector("too short", "15.00"))
+    assertEquals(column(each, "surrounded after s"), Vector("never", "never"))
+    val spread = ScenarioTables.spread(set)
+    assertEquals(column(spread, "ring m"), Vector("15.00 ± 0.00, 15.00 … 15.00, 1 too short"))
+    assertEquals(column(spread, "surrounded after s"), Vector("2 never"))
+
   test("broken limits are listed with their vehicles and times; of a flight's many, the first five"):
     val scenario            = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val names               = scenario.agents.map(_.name)

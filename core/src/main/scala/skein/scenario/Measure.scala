@@ -5,33 +5,45 @@ package skein.scenario
   * @param unit may be empty
   * @param isCount of events: over several flights it is added up
   * @param of the value; absent where the flight has none, for example a time of arrival if it never arrived
+  * @param over the part of the flight that it is of; of a flight that has no such part there is no value
   * @param reduced the quantity that it reduces, if it does: then searches can judge by it
   */
 final class Measure private (
     val name: String,
     val unit: String,
     val isCount: Boolean,
+    val over: Window,
     val reduced: Option[OverFlight],
     val of: Tracks => Option[Double]
 ):
   /** With the unit, as tables have it. */
   def title: String = s"$name $unit".trim
 
+  /** The same of the first vehicles alone, for people: no search judges by it. */
+  private[scenario] def ofFirst(count: Int): Measure =
+    new Measure(name, unit, isCount, over, None, tracks => of(tracks.first(count)))
+
 object Measure:
   def apply(name: String, unit: String)(of: Tracks => Option[Double]): Measure =
-    new Measure(name, unit, false, None, of)
+    new Measure(name, unit, false, Window.Whole, None, of)
+
+  /** Of a part of the flight alone. */
+  private[scenario] def over(name: String, unit: String, part: Window)(
+      of: (Tracks, Range) => Double
+  ): Measure =
+    new Measure(name, unit, false, part, None, tracks => part.of(tracks).map(of(tracks, _)))
 
   /** Events, for example vehicles that arrived. */
   def count(name: String)(of: Tracks => Int): Measure =
-    new Measure(name, "", true, None, tracks => Some(of(tracks).toDouble))
+    new Measure(name, "", true, Window.Whole, None, tracks => Some(of(tracks).toDouble))
 
   /** A reduced quantity. */
   private[scenario] def of(
       name: String,
       unit: String,
       by: OverFlight
-  )(of: Tracks => Option[Double]): Measure =
-    new Measure(name, unit, false, Some(by), of)
+  )(of: (Tracks, Range) => Double): Measure =
+    new Measure(name, unit, false, by.over, Some(by), tracks => by.over.of(tracks).map(of(tracks, _)))
 
 /** A quantity reduced over a part of a flight. */
 final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
@@ -72,20 +84,18 @@ final class Series private (
   def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Most)
 
   /** When it was least, the first time, s. */
-  def leastAt(name: String, over: Window = Window.Whole): Measure = Measure(name, "s"): tracks =>
-    val value = at(tracks)
-    over.of(tracks).map(instants => tracks.timeS(instants.minBy(value)))
+  def leastAt(name: String, over: Window = Window.Whole): Measure =
+    Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.minBy(at(tracks))))
 
   /** When it was most, the first time, s. */
-  def mostAt(name: String, over: Window = Window.Whole): Measure = Measure(name, "s"): tracks =>
-    val value = at(tracks)
-    over.of(tracks).map(instants => tracks.timeS(instants.maxBy(value)))
+  def mostAt(name: String, over: Window = Window.Whole): Measure =
+    Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.maxBy(at(tracks))))
 
   /** How long a condition held in all, s. */
   def timeWhere(name: String, over: Window = Window.Whole)(holds: Double => Boolean): Measure =
-    Measure(name, "s"): tracks =>
+    Measure.over(name, "s", over): (tracks, instants) =>
       val value = at(tracks)
-      over.of(tracks).map(_.count(instant => holds(value(instant))) * tracks.stepS)
+      instants.count(instant => holds(value(instant))) * tracks.stepS
 
   /** From the first instant on at which a condition held, s; absent where it never did. */
   def firstWhere(name: String)(holds: Double => Boolean): Measure = Measure(name, "s"): tracks =>
@@ -93,10 +103,8 @@ final class Series private (
     tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
 
   private def reduced(name: String, over: Window, reduction: Reduction): Measure =
-    def of(tracks: Tracks) =
-      val value = at(tracks)
-      over.of(tracks).map(instants => reduction.of(instants.map(value)))
-    quantity.fold(Measure(name, unit)(of))(each =>
+    def of(tracks: Tracks, instants: Range) = reduction.of(instants.map(at(tracks)))
+    quantity.fold(Measure.over(name, unit, over)(of))(each =>
       Measure.of(name, unit, OverFlight(each, reduction, over))(of)
     )
 

@@ -46,7 +46,7 @@ final case class PaperDuel(
       PaperDuel.distance.sd("sd", last),
       PaperDuel.distance.least("closest"),
       PaperDuel.distance.leastAt("at")
-    ).map(measure => Measure(measure.name, measure.unit)(tracks => measure.of(tracks.first(2))))
+    ).map(_.ofFirst(2))
 
   override def isPapersGame: Boolean  = altitudeM == PaperDuel.AltitudeM
   override def isAsPublished: Boolean = asPublished

@@ -25,11 +25,14 @@ object Result:
   def of(scenario: Scenario, tracks: Tracks): Result = Result(
     scenario,
     tracks,
-    scenario.measures.map(measure => Measured(measure, measure.of(tracks))),
+    scenario.measures.map(measure =>
+      Measured(measure, measure.of(tracks), isTooShort = measure.over.of(tracks).isEmpty)
+    ),
     scenario.series.map(series => (series, series.curve(tracks))),
     scenario.limits.flatMap(_.violations(tracks)).sortBy(_.fromS)
   )
 
 /** @param value absent where the flight has none
+  * @param isTooShort whether the flight has no part that the measure is of, and so no value
   */
-final case class Measured(measure: Measure, value: Option[Double])
+final case class Measured(measure: Measure, value: Option[Double], isTooShort: Boolean)
