@@ -71,14 +71,14 @@ object PredictionFigure:
       Mark.Disc(panel.at(x, y), 2.6, Some(Stroke(stroke.colour, 1.2)), Some(FlightTheme.halo))
     case several => panel.curve(several, stroke)
 
-  private def legend(kinds: Vector[Kind]): Drawing =
-    Legend(
-      52,
-      (for
-        kind  <- kinds
-        share <- shares
-      yield Legend.line(
-        s"${kind.name}, ${share.name}",
-        Stroke(kind.colour, share.width, share.dash)
-      ))*
-    )
+  /** A row for each, so that it is no wider than a panel. */
+  private def legend(kinds: Vector[Kind]): Drawing = Drawing.stacked(
+    kinds.map(kind =>
+      Legend(
+        52,
+        shares.map(share =>
+          Legend.line(s"${kind.name}, ${share.name}", Stroke(kind.colour, share.width, share.dash))
+        )*
+      )
+    )*
+  )

@@ -12,11 +12,6 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     s"a map needs two values on each axis, got ${xs.size} and ${ys.size}"
   )
 
-  /** The smallest and the largest value. */
-  def range: (Double, Double) =
-    val all = values.flatten.flatten.filter(_.isFinite)
-    if all.isEmpty then (0, 1) else (all.min, all.max)
-
   /** Cut to the panel. */
   def cells(panel: Panel, scale: ColourScale): Vector[Mark] =
     for
