@@ -100,7 +100,7 @@ final case class FlightOptions(
 
   /** Flags before file before defaults. */
   def settings(using Scenarios): Either[String, FlySettings] =
-    configuration.flatMap(FlySettings.read).map: settings =>
+    configuration.flatMap(FlySettings.read).left.map(FlightOptions.byFlags).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
         val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
         (slow ++ OpponentModel.missing(settings.fleet)).foreach(Console.err.println)
@@ -169,6 +169,21 @@ final case class FlightOptions(
 
 object FlightOptions:
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
+
+  /** What is wrong with settings, by the flags that they came by where it was flags. */
+  private[cli] def byFlags(mistakes: String): String =
+    OfFlag.replaceAllIn(
+      mistakes,
+      found =>
+        val key = found.group(1)
+        java.util.regex.Matcher.quoteReplacement(s"--${FlagOf.getOrElse(key, key)}: ${found.group(2)}")
+    )
+
+  /** As pureconfig tells it of values that [[configured]] put in. */
+  private val OfFlag =
+    """at 'skein\.fly\.([\w-]+)(?:\.\d+)?':\n\s*- \(the command line\) Cannot convert '[^\n]*?' to [^:\n]*: ([^\n]*?)\.(?=\n|$)""".r
+
+  private val FlagOf = Map("links" -> "link", "loops" -> "loop", "policies" -> "policy")
 
   /** What counts where nothing is said, by flags' names: the configuration's own. */
   lazy val defaults: Map[String, String] =

@@ -45,6 +45,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       "--view-port: expected with --view"
     )
 
+  test("a value that is none of a setting's is told by its option"):
+    assertRefused(FlyCommand(), Seq("--link", "vnp"), "skein fly: --link: unknown latency profile \"vnp\"")
+    assertRefused(FlyCommand(), Seq("--loop", "streem"), "skein fly: --loop: no loop 'streem'")
+    assertRefused(FlyCommand(), Seq("--duration=-5s"), "--duration: expected a duration that is not negative")
+
   test("what follows multirotors alone refuses a scenario with cars, and says so"):
     val cars = Seq("--scenario", "convoy")
     assertRefused(

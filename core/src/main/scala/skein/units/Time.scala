@@ -49,6 +49,8 @@ object Span:
       case withUnit(number, unit)
           if nanosOf.contains(unit) && number.toDouble * nanosOf(unit) < Long.MaxValue =>
         Right((BigDecimal(number) * nanosOf(unit)).setScale(0, BigDecimal.RoundingMode.HALF_UP).toLong)
+      case negative if negative.startsWith("-") =>
+        Left(s"expected a duration that is not negative, came '$text'")
       case number =>
         val example = if number.matches(digits) then s"${number}s" else "100ms"
         Left(s"expected a duration with unit, such as $example, came '$text'")
