@@ -76,7 +76,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       axes       <- axesOf(options, legs)
       _          <- Expect.that(options.atJitter.isEmpty || atJitterMs <= axes.jittersMs.last):
         s"--at-jitter: expected what the map has, up to ${(axes.jittersMs.last / legs.perRoundTrip).significant(3)} ms"
-      _          <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
+      _ <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
         s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
       periods <- Expect.all(if options.period.isEmpty then Seq("100ms") else options.period)(
         Span.parse(_).left.map("--period: " + _)

@@ -33,7 +33,9 @@ final case class LearnOptions(
     @arg(doc = "time between decisions for one vehicle (default: 100ms)")
     period: Option[String],
     forward: ForwardOptions,
-    @arg(doc = "decisions to learn from, of all environments together, rounded up to whole rounds (default: 600000; ppo: 2000000)")
+    @arg(doc =
+      "decisions to learn from, of all environments together, rounded up to whole rounds (default: 600000; ppo: 2000000)"
+    )
     steps: Option[Long],
     @arg(doc = "widths of the hidden layers of all networks (default: 32x32)")
     network: Option[String],

@@ -62,7 +62,9 @@ private[cli] final class SearchJob(
     val axes = shownAxes.mkString(", ") + (if more > 0 then s" and $more more" else "")
     s"""${ready.text}: ${ready.subject(axes)}
        |loop ${ready.under}, every ${ready.periodMs.significant(4)} ms; ${ready.vehicles}
-       |${ready.method}, about ${numbered(ready.search.expected)} episodes; engine: ${ready.engines}${ready.rate(
+       |${ready.method}, about ${numbered(
+        ready.search.expected
+      )} episodes; engine: ${ready.engines}${ready.rate(
         threads
       ).fold("")("; " + _)}""".stripMargin
 
@@ -76,8 +78,8 @@ private[cli] final class SearchJob(
   private def conclude(state: SearchState, isStopped: () => Boolean): Either[String, Unit] =
     val effort = ready.effort
     // Somebody who stops a search does not wait for long.
-    val most         = if state.isDone then Int.MaxValue else effort.freshEpisodes
-    val fresh        = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
+    val most  = if state.isDone then Int.MaxValue else effort.freshEpisodes
+    val fresh = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
     say(f"measuring the best on $fresh%,d fresh episodes")
     val found        = SearchResult.measured(ready, runner(_), state, fresh)
     val result       = SearchResult(ready, found)

@@ -89,8 +89,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   /** Runs one command, for tests.
     *
-    * @return the exit status: 0 done; 1 failed, or told of what cannot be done; 2 unknown options, or
-    *   values of the wrong kind
+    * @return the exit status: 0 done; 1 failed, or told of what cannot be done; 2 unknown options, or values
+    *   of the wrong kind
     */
   final def run(arguments: Seq[String]): Int =
     arguments.headOption match

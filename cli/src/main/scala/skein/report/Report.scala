@@ -27,7 +27,12 @@ object Report:
     * @param isReplaced whether there was such a page before
     * @param others recordings in the folder that it does not show
     */
-  final case class Output(page: Path, withoutPng: Option[String], isReplaced: Boolean, others: Vector[String]):
+  final case class Output(
+      page: Path,
+      withoutPng: Option[String],
+      isReplaced: Boolean,
+      others: Vector[String]
+  ):
     /** Where it is, in lines for the user. */
     def told: Vector[String] =
       val shown = if others.size <= MostNamed then others else others.take(MostNamed) :+ "…"
@@ -61,8 +66,8 @@ object Report:
   ): Either[String, Output] =
     try
       val isReplaced = Files.exists(page)
-      val folder = Files.createDirectories(page.resolveSibling("figures"))
-      val _      = Files.writeString(page, text)
+      val folder     = Files.createDirectories(page.resolveSibling("figures"))
+      val _          = Files.writeString(page, text)
       for figure <- figures do
         Files.writeString(folder.resolve(s"${figure.name}.svg"), Svg.file(figure.drawing, figure.title))
       val (unpainted, painted) =

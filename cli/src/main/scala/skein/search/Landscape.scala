@@ -85,6 +85,6 @@ object Landscape:
       Vector.tabulate(Probes): i =>
         best.updated(axis, space.axes(axis).least + space.axes(axis).width * i / (Probes - 1))
     tallies(probes).map: told =>
-      val varied   = told.map(_.mean).grouped(Probes).map(means => RunningStats.of(means.size)(means).sd)
+      val varied    = told.map(_.mean).grouped(Probes).map(means => RunningStats.of(means.size)(means).sd)
       val Seq(x, y) = axes.zip(varied.toVector).sortBy(-_._2).take(2).map(_._1).sorted: @unchecked
       (x, y)

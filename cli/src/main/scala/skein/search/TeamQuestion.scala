@@ -66,7 +66,7 @@ final case class TeamQuestion(
       axes  <- Expect.each(vary)(axis(kind, plain, _))
       _     <- Expect.that(!vary.exists(each => set.contains(each.key))):
         s"--set: ${vary.map(_.key).filter(set.contains).mkString(", ")} is searched by --vary; expected one of both"
-      _     <- Expect.that(axes.map(_.name).distinct.size == axes.size):
+      _ <- Expect.that(axes.map(_.name).distinct.size == axes.size):
         s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
       space = SearchSpace(axes)
       // A setting's bounds may be wrong together with another's.

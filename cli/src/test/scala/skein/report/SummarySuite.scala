@@ -133,8 +133,8 @@ class SummarySuite extends munit.FunSuite:
   test("a flight is held against paused ones of its own period, duration and settings alone"):
     def flight(recording: Recording)(change: FlightRow => FlightRow) =
       recording.copy(heading = recording.heading.copy(flight = change(recording.heading.flight)))
-    val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 20)
-    val paused = SyntheticFlight("paused", "none", seed = 3, seconds = 20)
+    val stream                    = SyntheticFlight("stream", "vpn", seed = 2, seconds = 20)
+    val paused                    = SyntheticFlight("paused", "none", seed = 3, seconds = 20)
     def against(truth: Recording) =
       val set = Report.of(Seq(stream, truth))
       set.deviation(set.flights.find(_.flight.loop == "stream").get)
@@ -147,7 +147,9 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(Published.flight(LoopKind.Paused, "none").flatMap(_.distance).map(_.mean), Some(8.53))
     assertEquals(Published.flight(LoopKind.Stream, "none"), None)
 
-  test("a flight that has not ten seconds has no last ten; the paper's figures stand beside flights of a minute"):
+  test(
+    "a flight that has not ten seconds has no last ten; the paper's figures stand beside flights of a minute"
+  ):
     def rows(seconds: Int) =
       SummaryTables.distances(Report.of(Seq(SyntheticFlight("stream", "direct", 1, seconds))))
     val (header, short) = (rows(6).header, rows(6).rows.head)

@@ -28,7 +28,10 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
       givenUp.complete(_): Unit
     )
     processes.start()
-    assert(clue(givenUp.get(60, TimeUnit.SECONDS)).contains("end before they have computed anything, with status 1"))
+    assert(clue(givenUp.get(
+      60,
+      TimeUnit.SECONDS
+    )).contains("end before they have computed anything, with status 1"))
     // The tenth and three more.
     assertEquals(ended.get, 13)
     processes.close()

@@ -109,7 +109,8 @@ object PolicyFile:
     summon[Scenarios].family(text) match
       case Right(family) => roleOf(family, asked.map(name)).map(ofDefaults(_, family))
       case Left(mistake) =>
-        if text.exists("/.:\\".contains(_)) || Files.exists(Path.of(text)) then read(text, asked) else Left(s"$mistake; or a policy file")
+        if text.exists("/.:\\".contains(_)) || Files.exists(Path.of(text)) then read(text, asked)
+        else Left(s"$mistake; or a policy file")
 
   /** Reads a file; `evader:FILE` says whose an ONNX file is that does not note it.
     *

@@ -19,7 +19,10 @@ class SensorFileSuite extends munit.FunSuite:
     SensorFile.parse(lines.mkString("skein.sensor {\n", "\n", "\n}"), "sensor.conf")
 
   test("a recognition that ends before it began is told as the mistake"):
-    assert(read("takes-ms" -> "[-5]").left.exists(_.contains("takes no negative time")), read("takes-ms" -> "[-5]"))
+    assert(
+      read("takes-ms" -> "[-5]").left.exists(_.contains("takes no negative time")),
+      read("takes-ms" -> "[-5]")
+    )
 
   test("a file of which no value is wrong is a sensor"):
     assert(read().isRight, read())

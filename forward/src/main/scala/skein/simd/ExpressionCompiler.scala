@@ -104,7 +104,7 @@ private[skein] abstract class ExpressionCompiler:
       case Op.Hypot =>
         val (x, y) = (a, b)
         sqrt(fma(x, x, mul(y, y)))
-      case Op.Exp   =>
+      case Op.Exp =>
         val x      = a
         val finite = choose(exp(x), constant(Float.PositiveInfinity), isLess(constant(88f), x))
         choose(finite, constant(0f), isLess(x, constant(-87f)))
@@ -250,7 +250,7 @@ private[skein] abstract class ExpressionCompiler:
     * @param isBeyond whether a limit is, of a limit and a value
     */
   private def extreme(node: Node)(isBeyond: (Int, Int) => Int): Int =
-    val Vector(a, b) = node.args
+    val Vector(a, b)   = node.args
     val (value, limit) =
       if b.isConst || b.op == Op.Param || !isNumber(a) && isNumber(b) then (a, b) else (b, a)
     val (of, most) = (this.of(value), this.of(limit))

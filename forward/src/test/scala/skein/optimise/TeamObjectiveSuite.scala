@@ -7,7 +7,7 @@ class TeamObjectiveSuite extends munit.FunSuite:
     for
       kind    <- Scenarios.ours.kinds
       measure <- kind.standard.measures
-      key  = TeamObjective.keyOf(measure)
+      key = TeamObjective.keyOf(measure)
       text <- Seq(key, s"2*$key - 0.5*$key")
     do
       val read = TeamObjective.ofAll(text, kind.standard)
@@ -16,4 +16,7 @@ class TeamObjectiveSuite extends munit.FunSuite:
   test("a weight that is out of all proportion is refused"):
     val kind = Scenarios.ours.kinds.find(_.name == "surround").get
     for weight <- Seq("1e300", "2000000000") do
-      assert(TeamObjective.ofAll(s"$weight*off-ring", kind.standard).left.exists(_.contains("a weight")), weight)
+      assert(
+        TeamObjective.ofAll(s"$weight*off-ring", kind.standard).left.exists(_.contains("a weight")),
+        weight
+      )

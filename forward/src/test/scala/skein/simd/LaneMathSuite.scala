@@ -78,9 +78,9 @@ class LaneMathSuite extends munit.FunSuite:
     assert(error < 2.5e-7, error)
 
   test("what floats do not hold, and what is no number, comes to what doubles come to"):
-    val lanes                                = LaneFunction.COUNT
-    def one(op: Op, x: Double)               = compiled(op, Array.fill(lanes)(x.toFloat)).head
-    def two(op: Op, x: Double, y: Double)    =
+    val lanes                  = LaneFunction.COUNT
+    def one(op: Op, x: Double) = compiled(op, Array.fill(lanes)(x.toFloat)).head
+    def two(op: Op, x: Double, y: Double) =
       // Quotients, which may be no numbers.
       val of = (trace: Trace, x: Node) =>
         trace.binary(op, trace.div(x, trace.input(1)), trace.div(trace.input(2), trace.input(1)))
