@@ -88,9 +88,18 @@ private[cli] final class SearchJob(
       file <- OutFolder.write(folder, Seq(OutFolder.text(name, text)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       _ = found.doubt(ready.baseline.label).foreach(say)
+      _ = disagreement(found.best, fresh.min(SearchResult.Checked)).foreach(say)
       pictures <-
         if state.isDone then landscape(found.best, effort.within(fresh), isStopped) else Right(Vector.empty)
     yield say(s"written: ${(file ++ pictures).mkString(", ")}")
+
+  private def disagreement(best: Vector[Double], episodes: Int): Option[String] =
+    val some = SearchResult.FreshFrom until SearchResult.FreshFrom + episodes
+    for
+      reference <- ready.reference(best, some)
+      flown = runner(Judge.Winner).tallies(Vector(best), some).head
+      told <- SearchResult.disagreement(flown, reference, ready.unit)
+    yield told
 
   private def landscape(
       best: Vector[Double],

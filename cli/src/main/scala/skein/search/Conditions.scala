@@ -53,6 +53,9 @@ object Conditions:
     def batch(threads: Int, accelerator: Option[Accelerator] = None): DuelBatch =
       DuelBatch(duel, timing, vehicle.response, threads, accelerator)
 
+    /** The scalar reference, on one thread. */
+    def reference: DuelBatch = DuelBatch(duel, timing, vehicle.response, threads = 1, isReference = true)
+
     /** Whether the pursuer knows of the evader by a sensor alone. */
     def sees: Boolean = duel.pursuer.eye.isDefined
 

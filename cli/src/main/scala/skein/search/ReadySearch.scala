@@ -45,6 +45,10 @@ trait ReadySearch:
       episodes: Range
   ): (RunningStats, RunningStats)
 
+  /** What a candidate comes to by the scalar reference; none where that flies it anyhow, or nothing forward.
+    */
+  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats]
+
   /** A line that says what flies a candidate, or the baseline, where it is judged. */
   def engine(candidate: Vector[Double], judge: Judge): String
 

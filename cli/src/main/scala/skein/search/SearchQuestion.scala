@@ -180,6 +180,11 @@ final case class SearchSetup(
       by(Judge.Baseline).tallies(Vector(baseline.candidate), episodes).head
     )
 
+  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] =
+    Option.when(fliesByLanes(together = false))(
+      evaluator(conditions.reference, many = false).tallies(Vector(candidate), episodes).head
+    )
+
   def byLanes: Boolean = fliesByLanes(together = true)
 
   def effort: Effort =

@@ -56,6 +56,23 @@ object SearchResult:
 
   private val MostShown = 12
 
+  /** Of the winner's fresh episodes, on which it is held to the scalar reference: these first. */
+  val Checked = 8
+
+  /** What is to be known where the scalar reference comes to something else on the same episodes than what
+    * flew them. Flights differ where rounding decides at a threshold; means over some hardly do.
+    */
+  def disagreement(flown: RunningStats, reference: RunningStats, unit: String): Option[String] =
+    val allowed = Allowed * reference.mean.abs + flown.halfWidth95 + reference.halfWidth95
+    // What is no number agrees with nothing.
+    Option.unless((flown.mean - reference.mean).abs <= allowed)(
+      s"the scalar engine comes to ${interval(reference, unit)} on the same ${reference.count} episodes, and " +
+        s"this search to ${interval(flown, unit)}: the policy computes what floats do not hold; fly it before " +
+        "you trust it"
+    )
+
+  private val Allowed = 0.02
+
   /** @param state with a best candidate
     */
   def measured(ready: ReadySearch, by: Judge => Evaluator, state: SearchState, episodes: Int): Found =

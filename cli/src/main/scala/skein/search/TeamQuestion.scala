@@ -222,6 +222,20 @@ final case class TeamSetup(
     val tallies = by(Judge.Winner).tallies(Vector(candidate, baseline.candidate), episodes)
     (tallies(0), tallies(1))
 
+  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
+    case TeamEngine.Reduced(conditions, delays) if byLanes =>
+      val scalar = TeamBatch(conditions.timing, conditions.vehicle.response, threads = 1, isReference = true)
+      val by     = TeamEvaluator(
+        scalar,
+        this.candidate,
+        delays,
+        objective.terms.map(_._1),
+        question.seed,
+        shareEpisodes = false
+      )
+      Some(by.tallies(Vector(candidate), episodes).head)
+    case _ => None
+
   /** The scenario as a candidate has it; its settings were seen to be right. */
   def scenario(candidate: Vector[Double]): Scenario =
     ScenarioSettings

@@ -27,6 +27,28 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private def eyeFile(): String =
     Files.writeString(temporaryFolder().resolve("eye.conf"), SearchEnginesSuite.Eye).toString
 
+  test("what flies by lanes comes to what the scalar reference comes to, and what does not is told"):
+    val duel = SearchQuestion(
+      family = "lead-pursuit",
+      role = "pursuer",
+      objective = "last10s",
+      method = "random",
+      conditions = Conditions("stream", "reduced", 100, 12),
+      link = "vpn",
+      opponent = "paper-evader turningRadiusM=8.0",
+      candidates = 8,
+      episodes = 1,
+      population = 4,
+      seed = 1
+    ).setup.fold(fail(_), identity)
+    val episodes  = 0 until SearchResult.Checked
+    val flown     = duel.judges(1)(Judge.Winner).tallies(Vector(duel.space.defaults), episodes).head
+    val reference = duel.reference(duel.space.defaults, episodes).get
+    assertNotEquals(flown.mean, reference.mean)
+    assertEquals(SearchResult.disagreement(flown, reference, "m"), None)
+    for other <- Seq(reference.copy(mean = 3 * reference.mean), reference.copy(mean = Double.NaN)) do
+      assert(SearchResult.disagreement(flown, other, "m").exists(_.contains("the scalar engine comes to")))
+
   test("where both fly by lanes, each says by which"):
     for
       loop <- Seq("sequential", "futures", "stream", "predictive")

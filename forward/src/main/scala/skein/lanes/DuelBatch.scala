@@ -24,13 +24,15 @@ import skein.units.Expect
   * @param duel start, speeds and duration; the policies come from the worlds
   * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] whose policies are formulas, where it
   *   knows the loop and the vehicles
+  * @param isReference the scalar reference alone flies, to hold others to it
   */
 final class DuelBatch(
     duel: Duel,
     timing: LoopTiming,
     model: VelocityResponse,
     threads: Int = Runtime.getRuntime.availableProcessors,
-    accelerator: Option[Accelerator] = None
+    accelerator: Option[Accelerator] = None,
+    isReference: Boolean = false
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
@@ -39,6 +41,7 @@ final class DuelBatch(
   private val plant: Either[String, LaneDynamics] =
     for
       _     <- LaneSupport.present
+      _     <- Expect.that(!isReference)("the reference was asked for")
       plant <- LaneDynamics.of(model, duel)
     yield plant
 
@@ -72,7 +75,10 @@ final class DuelBatch(
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  =
-      SteppedRollouts.of(model, vehicles).filterNot(_ => sees).map(SteppedFlyer(duel, timing, _)).getOrElse:
+      SteppedRollouts.of(
+        model,
+        vehicles
+      ).filterNot(_ => sees || isReference).map(SteppedFlyer(duel, timing, _)).getOrElse:
         apart.fold(_ => scalar, LoopFlyer(duel, timing, _, _, scalar))
     val together: DuelFlyer = lanes.fold(_ => alone, TimetableFlyer(_, timetables, alone))
 
@@ -83,7 +89,8 @@ final class DuelBatch(
     accelerator.map(each => lanes.flatMap(each.duels(_, model, threads)))
 
   /** What is told where vehicles are flown side by side. */
-  private val stepped: Option[String] = SteppedRollouts.told(model, vehicles).filterNot(_ => sees)
+  private val stepped: Option[String] =
+    SteppedRollouts.told(model, vehicles).filterNot(_ => sees || isReference)
 
   /** A world that waits meets no delays: all worlds share their episode, but for what somebody sees. */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused] && !sees

@@ -17,12 +17,14 @@ import skein.units.Expect
   *
   * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] that are formulas, where it knows the
   *   loop and the vehicles
+  * @param isReference the scalar reference alone flies, to hold others to it
   */
 final class TeamBatch(
     timing: LoopTiming,
     model: VelocityResponse,
     threads: Int = Runtime.getRuntime.availableProcessors,
-    accelerator: Option[Accelerator] = None
+    accelerator: Option[Accelerator] = None,
+    isReference: Boolean = false
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
@@ -60,7 +62,8 @@ final class TeamBatch(
       accelerator.get.sideBySide
     else LaneFunction.COUNT
 
-  private def steppedOf(candidate: TeamCandidate) = SteppedRollouts.told(model, candidate.engagement.agents)
+  private def steppedOf(candidate: TeamCandidate) =
+    SteppedRollouts.told(model, candidate.engagement.agents).filterNot(_ => isReference)
 
   /** Whether all of its worlds fly by lanes, over any of the links. */
   def fliesByLanes(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
@@ -78,6 +81,7 @@ final class TeamBatch(
     val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
       _        <- LaneSupport.present
+      _        <- Expect.that(!isReference)("the reference was asked for")
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
       _        <- Expect.that(policies.size == engagement.agents.size):
         "a policy plays against one opponent; the lanes fly such policies in duels alone"
