@@ -1,15 +1,13 @@
 package skein.forward
 
 import skein.port.Moves
-import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
 
 /** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as the built-in simulator flies
   * it (`skein.simulator.SimulatedVehicle`): physics keeps a grid of whole steps, from when the vehicle was
-  * put to its start; a command acts from the first step after it on; a position between two steps is carried
-  * on from the last. What is read and commanded are 32-bit floats on AirSim's wire, positions in the frame
-  * whose origin is the start.
+  * put to its start; a command acts from the first step after it on. What is commanded are 32-bit floats on
+  * AirSim's wire; what is read, [[SteppedVehicle]] says.
   */
 private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hoveredS: Double)
     extends VelocityResponse:
@@ -17,11 +15,10 @@ private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hover
 
   override def handoverS: Double = Moves.Handover.toSeconds
 
-private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Long) extends Vehicle:
+private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Long) extends SteppedVehicle:
   private val stepNs             = Nanos.of(quadrotor.stepS)
   private val state              = QuadrotorState()
   private var setpoint: Setpoint = Setpoint.Disarmed
-  private var originX, originY   = 0.0
   private var down               = 0.0
 
   // Since it was put to its start, ns.
@@ -45,26 +42,18 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
       quadrotor.step(state, setpoint, Environment.Calm)
       steppedTo += stepNs
 
-  def x: Double  = originX + ownX
-  def y: Double  = originY + ownY
-  def vx: Double = state.vx + state.ax * sinceStep
-  def vy: Double = state.vy + state.ay * sinceStep
+  protected def sinceStepS: Double = (now - steppedTo) * 1e-9
 
-  override def seenX: Double  = ownX.toFloat + originX
-  override def seenY: Double  = ownY.toFloat + originY
-  override def seenVx: Double = vx.toFloat
-  override def seenVy: Double = vy.toFloat
+  protected def stepX: Double  = state.x
+  protected def stepY: Double  = state.y
+  protected def stepZ: Double  = state.z
+  protected def stepVx: Double = state.vx
+  protected def stepVy: Double = state.vy
+  protected def stepVz: Double = state.vz
+  protected def stepAx: Double = state.ax
+  protected def stepAy: Double = state.ay
+  protected def stepAz: Double = state.az
 
-  override def seen: Kinematics =
-    val t = sinceStep
-    Kinematics(
-      Vector3(seenX, seenY, (state.z + state.vz * t + state.az * (t * t / 2)).toFloat),
-      Vector3(seenVx, seenVy, (state.vz + state.az * t).toFloat),
-      Quaternion(state.qw.toFloat, state.qx.toFloat, state.qy.toFloat, state.qz.toFloat),
-      Vector3(state.wx.toFloat, state.wy.toFloat, state.wz.toFloat)
-    )
-
-  // At constant acceleration, as the simulator carries them on.
-  private def ownX: Double      = state.x + state.vx * sinceStep + state.ax * (sinceStep * sinceStep / 2)
-  private def ownY: Double      = state.y + state.vy * sinceStep + state.ay * (sinceStep * sinceStep / 2)
-  private def sinceStep: Double = (now - steppedTo) * 1e-9
+  protected def orientation: Quaternion =
+    Quaternion(state.qw.toFloat, state.qx.toFloat, state.qy.toFloat, state.qz.toFloat)
+  protected def angularVelocityFrd: Vector3 = Vector3(state.wx.toFloat, state.wy.toFloat, state.wz.toFloat)

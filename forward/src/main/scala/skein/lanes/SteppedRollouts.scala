@@ -1,9 +1,8 @@
 package skein.lanes
 
 import skein.forward.*
-import skein.signal.Kinematics
 import skein.simd.LaneMath
-import skein.units.Vector3
+import skein.units.{Quaternion, Vector3}
 
 /** Many worlds' vehicles fly side by side ([[skein.forward.SteppedVehicles]]), each world by its own
   * [[Rollout]] and in its own time: before each step of physics every rollout handles the events that fall
@@ -61,10 +60,9 @@ private final class SteppedRollouts private (
       Flying(next - 1)
 
   /** One of the vehicles, as the loops know it. */
-  private final class Flying(place: Int) extends Vehicle:
-    private var originX, originY = 0.0
-    private var down             = 0f
-    private var sinceStep        = 0.0
+  private final class Flying(place: Int) extends SteppedVehicle:
+    private var down         = 0f
+    protected var sinceStepS = 0.0
 
     def start(x: Double, y: Double, z: Double): Unit =
       originX = x
@@ -74,30 +72,19 @@ private final class SteppedRollouts private (
 
     def command(vx: Double, vy: Double): Unit = vehicles.command(place, vx.toFloat, vy.toFloat, down)
 
-    def advance(timeS: Double): Unit = sinceStep = (Nanos.of(timeS) - steppedTo) * 1e-9
+    def advance(timeS: Double): Unit = sinceStepS = (Nanos.of(timeS) - steppedTo) * 1e-9
 
-    def x: Double  = originX + ownX
-    def y: Double  = originY + ownY
-    def vx: Double = vehicles.vx(place) + vehicles.ax(place) * sinceStep
-    def vy: Double = vehicles.vy(place) + vehicles.ay(place) * sinceStep
-
-    override def seenX: Double  = ownX.toFloat + originX
-    override def seenY: Double  = ownY.toFloat + originY
-    override def seenVx: Double = vx.toFloat
-    override def seenVy: Double = vy.toFloat
-
-    override def seen: Kinematics =
-      Kinematics(
-        Vector3(seenX, seenY, along(vehicles.z(place), vehicles.vz(place), vehicles.az(place)).toFloat),
-        Vector3(seenVx, seenVy, (vehicles.vz(place) + vehicles.az(place) * sinceStep).toFloat),
-        vehicles.orientation(place),
-        vehicles.angularVelocityFrd(place)
-      )
-
-    private def ownX: Double = along(vehicles.x(place), vehicles.vx(place), vehicles.ax(place))
-    private def ownY: Double = along(vehicles.y(place), vehicles.vy(place), vehicles.ay(place))
-    private def along(from: Double, speed: Double, acceleration: Double): Double =
-      from + speed * sinceStep + acceleration * (sinceStep * sinceStep / 2)
+    protected def stepX: Double               = vehicles.x(place)
+    protected def stepY: Double               = vehicles.y(place)
+    protected def stepZ: Double               = vehicles.z(place)
+    protected def stepVx: Double              = vehicles.vx(place)
+    protected def stepVy: Double              = vehicles.vy(place)
+    protected def stepVz: Double              = vehicles.vz(place)
+    protected def stepAx: Double              = vehicles.ax(place)
+    protected def stepAy: Double              = vehicles.ay(place)
+    protected def stepAz: Double              = vehicles.az(place)
+    protected def orientation: Quaternion     = vehicles.orientation(place)
+    protected def angularVelocityFrd: Vector3 = vehicles.angularVelocityFrd(place)
 
 private object SteppedRollouts:
   /** For worlds of these vehicles; none where they are not stepped side by side. */
