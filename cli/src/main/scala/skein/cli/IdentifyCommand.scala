@@ -113,7 +113,9 @@ final class IdentifyCommand(using scenarios: Scenarios)
       .each(structures.zipWithIndex): (structure, index) =>
         Identification.of(flights, structure, horizonS) match
           case Right(found) =>
-            Console.err.println(s"fitted ${structure.label}: ${index + 1} of ${structures.size}")
+            val unsettled =
+              if found.isConverged then "" else ", not converged: its parameters are where the fit stopped"
+            Console.err.println(s"fitted ${structure.label}: ${index + 1} of ${structures.size}$unsettled")
             Right(Some(Fit(
               found,
               HorizonErrors.of(found.plant, reflown),
@@ -173,7 +175,9 @@ final class IdentifyCommand(using scenarios: Scenarios)
     val names      = (Structure.DragAndTurn.names ++ fits.flatMap(_.identification.structure.names)).distinct
     val parameters = fits.map: fit =>
       val found = fit.identification
-      found.structure.label +: names.map(name => found.parameters.find(_.name == name).fold("")(interval)) ++:
+      (found.structure.label + (if found.isConverged then "" else " (not converged)")) +: names.map(name =>
+        found.parameters.find(_.name == name).fold("")(interval)
+      ) ++:
         Vector(f"${found.velocityRmsMps}%.4f", f"${found.positionRmsM}%.4f")
     val seconds = flights.map(flown => flown.samples.last.atS - flown.samples.head.atS).sum
     val first   = fits.head.identification

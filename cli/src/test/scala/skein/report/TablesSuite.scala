@@ -220,7 +220,7 @@ class TablesSuite extends munit.FunSuite:
       Seq("stream-direct", "stream", "direct", "7", "100", "12", "virtual", "synthetic", "duel", "0.1.0") :+
         "2026-09-21T14:13:20Z"
     )
-    assert(page.contains("Skein: 1 flights, scenario duel"), page.take(400))
+    assert(page.contains("Skein: 1 flight, scenario duel"), page.take(400))
     assert(page.contains("one decision per vehicle every 100 ms; simulator synthetic; virtual clock"))
 
   test("a set names its scenario only where all fly the same"):

@@ -44,7 +44,16 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
   private def fit(structure: Structure, values: Double*): Fit =
     val fitted =
       structure.names.zip(values).map((name, value) => Fitted(name, value, value - 1, value + 1, false))
-    val found = Identification(structure, fitted, structure.plant(values.toVector), 100, 9, 0.1, 0.2)
+    val found = Identification(
+      structure,
+      fitted,
+      structure.plant(values.toVector),
+      100,
+      9,
+      0.1,
+      0.2,
+      isConverged = true
+    )
     Fit(
       found,
       Vector(HorizonError(1, 9, 0.1, 0.2, 0.3, 0.4)),

@@ -3,7 +3,6 @@ package skein.identify
 import skein.forecast.Structure
 import skein.signal.NormalQuantile
 import skein.units.Decimals.fixed
-import skein.units.Expect
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** A fitted parameter. The interval covers the truth with 95 % probability.
@@ -17,6 +16,7 @@ final case class Fitted(name: String, value: Double, least: Double, most: Double
   * @param predictions samples that were predicted, each from some earlier one
   * @param velocityRmsMps of one component's error over all predictions
   * @param positionRmsM the same
+  * @param isConverged else the parameters are where the fit stopped, still improving
   */
 final case class Identification(
     structure: Structure,
@@ -25,7 +25,8 @@ final case class Identification(
     predictions: Int,
     blocks: Int,
     velocityRmsMps: Double,
-    positionRmsM: Double
+    positionRmsM: Double,
+    isConverged: Boolean
 )
 
 /** Fits the plants of a [[skein.forecast.Structure]] to flights. From a sample every
@@ -43,7 +44,7 @@ object Identification:
   val BlockS          = 5.0
   val DefaultHorizonS = 2.0
 
-  /** @return or what is lacking, or that the fit did not converge
+  /** @return or what is lacking
     */
   def of(
       flights: Vector[TimeHistory],
@@ -113,12 +114,9 @@ object Identification:
       axes.map(_.least).toArray,
       axes.map(_.most).toArray
     )(values => residuals(structure.plant(values.toVector), flights, windows, samples))
-    for
-      _ <- Expect.that(solution.isConverged):
-        s"the fit of ${structure.label} did not converge in ${LeastSquares.MostIterations} steps"
-      deviation <- standardErrors(solution, windows, blocks).toRight:
-        s"the flights do not tell the parameters of ${structure.label} apart"
-    yield fitted(structure, solution, deviation, blocks, samples)
+    standardErrors(solution, windows, blocks)
+      .toRight(s"the flights do not tell the parameters of ${structure.label} apart")
+      .map(fitted(structure, solution, _, blocks, samples))
 
   /** A value so near to a bound, of the span between both, is at it: where the bound is the best value, steps
     * end beside it.
@@ -148,7 +146,7 @@ object Identification:
         squares(k * PerSample + offset) + squares(k * PerSample + offset + 1)
       ).sum / (2 * samples))
     val plant = structure.plant(solution.parameters.toVector)
-    Identification(structure, fitted, plant, samples, blocks, rms(0), rms(2))
+    Identification(structure, fitted, plant, samples, blocks, rms(0), rms(2), solution.isConverged)
 
   /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹ with gᵦ = Jᵦᵀrᵦ summed over a block.
     *

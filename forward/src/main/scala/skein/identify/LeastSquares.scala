@@ -7,7 +7,8 @@ package skein.identify
 private[identify] object LeastSquares:
 
   /** @param jacobian at the solution: by parameter, then by residual
-    * @param isConverged no step improved it, or the last one was small; else [[MostIterations]] were over
+    * @param isConverged no step improved it, the last one was small, or it made hardly a difference; else
+    *   [[MostIterations]] were over
     */
   final case class Solution(
       parameters: Array[Double],
@@ -16,10 +17,13 @@ private[identify] object LeastSquares:
       isConverged: Boolean
   )
 
-  val MostIterations = 60
+  private val MostIterations = 200
 
   /** A step that changes no parameter by more than this share ends the search. */
   private val SmallStep = 1e-7
+
+  /** Of the sum of squares, in the last step. */
+  private val SmallGain = 1e-6
 
   /** @param residuals a pure function of the parameters; always of the same size, more than the parameters
     */
@@ -52,7 +56,8 @@ private[identify] object LeastSquares:
           val isSmall =
             at.indices.forall(i => math.abs(next(i) - at(i)) <= SmallStep * (math.abs(at(i)) + 1e-3))
           if isSmall || iteration == MostIterations then
-            Solution(next, there, differences(next, least, most, residuals), isSmall)
+            val hardlyBetter = dot(there, there) >= (1 - SmallGain) * dot(here, here)
+            Solution(next, there, differences(next, least, most, residuals), isSmall || hardlyBetter)
           else go(next, there, less, iteration + 1)
 
     val from = clamped(start)
