@@ -100,7 +100,7 @@ final case class FlightOptions(
 
   /** Flags before file before defaults. */
   def settings(using Scenarios): Either[String, FlySettings] =
-    configuration.flatMap(FlySettings.read).left.map(FlightOptions.byFlags).map: settings =>
+    configuration.flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
         val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
         (slow ++ OpponentModel.missing(settings.fleet)).foreach(Console.err.println)
@@ -126,23 +126,23 @@ final case class FlightOptions(
   private def flags: Config =
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
     FlightOptions.configured(Seq(
-      "loops"           -> strings(chosenLoops),
-      "wire"            -> Option.when(mavlink.value)(Wire.Mavlink.label),
-      "links"           -> strings(link),
-      "duration"        -> duration,
-      "period"          -> period,
-      "seed"            -> seed,
-      "scenario"        -> scenario,
-      "scene"           -> scene,
-      "policies"        -> strings(policy),
-      "plant"           -> plant,
-      "predictor"       -> predictor,
-      "moves-in-flight" -> movesInFlight,
-      "deadline"        -> deadline,
-      "fallback"        -> fallback,
-      "solver"          -> solver,
-      "images"          -> strings(images)
-    ).collect { case (key, Some(value)) => key -> value })
+      ("--loop", "loops", strings(chosenLoops)),
+      ("--wire", "wire", Option.when(mavlink.value)(Wire.Mavlink.label)),
+      ("--link", "links", strings(link)),
+      ("--duration", "duration", duration),
+      ("--period", "period", period),
+      ("--seed", "seed", seed),
+      ("--scenario", "scenario", scenario),
+      ("--scene", "scene", scene),
+      ("--policy", "policies", strings(policy)),
+      ("--plant", "plant", plant),
+      ("--predictor", "predictor", predictor),
+      ("--moves-in-flight", "moves-in-flight", movesInFlight),
+      ("--deadline", "deadline", deadline),
+      ("--fallback", "fallback", fallback),
+      ("--solver", "solver", solver),
+      ("--images", "images", strings(images))
+    ).collect { case (flag, key, Some(value)) => (flag, key, value) })
 
   /** Flags for settings of the scenario that is flown. */
   private def ofScenario(merged: Config)(using Scenarios): Either[String, Config] =
@@ -162,28 +162,13 @@ final case class FlightOptions(
       known <- Expect.all(short ++ told): (flag, key, value) =>
         Either.cond(
           keys.contains(key),
-          s"${kind.name}.$key" -> value,
+          (flag, s"${kind.name}.$key", value),
           s"$flag: the scenario ${kind.name} has no setting '$key'; expected one of ${keys.mkString(", ")}"
         )
     yield FlightOptions.configured(known)
 
 object FlightOptions:
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
-
-  /** What is wrong with settings, by the flags that they came by where it was flags. */
-  private[cli] def byFlags(mistakes: String): String =
-    OfFlag.replaceAllIn(
-      mistakes,
-      found =>
-        val key = found.group(1)
-        java.util.regex.Matcher.quoteReplacement(s"--${FlagOf.getOrElse(key, key)}: ${found.group(2)}")
-    )
-
-  /** As pureconfig tells it of values that [[configured]] put in. */
-  private val OfFlag =
-    """at 'skein\.fly\.([\w-]+)(?:\.\d+)?':\n\s*- \(the command line\) Cannot convert '[^\n]*?' to [^:\n]*: ([^\n]*?)\.(?=\n|$)""".r
-
-  private val FlagOf = Map("links" -> "link", "loops" -> "loop", "policies" -> "policy")
 
   /** What counts where nothing is said, by flags' names: the configuration's own. */
   lazy val defaults: Map[String, String] =
@@ -216,18 +201,18 @@ object FlightOptions:
     "plan: this JVM runs without jdk.incubator.vector, so " +
       "candidates are flown one by one, some fifty times fewer"
 
-  /** Keys below `skein.fly`. */
-  private def configured(values: Seq[(String, Any)]): Config =
+  /** Flags, keys below `skein.fly`, and values: mistakes in these name the flag. */
+  private def configured(values: Seq[(String, String, Any)]): Config =
     values.foldLeft(ConfigFactory.empty):
-      case (config, (key, value)) =>
-        config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
+      case (config, (flag, key, value)) =>
+        config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, flag))
 
   /** A vehicle whose solver is not heard of is told to hover, unless somebody says otherwise. */
   private def hovering(told: Config): Config =
     // Where it refers to what stands elsewhere, it cannot be asked yet.
     def says(key: String) = Try(told.hasPath(s"skein.fly.$key")).getOrElse(true)
     if !says("solver") || says("fallback") then told
-    else told.withFallback(configured(Seq("fallback" -> Fallback.Hover.label)))
+    else told.withFallback(configured(Seq(("--fallback", "fallback", Fallback.Hover.label))))
 
   private def resolved(config: Config): Either[String, Config] =
     try Right(config.resolve())

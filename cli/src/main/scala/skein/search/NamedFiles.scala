@@ -1,8 +1,7 @@
 package skein.search
 
 import java.nio.file.{Files, InvalidPathException, Path}
-import java.security.MessageDigest
-import java.util.HexFormat
+import skein.cluster.jars.Sha256
 
 /** Files that a question names: what they held when it was asked. */
 object NamedFiles:
@@ -13,9 +12,7 @@ object NamedFiles:
     (for
       name <- names
       path <- Seq(name, name.dropWhile(_ != ':').drop(1)).filter(isFile)
-    yield path -> HexFormat.of.formatHex(MessageDigest.getInstance("SHA-256").digest(
-      Files.readAllBytes(Path.of(path))
-    ))).toMap
+    yield path -> Sha256.of(Path.of(path)).hex).toMap
 
   private def isFile(name: String) =
     try name.nonEmpty && Files.isRegularFile(Path.of(name))

@@ -201,15 +201,23 @@ final case class TeamSetup(
 
   def judges(threads: Int): Judge => ValueEvaluator = flownBy match
     case TeamEngine.Reduced(conditions, delays) =>
-      val weights               = objective.terms.map(_._1)
-      val flown                 = batch(conditions, threads)
-      def judge(share: Boolean) =
-        TeamEvaluator(flown, candidate, delays, weights, question.seed, share, Some(space.defaults))
-      val (shared, own) = (judge(true), judge(false))
+      val flown         = batch(conditions, threads)
+      val (shared, own) = (evaluator(flown, delays, share = true), evaluator(flown, delays, share = false))
       judge => if share(judge) then shared else own
     case TeamEngine.Whole(flights, _) =>
       val same = WholeFlightEvaluator(flights, scenario, objective, threads)
       _ => same
+
+  private def evaluator(batch: TeamBatch, delays: Delays, share: Boolean) =
+    TeamEvaluator(
+      batch,
+      candidate,
+      delays,
+      objective.terms.map(_._1),
+      question.seed,
+      share,
+      Some(space.defaults)
+    )
 
   /** Whether candidates meet the same episodes: of few, each world flies faster by itself. */
   private def share(judge: Judge) = judge == Judge.Candidates
@@ -223,17 +231,10 @@ final case class TeamSetup(
     (tallies(0), tallies(1))
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
-    case TeamEngine.Reduced(conditions, delays) if byLanes =>
+    case TeamEngine.Reduced(conditions, delays)
+        if asked.fliesByLanes(this.candidate(candidate), share(Judge.Winner), Seq(delays)) =>
       val scalar = TeamBatch(conditions.timing, conditions.vehicle.response, threads = 1, isReference = true)
-      val by     = TeamEvaluator(
-        scalar,
-        this.candidate,
-        delays,
-        objective.terms.map(_._1),
-        question.seed,
-        shareEpisodes = false
-      )
-      Some(by.tallies(Vector(candidate), episodes).head)
+      Some(evaluator(scalar, delays, share = false).tallies(Vector(candidate), episodes).head)
     case _ => None
 
   /** The scenario as a candidate has it; its settings were seen to be right. */

@@ -9,7 +9,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
-  private def engines(loop: String, link: String, eye: Option[String]): String =
+  private def setup(loop: String, link: String, eye: Option[String]): SearchSetup =
     SearchQuestion(
       family = "lead-pursuit",
       role = "pursuer",
@@ -22,25 +22,16 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       episodes = 1,
       population = 4,
       seed = 1
-    ).setup.fold(fail(_), identity).engines
+    ).setup.fold(fail(_), identity)
+
+  private def engines(loop: String, link: String, eye: Option[String]): String =
+    setup(loop, link, eye).engines
 
   private def eyeFile(): String =
     Files.writeString(temporaryFolder().resolve("eye.conf"), SearchEnginesSuite.Eye).toString
 
   test("what flies by lanes comes to what the scalar reference comes to, and what does not is told"):
-    val duel = SearchQuestion(
-      family = "lead-pursuit",
-      role = "pursuer",
-      objective = "last10s",
-      method = "random",
-      conditions = Conditions("stream", "reduced", 100, 12),
-      link = "vpn",
-      opponent = "paper-evader turningRadiusM=8.0",
-      candidates = 8,
-      episodes = 1,
-      population = 4,
-      seed = 1
-    ).setup.fold(fail(_), identity)
+    val duel      = setup("stream", "vpn", eye = None)
     val episodes  = 0 until SearchResult.Checked
     val flown     = duel.judges(1)(Judge.Winner).tallies(Vector(duel.space.defaults), episodes).head
     val reference = duel.reference(duel.space.defaults, episodes).get

@@ -13,7 +13,7 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
 
   def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
 
-  /** The flight that the others are measured against. */
+  /** The paused flight that figures show beside the others. What each is measured against, [[Truth]] says. */
   val truth: Option[FlightSummary] =
     flights.find(summary => summary.flight.isPaused && summary.policy.isEmpty)
 

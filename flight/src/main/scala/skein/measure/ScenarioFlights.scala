@@ -7,7 +7,7 @@ final case class ScenarioFlights(flights: Vector[ScenarioFlights.Flown]):
 
   def scenario: Scenario = flights.head.result.scenario
 
-  /** The flight that the others are measured against. */
+  /** The paused flight that figures show beside the others. What each is measured against, [[Truth]] says. */
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)
 
   /** The first measure against that of the flight's [[Truth]]. */

@@ -3,7 +3,7 @@ package skein.settings
 import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
-import pureconfig.error.CannotConvert
+import pureconfig.error.{CannotConvert, ConfigReaderFailures, ConvertFailure}
 import skein.loop.{AnyLoop, Deadline, Fallback, JointPlanning, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.policy.{Agent, Fleet, LearnedPolicy}
@@ -203,11 +203,20 @@ object FlySettings:
       settings <-
         given ConfigReader[Scenario]    = ConfigReader.fromFunction(_ => Right(scenario))
         given ConfigReader[FlySettings] = ConfigKeys.reader
-        ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(_.prettyPrint())
+        ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(told)
       valid <- validated(settings)
     yield valid
 
   private val Duration = "skein.fly.duration"
+
+  /** A value whose origin is an option is told by that, others by their place. */
+  private def told(failures: ConfigReaderFailures): String =
+    failures.toList.map:
+      case ConvertFailure(CannotConvert(_, _, because), Some(origin), _)
+          if origin.description.startsWith("--") =>
+        s"${origin.description}: $because"
+      case other => ConfigReaderFailures(other).prettyPrint()
+    .mkString("\n")
 
   private def validated(settings: FlySettings): Either[String, FlySettings] =
     val mistakes = Seq(

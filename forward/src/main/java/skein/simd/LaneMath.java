@@ -7,9 +7,9 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorSpecies;
 
 /**
- * Elementary functions on lanes of floats, by polynomials: the same bits in every lane, on every
- * machine and at every lane count, and three to four times as fast as {@code lanewise(SIN)}. Error
- * bounds are held by {@code LaneMathSuite}.
+ * What passes over lanes of floats are written with: the lanes, and the exponential by polynomials,
+ * with the same bits in every lane, on every machine and at every lane count. Error bounds are held by
+ * {@code LaneMathSuite}.
  *
  * <p>Kernels are written as passes over blocks of worlds. The compiler stops inlining methods of
  * ours once a compilation holds 18,000 nodes, some 60 vector operations, and a vector that crosses

@@ -134,8 +134,8 @@ private[skein] abstract class ExpressionCompiler:
         else fma(neg(times), of(y), x)
       case Op.Always => throw Untraceable("a condition that always holds")
 
-  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has those of the last two for passes written
-  // by hand.
+  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has that of the last for passes written by
+  // hand.
 
   private def sinCos(of: Node): (Int, Int) = sinesAndCosines.getOrElseUpdate(
     of, {
