@@ -3,10 +3,11 @@ package skein.bench
 import java.nio.file.{Files, Path}
 import java.nio.{ByteBuffer, ByteOrder}
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced}
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, PlantResponse}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.Scenarios
+import skein.vehicle.ReducedModel
 
 /** How fast environments fly where nobody looks at them, beside the engine's own flights: what
   * `bench/python/environments.py` is held against. The duel over `vpn`, under `stream`.
@@ -60,7 +61,7 @@ private def environments(count: Int): (Double, Float) =
   (rate * 200 * count, block.getFloat(4 * (2 + 2 * 9) * count))
 
 private def flights(count: Int): (Double, Float) =
-  val batch  = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced.AirSim)
+  val batch  = DuelBatch(Duel.paper, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag))
   val worlds = new DuelWorlds:
     def size                        = count
     override def shareEpisodes      = true

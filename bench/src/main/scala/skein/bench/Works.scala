@@ -1,6 +1,6 @@
 package skein.bench
 
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
+import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse, Rollout, VelocityResponses}
 import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds, LaneQuadrotors}
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
@@ -9,7 +9,7 @@ import skein.vehicle.{Quadrotor, Setpoint}
 
 /** Forward simulation, from the yardstick's work towards reality. */
 object Works:
-  val model: Reduced = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  val model: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val AgentStep   = "agent-step: 0.1 s of one agent"
   private val Decision    = "decision of a network with two hidden layers of eight"

@@ -5,7 +5,6 @@ import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.docs.Documentation
 import skein.flight.VirtualFlights
-import skein.forward.Reduced
 import skein.forecast.Structure
 import skein.loop.LoopKind
 import skein.mcap.file.McapFile
@@ -121,7 +120,12 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       assertEqualsDouble(model.gain, named.gain, 0.1, file.toString)
       assertEqualsDouble(model.lagS, named.lagS, 0.1 * named.lagS, file.toString)
       assertEqualsDouble(model.deadTimeS, named.deadTimeS, 0.04, file.toString)
-      assertEqualsDouble(file.reduced.get.lagS, Reduced.AirSim.lagS, 0.1 * Reduced.AirSim.lagS, file.toString)
+      assertEqualsDouble(
+        file.reduced.get.lagS,
+        ReducedModel.AirSimLag.lagS,
+        0.1 * ReducedModel.AirSimLag.lagS,
+        file.toString
+      )
       val flags = ConfigFactory.parseString(s"skein.fly.predictor = \"${folder.resolve("model.conf")}\"")
       val read  = FlySettings.read(flags.withFallback(ConfigFactory.load()).resolve())
       assertEquals(read.map(_.predictor), Right(PredictionModel.Fitted(model, file.altitudeM)))

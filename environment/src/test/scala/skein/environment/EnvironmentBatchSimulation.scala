@@ -1,12 +1,13 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder}
-import skein.forward.{Delays, Duel, DuelOutcome, Reduced, Rollout}
+import skein.forward.{Delays, Duel, DuelOutcome, PlantResponse, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.lanes.LearnerDuels.FIELDS
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.Scenarios
 import skein.signal.SplitMix64
+import skein.vehicle.ReducedModel
 
 class EnvironmentBatchSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
@@ -58,9 +59,9 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       def link(world: Int): Delays    = config.link
       def pursuer(world: Int): Policy = PaperPursuer()
       def evader(world: Int): Policy  = PaperEvader()
-    val flown = DuelBatch(duel, config.timing, Reduced.AirSim, 1).fly(worlds)
+    val flown = DuelBatch(duel, config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)
     (
-      Rollout(duel, config.timing, config.link, Reduced.AirSim).fly(runKey),
+      Rollout(duel, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),
       flown.minDistanceM(0),
       flown.meanDistanceM(0)
     )

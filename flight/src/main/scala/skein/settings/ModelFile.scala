@@ -1,12 +1,11 @@
 package skein.settings
 
 import com.typesafe.config.Config
-import skein.forward.Reduced
 import skein.forecast.Structure
 import skein.identify.*
 import skein.scenario.Scenarios
 import skein.units.Expect
-import skein.vehicle.ObservedPlant
+import skein.vehicle.{ObservedPlant, ReducedModel}
 
 /** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how
   * well.
@@ -26,7 +25,8 @@ final case class ModelFile(
   val plant: ObservedPlant[?] = use.plant(models(use))
 
   /** The three-parameter model, for what flies no other. */
-  def reduced: Option[Reduced] = models.get(Structure.Lag).map(lag => Reduced(lag(0), lag(1), lag(2)))
+  def reduced: Option[ReducedModel] =
+    models.get(Structure.Lag).map(lag => ReducedModel.lag(lag(0), lag(1), lag(2)))
 
 object ModelFile:
   import FittedFile.{line, list, number}

@@ -74,7 +74,7 @@ object PredictionModel:
             for
               file <- ModelFile.read(path)
               lag  <- file.reduced.toRight(s"$path has no model of three parameters")
-            yield Fitted(lag.model, file.altitudeM)
+            yield Fitted(lag, file.altitudeM)
           case path => ModelFile.read(path).map(of)
         model.left.map(reason => s"expected $forms: $reason")
 

@@ -4,12 +4,10 @@ import java.nio.file.{Files, Path}
 import skein.forward.{
   PlantResponse,
   QuadrotorResponse,
-  Reduced,
   SteppedResponse,
   VelocityResponse,
   VelocityResponses
 }
-import skein.forecast.Structure
 import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
@@ -28,16 +26,15 @@ final case class VehicleChoice(name: String, description: String, response: Velo
 
   /** What is wrong with flying it at an altitude, m, if anything. */
   private[settings] def mistakeAt(altitudeM: Double): Option[String] =
-    Option.when(response == Reduced.AirSim && altitudeM != ReducedModel.IdentifiedAtM):
+    Option.when(response == VehicleChoice.reduced.response && altitudeM != ReducedModel.IdentifiedAtM):
       s"expected drag, quadrotor or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
 
 object VehicleChoice:
 
   private val reduced = VehicleChoice(
     "reduced",
-    s"reduced model of AirSim's quadrotor at z = −20 m, gain ${Reduced.AirSim.gain}, " +
-      s"lag ${Reduced.AirSim.lagS} s, dead time ${Reduced.AirSim.deadTimeS} s",
-    Reduced.AirSim
+    s"reduced model of AirSim's quadrotor at z = −20 m, ${described(ReducedModel.AirSimLag)}",
+    PlantResponse(ReducedModel.AirSimLag)
   )
 
   private def drag(altitudeM: Double) =
@@ -96,17 +93,12 @@ object VehicleChoice:
           for
             file <- read(path, altitudeM)
             lag  <- file.reduced.toRight(s"$path has no model of three parameters")
-          yield VehicleChoice(text, described(lag, path), lag)
+          yield VehicleChoice(text, s"reduced model of $path, ${described(lag)}", PlantResponse(lag))
         case path =>
           for file <- read(path, altitudeM)
           yield
-            if file.use == Structure.Lag && file.reduced.isDefined then
-              VehicleChoice(text, described(file.reduced.get, path), file.reduced.get)
-            else
-              file.plant match
-                case model: ReducedModel =>
-                  VehicleChoice(text, s"reduced model ${file.use.label} of $path", PlantResponse(model))
-                case plant => VehicleChoice(text, s"model ${file.use.label} of $path", PlantResponse(plant))
+            val kind = if file.plant.isInstanceOf[ReducedModel] then "reduced model" else "model"
+            VehicleChoice(text, s"$kind ${file.use.label} of $path", PlantResponse(file.plant))
 
   private def read(path: String, altitudeM: Double)(using Scenarios): Either[String, ModelFile] =
     if Files.isRegularFile(Path.of(path)) then
@@ -116,5 +108,5 @@ object VehicleChoice:
       yield file
     else Left(s"expected $forms, came '$path'")
 
-  private def described(model: Reduced, path: String) =
-    s"reduced model of $path, gain ${model.gain}, lag ${model.lagS} s, dead time ${model.deadTimeS} s"
+  private def described(lag: ReducedModel) =
+    s"gain ${lag.gain}, lag ${lag.lagS} s, dead time ${lag.deadTimeS} s"

@@ -22,8 +22,8 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
 import skein.forward.Duelist;
-import skein.forward.Reduced;
 import skein.vehicle.FirstOrderLag;
+import skein.vehicle.ReducedModel;
 
 /**
  * The vehicles of one role in many worlds, with first-order lag, and the commands on their way to
@@ -36,7 +36,7 @@ import skein.vehicle.FirstOrderLag;
  * = exp(−end / lag) · growth(at) one exponential serves all commands. What a world computes depends
  * on its own commands alone, to the bit: those of others only decide whether zeros are added.
  *
- * <p>{@link LagFlights} flies the same vehicle under every loop. This second way exists for {@code
+ * <p>{@link PlantFlights} flies the same vehicle under every loop. This second way exists for {@code
  * stream}, where it makes 100 million agent-steps a second and the other 54.
  */
 final class LagVehicles extends LaneVehicles {
@@ -96,7 +96,7 @@ final class LagVehicles extends LaneVehicles {
   private final float[] rowsS, remains;
 
   /** Whether powers of e hold what is under way for so long. */
-  static boolean canFly(Reduced model, double longestS) {
+  static boolean canFly(ReducedModel model, double longestS) {
     return longestS <= MOST_LAGS * model.lagS();
   }
 
@@ -107,12 +107,12 @@ final class LagVehicles extends LaneVehicles {
    * @param earliestS no reading is taken so long before its row's begin
    */
   LagVehicles(
-      Duelist duelist, Reduced model, double periodS, double longestS, double earliestS) {
+      Duelist duelist, ReducedModel model, double periodS, double longestS, double earliestS) {
     super(duelist, NUMBERS);
     this.periodS = periodS;
     this.earliestS = (float) earliestS;
     allocate(8);
-    lag = model.lag();
+    lag = new FirstOrderLag(model.lagS());
     lagS = (float) model.lagS();
     speedMps = (float) (duelist.speed() * model.gain());
     periodDecay = (float) lag.remains(periodS);

@@ -24,14 +24,10 @@ import skein.forward.Duelist;
  */
 abstract class LaneFlights extends LaneVehicles {
   /**
-   * Where the numbers of a piece stand: position as it begins, m, and the command's direction, north,
-   * then east; what follows, the kind of vehicle says.
+   * Where the numbers of a piece stand: the command's direction, north, then east; what follows, the kind
+   * of vehicle says.
    */
-  static final int PIECE_X = 0,
-      PIECE_Y = WORLDS,
-      ALONG_X = 2 * WORLDS,
-      ALONG_Y = 3 * WORLDS,
-      PIECE_OWN = 4 * WORLDS;
+  static final int ALONG_X = 0, ALONG_Y = WORLDS;
 
   /** The longest a piece may last, s: far less than times are told apart by. */
   static final double MOST_PIECE_S = 1;
@@ -52,9 +48,6 @@ abstract class LaneFlights extends LaneVehicles {
 
   final float[] chosen, sinceS = new float[WORLDS];
 
-  /** Position and velocity where pieces end, m and m/s, north, then east. */
-  final float[] flown = new float[4 * WORLDS];
-
   // Pieces that end by themselves: where, when, and under which command others follow.
   private final LaneVectors over = new LaneVectors();
   private final int[] ends = new int[WORLDS], next = new int[WORLDS];
@@ -63,12 +56,12 @@ abstract class LaneFlights extends LaneVehicles {
   private static final LaneVectors ALL = LaneVectors.all();
 
   /**
-   * @param own numbers of a piece that the kind of vehicle has from {@link #PIECE_OWN} on
+   * @param numbers that a piece has
    * @param pieceS how long a piece lasts at most, no longer than {@link #MOST_PIECE_S}
    */
-  LaneFlights(Duelist duelist, int own, double pieceS, LoopLanes loop) {
+  LaneFlights(Duelist duelist, int numbers, double pieceS, LoopLanes loop) {
     super(duelist, 0);
-    size = PIECE_OWN + own * WORLDS;
+    size = numbers * WORLDS;
     keptRows = loop.keptRows();
     periodGrains = LaneViews.grains(loop.periodS());
     pieceGrains = LaneViews.grains(pieceS);
@@ -83,14 +76,12 @@ abstract class LaneFlights extends LaneVehicles {
     super.start();
     Arrays.fill(begins, 0, WORLDS, 0);
     Arrays.fill(pieces, 0, size, 0f);
-    System.arraycopy(state, X, pieces, PIECE_X, WORLDS);
-    System.arraycopy(state, Y, pieces, PIECE_Y, WORLDS);
     rest(pieces);
     rowOf[0] = 0;
     filled = 1;
   }
 
-  /** Fills in what a piece at rest has of its own, from index 0 on. */
+  /** Fills in a piece at rest where {@link #state} tells, from index 0 on. */
   abstract void rest(float[] pieces);
 
   /**
@@ -98,12 +89,10 @@ abstract class LaneFlights extends LaneVehicles {
    *
    * @param at where in an array the positions go, north, then east, and behind them the velocities
    */
-  abstract void fly(LaneVectors vectors, float[] into, int at, boolean withVelocity);
+  abstract void fly(float[] into, int at, boolean withVelocity);
 
   /** The same to where others {@link #begin}. */
-  void flyOn(LaneVectors vectors) {
-    fly(vectors, flown, 0, true);
-  }
+  abstract void flyOn();
 
   /**
    * New pieces begin where {@link #chosen} ones were {@link #flyOn flown} to, under commands, in worlds where
@@ -121,7 +110,7 @@ abstract class LaneFlights extends LaneVehicles {
     else ask(row, vectors, at, fresh, 1);
     goOn(row, vectors);
     choose(vectors);
-    fly(vectors, state, SEEN_X, withVelocity);
+    fly(state, SEEN_X, withVelocity);
     if (fresh != null) keep(fresh);
   }
 
@@ -132,7 +121,7 @@ abstract class LaneFlights extends LaneVehicles {
     goOn(row, ALL);
     if (!isLookedAt) return;
     choose(ALL);
-    fly(ALL, state, X, false);
+    fly(state, X, false);
   }
 
   @Override
@@ -140,7 +129,7 @@ abstract class LaneFlights extends LaneVehicles {
     ask(row, vectors, acts, acts, Integer.MIN_VALUE);
     goOn(row, vectors);
     chooseNewest(vectors);
-    flyOn(vectors);
+    flyOn();
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
@@ -167,7 +156,7 @@ abstract class LaneFlights extends LaneVehicles {
   private void goOn(int row, LaneVectors vectors) {
     while (findOver(vectors)) {
       copyNewest(over);
-      flyOn(over);
+      flyOn();
       System.arraycopy(chosen, ALONG_X, along.cos, 0, WORLDS);
       System.arraycopy(chosen, ALONG_Y, along.sin, 0, WORLDS);
       begin(over, fill(row, over, next), ends, along);

@@ -7,10 +7,10 @@ import skein.forward.{
   Nanos,
   PlantResponse,
   QuadrotorResponse,
-  Reduced,
   VelocityResponse
 }
 import skein.units.Expect
+import skein.vehicle.ReducedModel
 
 /** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
   * delays of its own.
@@ -53,7 +53,6 @@ private[skein] object LaneDynamics:
   /** @return or why these do not fly by lanes with this model
     */
   def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, LaneDynamics] = model match
-    case lag: Reduced                 => Right(LagDynamics(lag))
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
@@ -98,42 +97,7 @@ private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredicto
     flown.predicted = by.vehicles(duelist)
     flown
 
-/** By [[TimetableLagVehicles]]: how long ago a command acted last, how far an error of velocity has carried
-  * the vehicle since, over the error, and what remains of it.
-  */
-private final class LagDynamics(model: Reduced) extends LaneDynamics:
-  def deadTimeS: Double                             = model.deadTimeS
-  def handoverS: Double                             = model.handoverS
-  def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
-
-  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
-    loop.timing match
-      // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
-      case stream: LoopTiming.Stream
-          if !loop.sees && stream.periodS >= LagDynamics.LeastPeriodS && LagVehicles.canFly(
-            model,
-            loop.longestS
-          ) =>
-        val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
-        LagVehicles(duelist, model, stream.periodS, loop.longestS, earliestS)
-      case _ => LagFlights(duelist, model, loop)
-
-  def clock(): EventClock = new EventClock:
-    private var actedS                                                      = 0.0
-    def numbers: Int                                                        = 3
-    def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
-      val dt      = atS - actedS
-      val remains = model.lag.remains(dt)
-      into(at) = dt.toFloat
-      into(at + 1) = model.lag.carriedS(remains).toFloat
-      into(at + 2) = remains.toFloat
-      if acts then actedS = atS
-
-private object LagDynamics:
-  /** Below, too many periods' commands are under way for [[LagVehicles]]. */
-  private val LeastPeriodS = 0.02
-
-/** By [[TimetablePlants]]. */
+/** By [[TimetablePlants]] and [[PlantFlights]]; a lag alone also by [[LagVehicles]]. */
 private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   override def stepS: Double                        = lanes.plant.stepS
   def deadTimeS: Double                             = lanes.plant.deadTimeS
@@ -143,7 +107,18 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def clock(): EventClock = StepClock(lanes, lanes.stages.tell(lanes.plant))
 
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
-    PlantFlights(duelist, lanes, loop)
+    (lanes.plant, loop.timing) match
+      // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
+      case (lag: ReducedModel, stream: LoopTiming.Stream)
+          if lag.isLag && !loop.sees && stream.periodS >= PlantDynamics.LeastPeriodS &&
+            LagVehicles.canFly(lag, loop.longestS) =>
+        val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
+        LagVehicles(duelist, lag, stream.periodS, loop.longestS, earliestS)
+      case _ => PlantFlights(duelist, lanes, loop)
+
+private object PlantDynamics:
+  /** Below, too many periods' commands are under way for [[LagVehicles]]. */
+  private val LeastPeriodS = 0.02
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
 private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: QuadrotorLanes) extends LaneDynamics:

@@ -3,7 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
-import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
+import skein.vehicle.{PlaneReading, Plant, PlantState}
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
 private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
@@ -33,6 +33,9 @@ private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantF
   /** Its step in parts. */
   def stages: PlantStages = form.stages
 
+  /** The same where steps begin at times of their own in each world. */
+  def pieces: PlantPieces = form.pieces
+
 /** What plants of one form are compiled to. */
 private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formula):
   val count: Int = stepping.outputs.size
@@ -49,23 +52,16 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
       outputs.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(count + i)) else node)
   )
   val stages: PlantStages = PlantStages(stepping, reading)
+  val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
 
 private[skein] object PlantLanes:
   private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()
-
-  /** Of a [[skein.vehicle.ReducedModel]]: below, powers of e leave what floats hold. */
-  private val LeastLagS = 0.01
 
   /** Plants of one form share what is compiled.
     *
     * @return or why such plants do not fly by lanes
     */
-  def of(plant: Plant[?]): Either[String, PlantLanes] = plant match
-    case model: ReducedModel if model.lagS.min(model.turnLagS) < LeastLagS =>
-      Left(s"the lanes know models with lags of $LeastLagS s at least")
-    case _ => ofForm(plant)
-
-  private def ofForm(plant: Plant[?]): Either[String, PlantLanes] =
+  def of(plant: Plant[?]): Either[String, PlantLanes] =
     val forms = known.computeIfAbsent(plant.getClass, _ => Forms[Plant[?], PlantForm](_.fits(_))(traced))
     forms(plant)
       .flatMap: form =>

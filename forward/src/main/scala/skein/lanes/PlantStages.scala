@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable
-import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace}
+import skein.formula.{Evaluation, Formula, Node, Op, Trace}
 import skein.vehicle.Plant
 
 /** A plant's step, cut by when its numbers are known, for worlds whose steps begin and end together. What
@@ -15,19 +15,24 @@ import skein.vehicle.Plant
 private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   import PlantStages.*
 
-  private val trace    = Trace()
-  private val count    = stepping.outputs.size
-  private val speed    = trace.param(0)
-  private val stepOwn  = angles(stepping, 1, leafOfStep)
-  private val stepped  = stepping.outputs.map((_, node) => stepOwn.convert(node))
-  private val firstOwn = 1 + stepOwn.derived.size
-  private val readOwn  = angles(reading, firstOwn, stepped)
-  private val seen     = reading.outputs.map((_, node) => readOwn.convert(node))
+  private val trace       = Trace()
+  private val count       = stepping.outputs.size
+  private val expressions = PlantExpressions(
+    trace,
+    stepping,
+    reading,
+    first = 0,
+    number => trace.input(State + number),
+    trace.input(North),
+    trace.input(East),
+    trace.input(Time)
+  )
+  import expressions.{seen, stepped}
 
   /** The state's numbers that are where the vehicle is, north and east, if nothing else comes of them. They
     * begin where it starts, then; otherwise the start is added to what is seen.
     */
-  private val places: Option[Vector[Int]] =
+  val places: Option[Vector[Int]] =
     val found = Vector(0, 1).flatMap(placeOf)
     Option.when(found.size == 2)(found)
 
@@ -47,23 +52,13 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   private val located =
     if places.isDefined then seen
     else seen.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(StartX + i)) else node)
-  private val firstTime = firstOwn + readOwn.derived.size
-
-  private def angles(formula: Formula, first: Int, leaf: Int => Node) =
-    Angles(formula.trace, trace, leaf, _ => None, number => trace.param(first + number))
-
-  private def leafOfStep(input: Int) =
-    if input < count then trace.input(State + input)
-    else if input < count + 2 then trace.mul(trace.input(North + input - count), speed)
-    else trace.input(Time)
-
   private val (ofState, timed) =
     cut(
       stepped ++ located,
       _.index >= North,
       i => trace.input(Kept + i)
     )
-  private val (ofTime, late) = cut(timed, _.index == Time, i => trace.param(firstTime + i))
+  private val (ofTime, late) = cut(timed, _.index == Time, i => trace.param(firstOfTime + i))
   private val timesOf        = Evaluation(ofTime)
 
   /** What comes of some inputs alone, and the rest of these expressions, by it. */
@@ -72,8 +67,21 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
     val place = early.zipWithIndex.toMap
     (early, Trace.replaced(of, trace)(place.get(_).map(by)))
 
-  /** The command stays for the next step, if that comes of itself. */
-  private val keeps = ofState ++ Vector(trace.input(North), trace.input(East))
+  private val command = Vector(trace.input(North), trace.input(East))
+
+  /** What comes of the command alone, by where it is kept: it stays if the next step comes of itself. */
+  private val staying: Map[Node, Node] =
+    ofState.zipWithIndex
+      .filter((node, _) =>
+        Trace.needed(Seq(node)).forall(each => each.op != Op.Input || command.contains(each))
+      )
+      .map((node, i) => node -> trace.input(Kept + i))
+      .toMap
+
+  /** So does the command itself, if more comes of it. */
+  private val keeps =
+    val again = Trace.replaced(ofState, trace)(staying.get)
+    ofState ++ (if Trace.needed(again).exists(command.contains) then command else Vector.empty)
 
   /** How many numbers are kept. */
   val kept: Int = keeps.size
@@ -88,17 +96,18 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
       Option.when(states.contains(node))(trace.add(node, trace.input(StartX + states.indexOf(node)))))
 
   /** What is kept of the next step, of what is kept of this one, its time and a new command. */
-  val act: BoundFunction = next(State)
+  val act: BoundFunction = next(Map.empty)
 
   /** The same under the same command. */
-  val goOn: BoundFunction = next(North)
+  val goOn: BoundFunction =
+    next(command.zipWithIndex.map((node, i) => node -> trace.input(Kept + ofState.size + i)).toMap ++ staying)
 
-  /** @param first of the inputs that come of what was kept
+  /** @param known what is kept already
     */
-  private def next(first: Int) = keeping(Trace.replaced(keeps, trace)(node =>
-    Option.when(node.op == Op.Input && node.index >= first):
-      if node.index >= State then late(node.index - State)
-      else trace.input(Kept + ofState.size + node.index - North)
+  private def next(known: Map[Node, Node]) = keeping(Trace.replaced(keeps, trace)(node =>
+    known
+      .get(node)
+      .orElse(Option.when(node.op == Op.Input && node.index >= State)(late(node.index - State)))
   ))
 
   /** Whether what is kept of the next step may take the place of what is kept of this one. */
@@ -114,19 +123,15 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
 
   /** The functions' parameters, but for the time. */
   def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
-    (speedMps +: ownOf(plant)).map(_.toFloat) ++ Array.ofDim[Float](times)
+    expressions.parametersOf(plant, speedMps).map(_.toFloat) ++ Array.ofDim[Float](times)
 
   /** Where the time's begin. */
-  def firstOfTime: Int = firstTime
+  def firstOfTime: Int = expressions.parameters
 
   /** Tells times by the numbers that come of them. */
   def tell(plant: Plant[?]): Double => Array[Double] =
-    val own = 0.0 +: ownOf(plant)
+    val own = expressions.parametersOf(plant, 0)
     dtS => timesOf(Array(dtS), own)
-
-  private def ownOf(plant: Plant[?]) =
-    Evaluation(stepOwn.derived)(Array.emptyDoubleArray, stepping.parametersOf(plant)) ++
-      Evaluation(readOwn.derived)(Array.emptyDoubleArray, reading.parametersOf(plant))
 
 private[lanes] object PlantStages:
   /** What the expressions' inputs are: the time, the command over the speed, where it starts, the state's

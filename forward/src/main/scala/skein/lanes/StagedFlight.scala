@@ -13,9 +13,10 @@ private[lanes] final class StagedFlight(
 ):
   import PlantStages.{East, North, StartX, StartY}
   import TimetableVehicles.WORLDS
-  private val stages     = lanes.stages
-  private val parameters = stages.parametersOf(lanes.plant, speedMps)
-  private val wholeStep  = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
+  private val stages               = lanes.stages
+  private val parameters           = stages.parametersOf(lanes.plant, speedMps)
+  private val (times, firstOfTime) = (stages.times, stages.firstOfTime)
+  private val wholeStep            = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
 
   /** That it [[begin]]s with, number by number. */
   val state: Array[Float] = Array.ofDim[Float](lanes.count * WORLDS)
@@ -88,8 +89,8 @@ private[lanes] final class StagedFlight(
 
   private def tell(time: Array[Float], at: Int): Unit =
     var i = 0
-    while i < stages.times do
-      parameters(stages.firstOfTime + i) = time(at + i)
+    while i < times do
+      parameters(firstOfTime + i) = time(at + i)
       i += 1
 
   private def turnOver(): Unit =

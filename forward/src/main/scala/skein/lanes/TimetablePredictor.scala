@@ -21,11 +21,10 @@ private[skein] object TimetablePredictor:
   /** @return or why this model does not predict by lanes
     */
   def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
-    case PlantModel(lag: ReducedModel) if lag.dragPerM == 0 && lag.turnLagS == lag.lagS =>
-      Right(LagPredictor(lag))
-    case PlantModel(drag: ReducedModel) => PlantLanes.of(drag).map(PlantPredictor(_))
-    case ConstantVelocity               => Right(CoastPredictor)
-    case _                              => Left("the lanes predict by reduced models and constant velocity")
+    case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
+    case PlantModel(drag: ReducedModel)             => PlantLanes.of(drag).map(PlantPredictor(_))
+    case ConstantVelocity                           => Right(CoastPredictor)
+    case _ => Left("the lanes predict by reduced models and constant velocity")
 
 /** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
 private[lanes] object CoastPredictor extends TimetablePredictor, Propagator:

@@ -3,6 +3,7 @@ package skein.forward
 import skein.policy.*
 import skein.scenario.PaperDuel
 import skein.units.*
+import skein.vehicle.ReducedModel
 
 class EngagementSuite extends munit.FunSuite:
   private val duel = PaperDuel().fleet.agents
@@ -34,8 +35,13 @@ class EngagementSuite extends munit.FunSuite:
 
   test("a scenario of one pursuer and one evader is the duel, to the last bit, in every loop"):
     for loop <- loops do
-      val one  = Rollout(Engagement.of(PaperDuel().fleet), loop, DelayTable.vpn, Reduced.AirSim).fly(3)
-      val same = Rollout(Duel.paper, loop, DelayTable.vpn, Reduced.AirSim).fly(3)
+      val one = Rollout(
+        Engagement.of(PaperDuel().fleet),
+        loop,
+        DelayTable.vpn,
+        PlantResponse(ReducedModel.AirSimLag)
+      ).fly(3)
+      val same = Rollout(Duel.paper, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
       assertEquals(one, same, loop.toString)
 
   test("duels out of each other's sight fly as each does alone"):
@@ -50,9 +56,15 @@ class EngagementSuite extends munit.FunSuite:
         )
       )
     )
-    val alone    = places(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, Reduced.AirSim))
+    val alone =
+      places(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, PlantResponse(ReducedModel.AirSimLag)))
     val together =
-      places(Rollout(Engagement.of(scenario), LoopTiming.Paused(), DelayTable.none, Reduced.AirSim))
+      places(Rollout(
+        Engagement.of(scenario),
+        LoopTiming.Paused(),
+        DelayTable.none,
+        PlantResponse(ReducedModel.AirSimLag)
+      ))
     for pair <- 0 to 1 do
       val its =
         together.collect { case (vehicle, x, y) if vehicle / 2 == pair => (vehicle % 2, x, y - far * pair) }

@@ -10,8 +10,8 @@ import skein.vehicle.*
 /** What the rollout must give because geometry, game theory or numerics say so. */
 class RolloutOracleSuite extends munit.FunSuite:
   private val away: Policy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
-  private val lag          = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0)
-  private val perfect      = LoopTiming.Predictive(predictor = PlantModel(lag.model))
+  private val lag          = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
+  private val perfect      = LoopTiming.Predictive(predictor = lag.predictor)
   private val loops        =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream(), perfect)
 
@@ -121,7 +121,7 @@ class RolloutOracleSuite extends munit.FunSuite:
 
   test("the reduced model is exact: into how many pieces a flight is cut does not change it"):
     def fly(pieces: Int): Vector[Double] =
-      val vehicle = Reduced(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
+      val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
       vehicle.start(0, 0, -20)
       for (second, (vx, vy)) <- Seq((10.0, 0.0), (3.0, 9.0), (-5.0, 5.0)).zipWithIndex.map(_.swap) do
         vehicle.command(vx, vy)

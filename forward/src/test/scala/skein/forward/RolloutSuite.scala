@@ -12,7 +12,7 @@ class RolloutSuite extends munit.FunSuite:
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
   private val towards: Policy       = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
   private val awayFrom: Policy      = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
-  private val lag: VelocityResponse = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag: VelocityResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
@@ -111,7 +111,7 @@ class RolloutSuite extends munit.FunSuite:
     assertEqualsDouble(flown.decisions + flown.skipped, 1200, 20)
 
   test("the reduced model follows its differential equation through dead time and commands"):
-    val vehicle = Reduced(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
+    val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
     vehicle.start(0, 0, 0)
     vehicle.command(10, 0)
     vehicle.advance(0.3)

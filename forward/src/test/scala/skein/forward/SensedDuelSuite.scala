@@ -6,6 +6,7 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.signal.{LatencyDistribution, SplitMix64}
 import skein.simd.WorldRandom
 import skein.units.*
+import skein.vehicle.ReducedModel
 
 /** Pursuers that know of their evaders by a sensor's model alone. */
 class SensedDuelSuite extends munit.FunSuite:
@@ -31,12 +32,12 @@ class SensedDuelSuite extends munit.FunSuite:
       link: Delays = DelayTable.none,
       seed: Int = 1
   ) =
-    Rollout(duel(eye), timing, link, Reduced.AirSim).fly(WorldRandom.key(seed, 0, 0))
+    Rollout(duel(eye), timing, link, PlantResponse(ReducedModel.AirSimLag)).fly(WorldRandom.key(seed, 0, 0))
 
   private def last10s(eye: Option[SensorModel], timing: LoopTiming, link: Delays) =
     (1 to 12).map(flown(eye, timing, link, _).meanLast10sM).sum / 12
 
-  private val predictive = LoopTiming.Predictive(predictor = Reduced.AirSim.predictor)
+  private val predictive = LoopTiming.Predictive(predictor = PlantResponse(ReducedModel.AirSimLag).predictor)
 
   for timing <- Seq(LoopTiming.Paused(), LoopTiming.stream(0.1), predictive) do
     test(s"${timing.productPrefix}: who sees exactly and at once flies as one that is told"):
@@ -99,7 +100,7 @@ class SensedDuelSuite extends munit.FunSuite:
       // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
       val seeing = duel(Some(camera))
       val beside = seeing.copy(evader = seeing.evader.copy(startY = 2), durationS = 12)
-      val batch  = DuelBatch(beside, timing, Reduced.AirSim, threads = 1)
+      val batch  = DuelBatch(beside, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1)
       val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn))
       assert(engine.startsWith("SIMD, "), engine)
       val worlds = new DuelWorlds:
@@ -109,7 +110,7 @@ class SensedDuelSuite extends munit.FunSuite:
         def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
         def evader(world: Int): Policy  = SensedDuelSuite.this.evader
       val outcomes = batch.fly(worlds)
-      val rollout  = Rollout(beside, timing, DelayTable.vpn, Reduced.AirSim)
+      val rollout  = Rollout(beside, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
       for world <- 0 until worlds.size by 7 do
         val alone = rollout.fly(worlds.key(world))
         assertEqualsDouble(outcomes.meanLast10sM(world), alone.meanLast10sM, 5e-3, s"world $world")
@@ -119,7 +120,10 @@ class SensedDuelSuite extends munit.FunSuite:
       DuelBatch(duel, predictive, model, threads = 1)
         .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn))
     val seeing = duel(Some(camera))
-    val both   = told(seeing.copy(evader = seeing.evader.copy(eye = Some(camera))), Reduced.AirSim)
+    val both   = told(
+      seeing.copy(evader = seeing.evader.copy(eye = Some(camera))),
+      PlantResponse(ReducedModel.AirSimLag)
+    )
     assertEquals(
       both,
       "scalar: two that see one another by sensors fly by lanes where candidates share episodes"
@@ -130,6 +134,6 @@ class SensedDuelSuite extends munit.FunSuite:
     )
 
   test("a sensor whose errors floats cannot tell from none flies by the scalar engine"):
-    val batch  = DuelBatch(duel(Some(exact)), predictive, Reduced.AirSim, threads = 1)
+    val batch  = DuelBatch(duel(Some(exact)), predictive, PlantResponse(ReducedModel.AirSimLag), threads = 1)
     val engine = batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn))
     assert(engine.startsWith("scalar: the lanes know sensors with deviations of"), engine)

@@ -1,16 +1,7 @@
 package skein.identify
 
 import skein.forecast.Structure
-import skein.forward.{
-  DelayTable,
-  Duel,
-  LoopTiming,
-  Reduced,
-  Rollout,
-  Vehicle,
-  VelocityResponse,
-  VelocityResponses
-}
+import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, Vehicle, VelocityResponse, VelocityResponses}
 import skein.policy.Role
 import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
@@ -49,7 +40,7 @@ class AirSimModelSuite extends munit.FunSuite:
     assert(errors(0).positionP50M < 0.02 && errors(2).positionP50M < 0.12, errors)
 
   test("identifying from the quadrotor's flights gives the named defaults again"):
-    val named = Map(Structure.Lag -> Reduced.AirSim.model, Structure.Drag -> ReducedModel.AirSim)
+    val named = Map(Structure.Lag -> ReducedModel.AirSimLag, Structure.Drag -> ReducedModel.AirSim)
     for (structure, model) <- named do
       val identified = Identification.of(flights.map(HorizonErrors.reflown(_)), structure)
       val found      = identified.map(_.plant).fold(fail(_), identity) match

@@ -9,7 +9,7 @@ import skein.vehicle.ReducedModel
 
 /** Lanes and the scalar engine take the same decisions in every world: [[DuelAgreement]]. */
 class AgreementSimulation extends munit.FunSuite, Unhurried:
-  private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val worlds = DuelKernel.WORLDS
 
   /** The paper's, but that the evader does not start straight ahead, on a threshold of most pursuers. */

@@ -18,7 +18,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
   import DuelAgreement.Event
 
   private val worlds = DuelKernel.WORLDS
-  private val model  = Reduced.AirSim
+  private val model  = PlantResponse(ReducedModel.AirSimLag)
   private val camera = GuideCamera.model
 
   // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
@@ -33,7 +33,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     seeingPursuer.copy(pursuer = Duel.paper.pursuer, evader = duel.evader.copy(eye = Some(camera)))
 
   private val plants = Seq[(String, VelocityResponse)](
-    "lag"    -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
+    "lag"    -> VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
     "no lag" -> VelocityResponses.Ideal,
     "drag"   -> PlantResponse(ReducedModel.AirSim),
     "car"    -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
@@ -139,7 +139,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       agreeAlone(
         seeingPursuer.copy(pursuer = seeingPursuer.pursuer.copy(eye = Some(often))),
         timing,
-        Reduced.AirSim,
+        PlantResponse(ReducedModel.AirSimLag),
         DelayTable.vpn
       )
 

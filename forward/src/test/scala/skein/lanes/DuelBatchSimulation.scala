@@ -11,7 +11,6 @@ import skein.forward.{
   LoopTiming,
   PlantResponse,
   RecordedDelays,
-  Reduced,
   Rollout,
   Steering,
   VelocityResponse,
@@ -208,7 +207,7 @@ object DuelBatchSimulation:
   /** Goes straight on, by what is no arithmetic. */
   val Straight: Policy = (_, _, _, _, own, _, _) => own.toString.toDouble
 
-  val lag: Reduced = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  val lag: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   /** Worlds of different links and policies; the evader of every seventh goes straight on. */
   def mixed(count: Int): DuelWorlds =

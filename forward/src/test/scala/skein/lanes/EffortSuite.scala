@@ -1,8 +1,9 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced}
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, PlantResponse}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
 
 /** Efforts are computed where they are asked for, and nothing else depends on that. */
 class EffortSuite extends munit.FunSuite:
@@ -18,13 +19,13 @@ class EffortSuite extends munit.FunSuite:
       def link(world: Int): Delays    = DelayTable.vpn
       def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.002 * world)
       def evader(world: Int): Policy  = PaperEvader()
-    DuelBatch(duel, timing, Reduced.AirSim, threads = 1).fly(worlds)
+    DuelBatch(duel, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1).fly(worlds)
 
   for
     shared <- Seq(true, false)
     timing <- Seq(
       LoopTiming.Stream(),
-      LoopTiming.Predictive(predictor = Reduced.AirSim.predictor)
+      LoopTiming.Predictive(predictor = PlantResponse(ReducedModel.AirSimLag).predictor)
     ) // by lanes, and shared or scalar
   do
     test(s"${timing.productPrefix}, ${if shared then "one episode for all" else "delays of their own"}"):

@@ -18,7 +18,7 @@ class FlownByLanesSuite extends munit.FunSuite:
 
   private val plants = Vector[(String, VelocityResponse)](
     "no lag"           -> VelocityResponses.Ideal,
-    "lag"              -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
+    "lag"              -> VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
     "drag"             -> PlantResponse(ReducedModel.AirSim),
     "your own `Plant`" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
     "the quadrotor"    -> VelocityResponses.quadrotor()

@@ -39,13 +39,14 @@ object GuideExample:
   // guide: end
 
   // guide: search
-  import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+  import skein.forward.{DelayTable, Duel, LoopTiming, VelocityResponses}
   import skein.lanes.DuelBatch
   import skein.optimise.{Direction, DuelEvaluator, DuelMeasure, Objective}
   import skein.policy.PaperEvader
 
-  val batch   = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05))
-  val nearest = Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise)
+  val lag       = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  val batch     = DuelBatch(Duel.paper, LoopTiming.Stream(), lag)
+  val nearest   = Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise)
   val evaluator =
     DuelEvaluator(batch, 60, leads, Role.Pursuer, PaperEvader(), DelayTable.vpn, nearest, seed = 1)
   val candidates = leads.space.random(200, seed = 1)

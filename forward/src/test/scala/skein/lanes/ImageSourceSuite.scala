@@ -7,6 +7,7 @@ import skein.optimise.LatencyBudget
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.Span
+import skein.vehicle.ReducedModel
 
 class ImageSourceSuite extends munit.FunSuite:
   import ImageSourceSuite.*
@@ -70,7 +71,12 @@ class ImageSourceSuite extends munit.FunSuite:
     val duel  =
       if agent == 0 then paper.copy(evader = paper.evader.copy(eye = Some(model)))
       else paper.copy(pursuer = paper.pursuer.copy(eye = Some(model)))
-    Rollout(duel, LoopTiming.stream(0.1), link, Reduced.AirSim).fly(key, observer = observer): Unit
+    Rollout(
+      duel,
+      LoopTiming.stream(0.1),
+      link,
+      PlantResponse(ReducedModel.AirSimLag)
+    ).fly(key, observer = observer): Unit
     all.toVector
 
 private object ImageSourceSuite:

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, Duel, LoopTiming, DuelOutcome, Reduced, Rollout, VelocityResponse}
+import skein.forward.{DelayTable, Duel, DuelOutcome, LoopTiming, Rollout, VelocityResponse, VelocityResponses}
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
@@ -9,7 +9,7 @@ import skein.simd.WorldRandom
 /** [[LoopDuelKernel]] under `stream` with a lag, for which it has a way of its own ([[LagVehicles]]). */
 class LagDuelsSuite extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
-  private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val keys      = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))
   private val turnRates = Array.tabulate(worlds)(i => 0.6f + 0.008f * i)

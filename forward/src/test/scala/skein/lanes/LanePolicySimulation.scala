@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+import skein.forward.{DelayTable, Duel, LoopTiming, VelocityResponses}
 import skein.policy.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
@@ -89,7 +89,7 @@ class LanePolicySimulation extends munit.FunSuite:
     test(s"$name against $opponent, ${timing.productPrefix}, $many: by lanes as by the scalar reference"):
       val random   = SplitMix64(5)
       val pursuers = Vector.fill(worlds)(draw(random))
-      val model    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+      val model    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
       // Straight ahead rounding would decide to which side the two turn.
       val short           = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = 5)
       def key(world: Int) = WorldRandom.key(1, 0, world)

@@ -6,7 +6,6 @@ import skein.forward.{
   DelayTable,
   Duel,
   LoopTiming,
-  Reduced,
   PlantResponse,
   Steering,
   TabledDelays,
@@ -20,7 +19,7 @@ import skein.vehicle.{ConstantVelocity, ReducedModel}
 
 class LoopDuelKernelSimulation extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
-  private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val models = Seq[(String, VelocityResponse)](
     "lag"           -> lag,
     "no lag"        -> VelocityResponses.Ideal,
@@ -142,7 +141,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
         lag
       ).check(s"${link.maxS} s", 0 until worlds by 16)
 
-  private val slow = Reduced(gain = 0.95, lagS = 0.8, deadTimeS = 0.3)
+  private val slow = VelocityResponses.lag(gain = 0.95, lagS = 0.8, deadTimeS = 0.3)
 
   for (what, timing, link, model) <- Seq(
       (
@@ -204,7 +203,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       agreement(timing, wild(40, 200), 5, lag).check("slow", 0 until worlds by 9)
 
   test("predictive with a period of dead time over a link of much jitter: worlds turn at times of their own"):
-    val late   = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.1)
+    val late   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.1)
     val timing = LoopTiming.Predictive(0.1, late.predictor)
     for (jitterMs, episode) <- Seq(150.0, 300.0).zipWithIndex do
       fly(timing, wild(200, jitterMs), 60, late, Array.tabulate(worlds)(WorldRandom.key(4, episode, _))): Unit

@@ -72,7 +72,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       assert(off.max < 1e-3, off.sorted.takeRight(5))
 
   test("a plant of a first-order lag flies as the model with a lag"):
-    val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0)
+    val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
     val timing = LoopTiming.Stream()
     for key <- 1 to 5 do
       val plant =

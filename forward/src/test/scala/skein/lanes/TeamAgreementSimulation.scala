@@ -1,7 +1,16 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, Duelist, Engagement, Grounds, LoopObserver, LoopTiming, Reduced, Rollout}
+import skein.forward.{
+  DelayTable,
+  Duelist,
+  Engagement,
+  Grounds,
+  LoopObserver,
+  LoopTiming,
+  Rollout,
+  VelocityResponses
+}
 import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
@@ -15,7 +24,7 @@ import skein.testing.Unhurried
 class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
   import TeamAgreementSimulation.*
 
-  private val plant  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val plant  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val worlds = TimetableKernel.WORLDS
 
   private def within(random: SplitMix64, least: Double, most: Double) =

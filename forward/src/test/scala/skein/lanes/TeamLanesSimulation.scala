@@ -12,7 +12,7 @@ import skein.vehicle.ReducedModel
 
 class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private val worlds = TimetableKernel.WORLDS
-  private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val links  = Seq[(String, Delays)]("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
 
   private val loops = TestLoops.unpredicted :+ LoopTiming.Predictive(predictor = lag.predictor)

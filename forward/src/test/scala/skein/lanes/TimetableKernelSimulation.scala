@@ -6,7 +6,6 @@ import skein.forward.{
   Duel,
   LinkDelays,
   LoopTiming,
-  Reduced,
   PlantResponse,
   Rollout,
   VelocityResponse,
@@ -18,7 +17,7 @@ import skein.vehicle.ReducedModel
 
 class TimetableKernelSimulation extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
-  private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val turnRates = Array.tabulate(worlds)(i => 0.6f + 0.008f * i)
   private val radii     = Array.tabulate(worlds)(i => 7f + 0.02f * i)

@@ -6,13 +6,14 @@ import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
 /** How fast does each loop fly by lanes, beside the scalar engine?
-  * `forward/Test/runMain skein.lanes.timingRates [text]`: on one thread, 60 s over `vpn` unless told
-  * otherwise, only what contains the text; processor time. Agent-steps of a period, in millions a second.
+  * `forward/Test/runMain skein.lanes.timingRates [text] [-text]`: on one thread, 60 s over `vpn` unless told
+  * otherwise, only what contains a text, or does not contain that behind a minus sign; processor time.
+  * Agent-steps of a period, in millions a second.
   */
 @main def timingRates(only: String*): Unit =
   val times  = java.lang.management.ManagementFactory.getThreadMXBean
   val models = Seq[(String, VelocityResponse)](
-    "lag"       -> Reduced.AirSim,
+    "lag"       -> PlantResponse(ReducedModel.AirSimLag),
     "drag"      -> PlantResponse(ReducedModel.AirSim),
     "quadrotor" -> VelocityResponses.quadrotor(),
     "bicycle"   -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
@@ -33,7 +34,7 @@ import skein.vehicle.ReducedModel
     row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${
         if sees then " by eye" else ""
       }$linked"
-    if only.forall(row.contains)
+    if only.forall(text => if text.startsWith("-") then !row.contains(text.drop(1)) else row.contains(text))
   do
     val duel  = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
     val batch = DuelBatch(duel, timing, model, threads = 1)
@@ -56,9 +57,13 @@ import skein.vehicle.ReducedModel
       batch.fly(worlds(count, 0)): Unit
       count * 1200.0 / ((os.getProcessCpuTime - from) * 1e-3)
     val slow  = !isFast || name == "quadrotor"
-    val count = if slow then 64 else if sees || name == "bicycle" then 8192 else 40960
-    for _ <- 1 to 4 do rate(count): Unit
-    val lanes                        = Vector.fill(5)(rate(count)).max
+    val count = if slow then 64
+    else if sees || name == "bicycle" then 8192
+    else if shared then 163840
+    else 40960
+    val warm = System.nanoTime() + 4_000_000_000L
+    while System.nanoTime() < warm do rate(count): Unit
+    val lanes                        = Vector.fill(9)(rate(count)).max
     val rollout                      = Rollout(duel, timing, over, model)
     def scalar(flights: Int): Double =
       val from = times.getCurrentThreadCpuTime

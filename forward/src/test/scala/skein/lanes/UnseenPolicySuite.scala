@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced, Rollout}
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponses}
 import skein.policy.{ChauffeurEvader, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
@@ -9,7 +9,7 @@ import skein.simd.WorldRandom
 class UnseenPolicySuite extends munit.FunSuite:
   import UnseenPolicySuite.*
 
-  private val model = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val model = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val short = Duel.paper.copy(durationS = 5)
 
   for

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
+import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, VelocityResponses}
 import skein.policy.PolicyFamily
 import skein.signal.SplitMix64
 
@@ -10,7 +10,7 @@ import skein.signal.SplitMix64
   * 0.1 s; an operation is one of the compiled expression, whose number is told.
   */
 @main def unseenRates(rounds: Int*): Unit =
-  val model  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  val model  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   val timing = LoopTiming.Stream()
   val paper  = (random: SplitMix64) => PolicyFamily.paperPursuer.policy(Vector(0.5 + random.nextDouble()))
   val times  = java.lang.management.ManagementFactory.getThreadMXBean

@@ -1,14 +1,14 @@
 package skein.optimise
 
 import java.util.concurrent.atomic.AtomicInteger
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
+import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, VelocityResponses}
 import skein.lanes.DuelBatch
 import skein.policy.{PaperEvader, PaperPursuer, PolicyFamily, Role}
 import skein.simd.WorldRandom
 import skein.testing.Unhurried
 
 class DuelSearchSimulation extends munit.FunSuite, Unhurried:
-  private val lag   = Reduced(0.9, 0.8, 0.05)
+  private val lag   = VelocityResponses.lag(0.9, 0.8, 0.05)
   private val short = Duel.paper.copy(durationS = 15)
 
   private def game(threads: Int): Evaluator = DuelEvaluator(

@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.forward.{DelayTable, Duel, LoopTiming, DuelOutcome, Reduced, Rollout}
+import skein.forward.{DelayTable, Duel, DuelOutcome, LoopTiming, Rollout, VelocityResponses}
 import skein.lanes.{DuelBatch, DuelOutcomes, DuelWorlds}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
 import skein.simd.WorldRandom
@@ -45,7 +45,7 @@ class ObjectiveSuite extends munit.FunSuite:
 
   test("captures, their times and efforts are those of the scalar reference"):
     val duel     = Duel.paper.copy(durationS = 20)
-    val model    = Reduced(0.9, 0.8, 0.05)
+    val model    = VelocityResponses.lag(0.9, 0.8, 0.05)
     val pursuers = Vector(PaperPursuer(0.4), PaperPursuer(1.0), PaperPursuer(1.8))
     val worlds   = new DuelWorlds:
       def size: Int                    = pursuers.size

@@ -1,6 +1,6 @@
 package skein.vehicle
 
-import skein.forward.{Reduced, PlantResponse}
+import skein.forward.{PlantResponse, VelocityResponses}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
@@ -56,19 +56,24 @@ class ReducedModelSuite extends munit.FunSuite:
       1e-6
     )
 
-  test("without drag and with one lag it is the three-parameter model"):
-    val reduced  = Reduced(0.9, 0.8, 0.05)
-    val vehicles = Seq(reduced.create(), PlantResponse(reduced.model).create())
-    for vehicle <- vehicles do
-      vehicle.start(3, 4, -20)
-      for k <- 1 to 40 do
-        vehicle.advance(0.07 * k)
-        vehicle.command(9 * math.cos(k), 9 * math.sin(k))
-      vehicle.advance(3.1)
-    assertEqualsDouble(vehicles(1).x, vehicles(0).x, 1e-9)
-    assertEqualsDouble(vehicles(1).y, vehicles(0).y, 1e-9)
-    assertEqualsDouble(vehicles(1).vx, vehicles(0).vx, 1e-9)
-    assertEqualsDouble(vehicles(1).vy, vehicles(0).vy, 1e-9)
+  test("without drag and with one lag it is a first-order lag of each axis"):
+    val lag     = FirstOrderLag(0.8)
+    val vehicle = VelocityResponses.lag(0.9, lag.lagS, 0.05).create()
+    vehicle.start(3, 4, -20)
+    var place, velocity, wanted = 0.0
+    def glide(spanS: Double)    =
+      place += wanted * spanS + (velocity - wanted) * lag.carriesS(spanS)
+      velocity = wanted + (velocity - wanted) * lag.remains(spanS)
+    for k <- 1 to 40 do
+      vehicle.advance(0.07 * k)
+      vehicle.command(9 * math.cos(k), 9 * math.sin(k))
+      glide(if k == 1 then 0.12 else 0.07)
+      wanted = 0.9 * 9 * math.sin(k)
+    // Longer than a piece.
+    vehicle.advance(0.07 * 40 + 0.05 + 2.5)
+    glide(2.5)
+    assertEqualsDouble(vehicle.y, 4 + place, 1e-9)
+    assertEqualsDouble(vehicle.vy, velocity, 1e-9)
 
   test("as a predictor it holds a command back for the dead time, whatever the spans it is asked for"):
     val predictor       = PlantModel(model)

@@ -1,12 +1,13 @@
 package skein.learn
 
 import skein.environment.EnvironmentSettings
-import skein.forward.{DelayTable, Delays, Duel, LinkDelays, LoopTiming, Reduced, Rollout}
+import skein.forward.{DelayTable, Delays, Duel, LinkDelays, LoopTiming, PlantResponse, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.*
 import skein.scenario.Scenarios
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.Span
+import skein.vehicle.ReducedModel
 
 class SideTaskSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
@@ -47,7 +48,7 @@ class SideTaskSimulation extends munit.FunSuite:
       val both =
         if side == "pursuer" then duel.copy(pursuer = duel.pursuer.copy(policy = policy))
         else duel.copy(evader = duel.evader.copy(policy = policy))
-      val flown = Rollout(both, LoopTiming.Stream(), none, Reduced.AirSim).fly(1)
+      val flown = Rollout(both, LoopTiming.Stream(), none, PlantResponse(ReducedModel.AirSimLag)).fly(1)
       val mean  = math.abs(reward) * 100 / 200
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
@@ -61,10 +62,10 @@ class SideTaskSimulation extends munit.FunSuite:
       def link(world: Int): Delays    = DelayTable.vpn
       def pursuer(world: Int): Policy = policy
       def evader(world: Int): Policy  = PaperEvader()
-    val batch = DuelBatch(duel, LoopTiming.Stream(), Reduced.AirSim, 1)
+    val batch = DuelBatch(duel, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)
     assert(batch.fliesByLanes(policy, PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
     val flown   = batch.fly(worlds)
     val pursued = duel.copy(pursuer = duel.pursuer.copy(policy = policy))
-    val rollout = Rollout(pursued, LoopTiming.Stream(), DelayTable.vpn, Reduced.AirSim)
+    val rollout = Rollout(pursued, LoopTiming.Stream(), DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
     for world <- 0 until 4 do
       assertEqualsDouble(flown.meanDistanceM(world).toDouble, rollout.fly(world).meanDistanceM, 0.05)

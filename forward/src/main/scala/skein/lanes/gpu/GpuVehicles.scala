@@ -4,7 +4,6 @@ import skein.forward.{
   Duelist,
   PlantResponse,
   QuadrotorResponse,
-  Reduced,
   VelocityResponse
 }
 import skein.gpu.{Ptx, PtxExpressions, Variables}
@@ -34,43 +33,10 @@ private[lanes] object GpuVehicle:
     * @return or why none flies on a GPU
     */
   def of(response: VelocityResponse): Either[String, Kind] = response match
-    case lag: Reduced                 => Right(GpuLagVehicle(_, _, _, _, lag))
     case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))
     case quadrotor: QuadrotorResponse =>
       QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
     case _ => Left("the GPU does not know the vehicle")
-
-/** By [[LagExpressions]]. */
-private[lanes] final class GpuLagVehicle(
-    code: Ptx,
-    duelist: Duelist,
-    startX: Int,
-    startY: Int,
-    model: Reduced
-) extends GpuVehicle:
-  import LagExpressions.State
-  private val state = Variables(
-    code,
-    Seq.fill(State)(0f)
-  )
-
-  def start(): Unit =
-    state.start()
-    state.take(Seq(startX, startY))
-
-  def look(record: GpuRecord, withVelocity: Boolean): Vector[Int] =
-    val asked = LagExpressions.position ++ (if withVelocity then LagExpressions.velocity else Nil)
-    PtxExpressions.write(code, asked)(state(_), parameter(record))
-
-  def act(record: GpuRecord, north: Int, east: Int): Unit =
-    state.take(PtxExpressions.write(code, LagExpressions.act)(
-      input => if input < State then state(input) else if input == State then north else east,
-      parameter(record)
-    ))
-
-  private def parameter(record: GpuRecord)(number: Int): Int =
-    if number == LagExpressions.Speed then code.constant((duelist.speed * model.gain).toFloat)
-    else record.time(number)
 
 /** By [[PlantStages]]. */
 private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, startY: Int, lanes: PlantLanes)

@@ -14,7 +14,7 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
   override def munitTimeout: scala.concurrent.duration.Duration =
     scala.concurrent.duration.Duration(5, "min")
 
-  private val lag = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val plants = Vector[(String, VelocityResponse)](
     "lag"        -> lag,

@@ -1,12 +1,14 @@
 package skein.lanes.gpu
 
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
 
 class GpuEpisodesSuite extends munit.FunSuite:
-  private val model = LaneDynamics.of(Reduced.AirSim, Duel.paper).fold(fail(_), identity)
+  private val model =
+    LaneDynamics.of(PlantResponse(ReducedModel.AirSimLag), Duel.paper).fold(fail(_), identity)
 
   private def timetable(key: Int): Timetable =
     Timetable.of(2, 2, LoopTiming.Stream(), DelayTable.vpn, WorldRandom.key(1, 0, key), model)

@@ -1,7 +1,7 @@
 package skein.lanes.gpu
 
 import java.nio.file.{Files, Path}
-import skein.forward.{Duel, LoopTiming, Reduced, PlantResponse, VelocityResponse, VelocityResponses}
+import skein.forward.{Duel, LoopTiming, PlantResponse, VelocityResponse, VelocityResponses}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
@@ -26,9 +26,13 @@ import skein.vehicle.{Quadrotor, ReducedModel}
         layout
       )
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
-  duels("lag", Reduced.AirSim, PaperPursuer())
+  duels("lag", PlantResponse(ReducedModel.AirSimLag), PaperPursuer())
   duels("drag", PlantResponse(ReducedModel.AirSim), PaperPursuer())
   duels("quadrotors", VelocityResponses.quadrotor(), PaperPursuer())
-  duels("network", Reduced.AirSim, RectifiedNetwork(Array.fill(RectifiedNetwork.Weights)(0.1), 1))
+  duels(
+    "network",
+    PlantResponse(ReducedModel.AirSimLag),
+    RectifiedNetwork(Array.fill(RectifiedNetwork.Weights)(0.1), 1)
+  )
   val lanes = QuadrotorLanes.of(Quadrotor.AirSim).fold(sys.error, identity)
   Files.writeString(Path.of(folder, "hover.ptx"), GpuQuadrotors.text(lanes)): Unit

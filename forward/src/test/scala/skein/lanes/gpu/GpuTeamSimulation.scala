@@ -10,7 +10,7 @@ import skein.vehicle.ReducedModel
 
 /** What [[GpuDuelSimulation]] holds duels to, of teams. */
 class GpuTeamSimulation extends munit.FunSuite, TestGpus:
-  private val lag  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val lag  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val drag = PlantResponse(ReducedModel.AirSim)
 
   private val loops = TestLoops.unpredicted :+ LoopTiming.Predictive(predictor = lag.predictor)
