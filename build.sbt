@@ -244,15 +244,10 @@ lazy val cli = project
     }.taskValue,
     executableScriptName := "skein",
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
-    // A class-data archive, made at the first run, halves the start-up time; beside an agent it must be allowed.
-    // Workers, of which many start at once, have one of their own. The vector module costs no measurable time at the start.
+    // The vector module costs no measurable time at the start.
     bashScriptExtraDefines ++= Seq(
       s"""addJava "-javaagent:$$lib_dir/${organization.value}.${(vtimeAgent / Compile / packageBin).value.getName}"""",
-      """addJava "-XX:+UnlockDiagnosticVMOptions"""",
-      """addJava "-XX:+AllowArchivingWithJavaAgent"""",
-      """addJava "-XX:+AutoCreateSharedArchive"""",
-      """case " $* " in " worker "*) archive=skein-worker ;; *) archive=skein ;; esac""",
-      """addJava "-XX:SharedArchiveFile=${app_home}/../$archive.jsa"""",
+      IO.read((ThisBuild / baseDirectory).value / "project" / "class-archive").trim,
       """addJava "--add-modules=jdk.incubator.vector"""",
       IO.read((ThisBuild / baseDirectory).value / "project" / "quiet-vectors").trim,
       // The experiment's nine flights of a minute in virtual time have landed before optimising them pays.

@@ -23,7 +23,8 @@ private[cli] final class FetchedWorker(words: Seq[String], archives: Path):
   /** Blocks until it has ended; it tells for itself how. */
   def run(program: Fetched): Either[String, Unit] =
     try
-      val process = ProcessBuilder(WorkerProcesses.fetched(program, archives, words)*)
+      val process = WorkerProcesses
+        .starting(WorkerProcesses.fetched(program, archives, words))
         .redirectOutput(ProcessBuilder.Redirect.INHERIT)
         .redirectError(ProcessBuilder.Redirect.INHERIT)
         .start()

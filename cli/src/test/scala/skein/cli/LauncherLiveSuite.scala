@@ -72,3 +72,25 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     assert(said.contains(s"flown from $cache"))
     val (_, again) = run(cache, Map("XDG_CACHE_HOME" -> cache.toString), s"$folder/skein", "fly")
     assert(!clue(again).contains("building"))
+
+  test("an archive of classes that was not written to its end is removed, and a whole one is used"):
+    val folder = temporaryFolder()
+    Files.createDirectories(folder.resolve("bin"))
+    Files.copy(checkout.toPath.resolve("project/class-archive"), folder.resolve("class-archive"))
+    script(
+      folder.resolve("launcher"),
+      """addJava() { echo "$1"; }
+        |app_home=bin
+        |. ./class-archive""".stripMargin
+    )
+    for (words, name) <- Seq((Seq("worker", "--join"), "skein-worker.jsa"), (Seq("fly"), "skein.jsa")) do
+      val archive                        = folder.resolve(name)
+      def isKeptWith(bytes: Array[Byte]) =
+        Files.write(archive, bytes)
+        val (status, said) = run(folder, Map.empty, "./launcher" +: words*)
+        assertEquals(status, 0, said)
+        assert(clue(said).contains(s"-XX:SharedArchiveFile=bin/../$name\n"))
+        Files.exists(archive)
+      assert(isKeptWith(Array[Byte](0xa8.toByte, 0x0b, 0xf0.toByte, 0x0f)))
+      assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
+      assert(!isKeptWith(Array.emptyByteArray))

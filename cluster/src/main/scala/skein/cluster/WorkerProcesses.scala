@@ -2,10 +2,11 @@ package skein.cluster
 
 import java.io.File
 import java.lang.management.ManagementFactory
-import java.nio.file.Path
+import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
+import scala.util.Using
 import skein.cluster.jars.Fetched
 
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from
@@ -45,7 +46,7 @@ final class WorkerProcesses(
 
   private def begin(number: Int): Unit = synchronized:
     if !isClosing then
-      val builder = ProcessBuilder(command*)
+      val builder = starting(command)
       builder.redirectErrorStream(true)
       builder.redirectOutput(ProcessBuilder.Redirect.appendTo(log(number).toFile))
       val process = builder.start()
@@ -88,6 +89,22 @@ object WorkerProcesses:
 
   private val Archive   = "-XX:SharedArchiveFile="
   private val OfWorkers = "-worker.jsa"
+
+  /** What starts a worker. Where the archive of classes that the command names was not written to its end,
+    * since the JVM that wrote it was killed, it is removed: the JVM would neither read nor replace it, and
+    * all workers would start slowly ever after.
+    */
+  def starting(command: Seq[String]): ProcessBuilder =
+    command
+      .filter(_.startsWith(Archive))
+      .map(option => Path.of(option.stripPrefix(Archive)))
+      .filter(isCutOff)
+      .foreach(Files.deleteIfExists(_))
+    ProcessBuilder(command*)
+
+  /** The JVM writes an archive's first bytes last. */
+  private def isCutOff(archive: Path): Boolean =
+    Files.isRegularFile(archive) && Using.resource(Files.newInputStream(archive))(_.read()) <= 0
 
   /** In a worker: calls `end` once the process that started it has ended, or closed its pipe. */
   def endWithParent(end: () => Unit): Unit =

@@ -1,5 +1,6 @@
 package skein.cluster
 
+import java.nio.file.Files
 import java.util.concurrent.{CompletableFuture, TimeUnit}
 import java.util.concurrent.atomic.AtomicInteger
 import skein.testing.TemporaryFolders
@@ -12,6 +13,18 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(own, "-XX:SharedArchiveFile=/opt/skein/skein-vector-worker.jsa")
     assertEquals(WorkerProcesses.ofWorkers(own), own)
     assertEquals(WorkerProcesses.ofWorkers("-Xmx1g"), "-Xmx1g")
+
+  test("an archive of classes that was not written to its end is removed before a worker starts"):
+    val archive                        = temporaryFolder().resolve("skein-worker.jsa")
+    def isKeptWith(bytes: Array[Byte]) =
+      Files.write(archive, bytes)
+      WorkerProcesses.starting(Seq("java", s"-XX:SharedArchiveFile=$archive", "worker")): Unit
+      Files.exists(archive)
+    assert(isKeptWith(Array[Byte](0xa8.toByte, 0x0b, 0xf0.toByte, 0x0f)))
+    assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
+    assert(!isKeptWith(Array.emptyByteArray))
+    // Nor is it missed where there is none.
+    WorkerProcesses.starting(Seq("java", s"-XX:SharedArchiveFile=$archive", "worker")): Unit
 
   test(
     "workers that are killed again and again are replaced while " +
