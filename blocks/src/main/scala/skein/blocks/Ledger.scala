@@ -3,7 +3,7 @@ package skein.blocks
 import java.io.IOException
 import java.nio.ByteBuffer
 import java.nio.channels.FileChannel
-import java.nio.file.{Files, Path, StandardOpenOption}
+import java.nio.file.{Path, StandardOpenOption}
 import java.util.zip.CRC32
 import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
@@ -13,17 +13,19 @@ import scala.util.Using
   * it and asks for nothing twice. Whatever ends the process, a record is there whole or is cut off at the
   * next start.
   *
+  * A record that was damaged since is passed over, and its block computed again.
+  *
   * The file: 16 bytes of [[Ledger.Magic]], 32 bytes that name the question, then records: length and CRC-32
   * of what follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
   *
   * @param index where each block's answer stands, and how long it is
-  * @param cutOff bytes at the end of the file that were no whole record and were removed
+  * @param broken bytes of the file, as it was opened, that belong to no whole record
   */
 final class Ledger private (
     channel: FileChannel,
     index: mutable.HashMap[BlockKey, (Long, Int)],
     private var end: Long,
-    val cutOff: Long
+    val broken: Long
 ) extends AutoCloseable:
 
   def size: Int = index.size
@@ -92,16 +94,16 @@ object Ledger:
           Left(s"$file: the ledger of another question; expected that of this one, or no file")
         else
           val index = mutable.HashMap.empty[BlockKey, (Long, Int)]
-          val end   = scan(channel)((key, at, length) => { val _ = index.getOrElseUpdate(key, (at, length)) })
-          val _     = channel.truncate(end)
-          Right(Ledger(channel, index, end, size - end))
+          val found = scan(channel)((key, at, length) => { val _ = index.getOrElseUpdate(key, (at, length)) })
+          val _     = channel.truncate(found.end)
+          Right(Ledger(channel, index, found.end, found.broken))
     catch case failed: IOException => Left(s"cannot open the ledger $file: $failed")
 
   /** What a ledger holds, read from the file alone.
     *
     * @param blocks records with different keys
     * @param repeats records whose key came before; none, or something is wrong
-    * @param broken bytes behind the last whole record
+    * @param broken bytes that belong to no whole record
     */
   final case class Audit(blocks: Int, repeats: Int, broken: Long)
 
@@ -109,25 +111,34 @@ object Ledger:
     Using.resource(FileChannel.open(file, StandardOpenOption.READ)): channel =>
       val keys    = mutable.HashSet.empty[BlockKey]
       var repeats = 0
-      val end     = scan(channel)((key, _, _) => if !keys.add(key) then repeats += 1)
-      Audit(keys.size, repeats, Files.size(file) - end)
+      val found   = scan(channel)((key, _, _) => if !keys.add(key) then repeats += 1)
+      Audit(keys.size, repeats, found.broken)
 
-  /** Tells every whole record from the first on.
-    *
-    * @return where the first byte stands that belongs to none
+  /** @param end behind the last whole record
+    * @param broken bytes between whole records and behind the last
     */
-  private def scan(channel: FileChannel)(tell: (BlockKey, Long, Int) => Unit): Long =
-    val size = channel.size
-    var at   = First.toLong
-    var next = recordAt(channel, at, size)
+  private final case class Scanned(end: Long, broken: Long)
+
+  /** Tells every whole record from the first on; one whose content was damaged is passed over. */
+  private def scan(channel: FileChannel)(tell: (BlockKey, Long, Int) => Unit): Scanned =
+    val size  = channel.size
+    var at    = First.toLong
+    var end   = at
+    var whole = 0L
+    var next  = recordAt(channel, at, size)
     while next.isDefined do
       val (key, length) = next.get
-      tell(key, at + Head + BlockKey.Bytes, length - BlockKey.Bytes)
+      val from          = at
       at += Head + length
+      key.foreach: key =>
+        tell(key, from + Head + BlockKey.Bytes, length - BlockKey.Bytes)
+        end = at
+        whole += Head + length
       next = recordAt(channel, at, size)
-    at
+    Scanned(end, size - First - whole)
 
-  private def recordAt(channel: FileChannel, at: Long, size: Long): Option[(BlockKey, Int)] =
+  /** How long the record is that stands there, and its key unless its checksum is another. */
+  private def recordAt(channel: FileChannel, at: Long, size: Long): Option[(Option[BlockKey], Int)] =
     if size - at < Head + BlockKey.Bytes then None
     else
       val head   = ByteBuffer.wrap(read(channel, at, Head))
@@ -137,7 +148,7 @@ object Ledger:
       else
         val content = read(channel, at + Head, length)
         val key     = ByteBuffer.wrap(content)
-        Option.when(crcOf(content) == crc)((BlockKey(key.getLong, key.getLong), length))
+        Some((Option.when(crcOf(content) == crc)(BlockKey(key.getLong, key.getLong)), length))
 
   private def record(key: BlockKey, answer: ArraySeq[Byte]): ByteBuffer =
     val content = ByteBuffer.allocate(BlockKey.Bytes + answer.length)

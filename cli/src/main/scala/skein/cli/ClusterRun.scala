@@ -151,7 +151,12 @@ private[cli] object ClusterRun:
     val name = ArraySeq.unsafeWrapArray(MessageDigest.getInstance("SHA-256").digest(question.toArray))
     for
       ledger <- Ledger.open(folder.resolve(Ledger.Name), name)
-      ended  <-
+      _ = if ledger.broken > 0 then
+        shown.say(
+          s"${folder.resolve(Ledger.Name)}: ${ledger.broken} bytes are no whole answers, since they were cut off " +
+            "or damaged; these blocks are computed again"
+        )
+      ended <-
         try
           shipping(options, program): shipment =>
             CoordinatorNode
