@@ -17,12 +17,17 @@ private[cli] object Arguments:
         Right(Address(host, port.toInt))
       case _ => Left(s"expected HOST:PORT, for example 127.0.0.1:41451, came '$text'")
 
-  /** Settings of a scenario, `NAME=VALUE` each, by their keys; or every mistake. */
+  /** Settings of a scenario, `NAME=VALUE` each, by their keys, each once; or every mistake. */
   def settings(texts: Seq[String]): Either[String, Seq[(String, String)]] =
-    Expect.all(texts): text =>
-      text.split("=", 2) match
-        case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
-        case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
+    for
+      told <- Expect.all(texts): text =>
+        text.split("=", 2) match
+          case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
+          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
+      _ <- Expect.all(told.map(_._1).distinct): key =>
+        val values = told.collect { case (`key`, value) => value }
+        Expect.that(values.size == 1)(s"--set: expected '$key' once, came ${values.mkString(" and ")}")
+    yield told
 
   /** Options that were given, also those of a group of options. One that has a value of its own is not told
     * from it.

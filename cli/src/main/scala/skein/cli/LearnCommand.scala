@@ -159,12 +159,13 @@ final class LearnCommand(program: String)(using Scenarios)
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val steps   = (state.rounds - from.rounds) * setup.stepsOfRound
         shown.say(f"$steps%,d steps in $seconds%.1f s, ${steps / seconds.max(1e-3)}%,.0f a second")
-        val goOn = s"stopped; ./skein learn --resume $folder goes on"
+        val isDone = state.rounds == setup.rounds
+        val goOn   = s"stopped; ./skein learn --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else
-          val isDone = state.rounds == setup.rounds
+          // Before it measures, which may be cut short: nobody waits long for what is stopped.
+          if !isDone then shown.say(goOn)
           conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
-            .map(_ => if !isDone then shown.say(goOn))
 
   private def against(setup: LearnSetup) = setup.game.opponent match
     case Some(opponent) => s"against ${opponent.label}"
@@ -193,7 +194,8 @@ final class LearnCommand(program: String)(using Scenarios)
       flights: Int,
       shown: Shown
   ): Either[String, Unit] =
-    val result = LearnResult.measured(setup, measure.judge, state, setup.question.fresh)
+    val most   = if state.rounds == setup.rounds then Int.MaxValue else LearnCommand.FreshIfStopped
+    val result = LearnResult.measured(setup, measure.judge, state, setup.question.fresh.min(most))
     for
       file  <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
       flown <- if flights == 0 then Right(None) else virtual(setup, measure, result.policy, flights, shown)
@@ -253,6 +255,8 @@ final class LearnCommand(program: String)(using Scenarios)
         finally line.end()
 
 object LearnCommand:
+  /** So many at most measure the best of learning that was stopped. */
+  private val FreshIfStopped = 100
 
   /** What the options ask.
     *

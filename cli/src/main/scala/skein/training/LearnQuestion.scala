@@ -58,17 +58,21 @@ final case class LearnQuestion(
       _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
       flown  <- conditions.resolved
       delays <- Conditions.delays(link).left.map("--link: " + _)
-      _      <- within("--steps", steps.toDouble, 1, MostSteps)
-      _      <- within("--environments", environments, 1, MostEnvironments)
+      _      <- whole("--steps", steps, 1, MostSteps)
+      _      <- whole("--environments", environments, 1, MostEnvironments)
       _      <- within("--lesson", lessonS, 1, 3600, " s")
       _      <- within("--turn-rate", turnRateRadPerS, 1e-3, 50, " rad/s")
-      _      <- within("--episodes", episodes, 2, MostEpisodes)
-      _      <- within("--fresh", fresh, 2, MostEpisodes)
+      _      <- whole("--episodes", episodes, 2, MostEpisodes)
+      _      <- whole("--fresh", fresh, 2, MostEpisodes)
       _      <- learner.mistake.map(asOption).toLeft(())
       _      <- Expect.that(algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments):
         "--batch: expected at most the " +
           s"${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
-    yield LearnSetup(this, algorithm, role, game, flown, delays)
+      setup = LearnSetup(this, algorithm, role, game, flown, delays)
+      most  = Int.MaxValue * setup.stepsOfRound
+      _ <- Expect.that(steps <= most):
+        s"--steps: expected at most $most, which are ${Int.MaxValue} lessons in each environment, came $steps"
+    yield setup
 
   private def duel(role: Role)(using Scenarios): Either[String, LearnGame] =
     for
@@ -87,7 +91,7 @@ final case class LearnQuestion(
 object LearnQuestion:
   given ReadWriter[LearnerSettings] = ReadWriter.derived
 
-  private val MostSteps        = 1e12
+  private val MostSteps        = 1_000_000_000_000L
   private val MostEnvironments = 1 << 16
   private val MostEpisodes     = 1_000_000
 
@@ -96,11 +100,14 @@ object LearnQuestion:
       value: Double,
       least: Double,
       most: Double,
-      unit: String = ""
+      unit: String
   ): Either[String, Unit] =
     Expect.that(value >= least && value <= most):
       s"$option: expected ${least.significant(4)} to " +
         s"${most.significant(4)}$unit, came ${value.significant(4)}$unit"
+
+  private def whole(option: String, value: Long, least: Long, most: Long): Either[String, Unit] =
+    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, came $value")
 
   /** `learning rate: …` as `--learning-rate: …`. */
   private def asOption(mistake: String) =

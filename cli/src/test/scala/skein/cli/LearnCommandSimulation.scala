@@ -111,6 +111,33 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(file.question, question)
     assertEquals(learn(folder, file.state, setup.rounds), whole)
 
+  test("who stops learning is told how to go on, and soon has the best measured"):
+    val question = LearnCommand
+      .question(LearnOptionsOf(short.updated(short.indexOf("--fresh") + 1, "150")))
+      .fold(fail(_), identity)
+    val setup       = question.setup.fold(fail(_), identity)
+    val folder      = temporaryFolder()
+    var (now, done) = (0L, 0)
+    def later()     =
+      now += 60_000_000_000L
+      now
+    LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => later())
+      .run(LearnState(), 1, () => done == 1)(state => done = state.rounds)
+      .fold(fail(_), state => assert(state.best.isDefined))
+    val interrupting = Thread.ofVirtual().start: () =>
+      while !Thread.interrupted() do
+        Edge.interrupt()
+        Thread.`yield`()
+    val (status, out, err) =
+      try run(Seq("--resume", folder.toString))
+      finally interrupting.interrupt()
+    assertEquals(status, 0, err)
+    val lines = out.linesIterator.toVector
+    val goOn  = lines.indexOf(s"stopped; ./skein learn --resume $folder goes on")
+    val row   = lines.indexWhere(_.startsWith("learned:8"))
+    assert(goOn >= 0 && row > goOn, out)
+    assert(lines(row).contains(" 100  m"), out)
+
   test("what cannot be learned is told in a line"):
     def refused(expected: String, words: String*) =
       val (status, _, err) =
@@ -134,7 +161,16 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("discount: expected 0 up to less than 1", "--discount", "NaN")
     refused("--learning-rate: expected", "--learning-rate", "-1")
     refused("--start: expected LEAST..MOST", "--start", "30..3")
-    refused("--steps: expected 1", "--steps", "0")
+    refused("--steps: expected 1 to 1000000000000, came 0", "--steps", "0")
+    refused("--environments: expected 1 to 65536, came 65537", "--environments", "65537")
+    refused(
+      "--steps: expected at most 21474836470, which are 2147483647 lessons in each environment, came 30000000000",
+      "--steps 30000000000 --environments 1 --lesson 1s".split(' ').toSeq*
+    )
+    refused(
+      "--set: expected 'vehicles' once, came 4 and 6",
+      team("surround", "off-ring") ++ "--set vehicles=4 --set vehicles=6".split(' ')*
+    )
     refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
