@@ -1,6 +1,5 @@
 package skein.cli
 
-import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.cluster.Certificates
 
@@ -26,13 +25,17 @@ object ClusterCommand
     ):
 
   protected def execute(options: ClusterCommandOptions): Either[String, Unit] = options.words.value match
-    case Seq("certificates", folder) =>
-      Certificates
-        .make(Path.of(folder), if options.host.isEmpty then Seq("localhost") else options.host)
-        .map: made =>
-          Console.out.println(s"written: ${made.mkString(", ")}")
-          Console.out.println(
-            "Copy each folder to its machine alone. Who has " +
-              s"$folder/signer.p12 and its password can make more."
-          )
+    case Seq("certificates", text) =>
+      for
+        folder <- OutFolder.made("certificates", text)
+        made   <- Certificates.make(
+          folder,
+          if options.host.isEmpty then Seq("localhost") else options.host.distinct
+        )
+      yield
+        Console.out.println(s"written: ${made.mkString(", ")}")
+        Console.out.println(
+          "Copy each folder to its machine alone. Who has " +
+            s"$folder/signer.p12 and its password can make more."
+        )
     case words => Left(s"expected ./skein cluster certificates DIR, came '${words.mkString(" ")}'")

@@ -43,7 +43,8 @@ final class SpreadCommand(program: String)(using Scenarios)
       _        <- SolverOptions.virtual(settings)
       _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"
-      _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
+      _ <- Expect.that(options.seeds >= 1 && options.seeds <= SpreadCommand.MostSeeds):
+        s"--seeds: expected 1 to ${SpreadCommand.MostSeeds}, came ${options.seeds}"
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
         "--block: expected 1, since each flight is a block of its " +
@@ -98,3 +99,7 @@ final class SpreadCommand(program: String)(using Scenarios)
             line.end()
             all
     yield flown
+
+private object SpreadCommand:
+  /** What all these flights come to is kept until the last has landed: about 40 kB a vehicle and minute. */
+  private val MostSeeds = 100_000

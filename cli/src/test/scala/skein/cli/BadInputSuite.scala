@@ -32,6 +32,14 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 
+  test("a folder of certificates without a name is refused, and so are more flights than can be kept"):
+    assertRefused(ClusterCommand, Seq("certificates", ""), "certificates: expected a folder, came ''")
+    assertRefused(
+      SpreadCommand("skein.cli.Main"),
+      Seq("--seeds", "100001"),
+      "--seeds: expected 1 to 100000, came 100001"
+    )
+
   folder.test("a view that could not be looked at is told before the flight"): path =>
     val out                                           = path.resolve("out")
     def refused(expected: String)(arguments: String*) =
