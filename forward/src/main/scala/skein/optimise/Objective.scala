@@ -142,5 +142,10 @@ object Objective:
       case ("capture", Some(Vector(Some(radiusM), Some(withinS)))) =>
         Right(DuelMeasure.Capture(radiusM, withinS))
       case ("captureTime", Some(Vector(Some(radiusM)))) => Right(DuelMeasure.CaptureTime(radiusM))
+      case ("capture", Some(Vector(_, _))) | ("captureTime", Some(Vector(_))) =>
+        Left(
+          "expected capture(RADIUS_M, WITHIN_S) or captureTime(RADIUS_M) with numbers above 0 and below a million, " +
+            s"came '$name(${arguments.get})'"
+        )
       case _                                            =>
         Left(s"expected one of $Forms, came '$name${arguments.fold("")(a => s"($a)")}'")
