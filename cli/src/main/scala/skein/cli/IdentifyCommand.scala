@@ -6,7 +6,7 @@ import skein.forecast.Structure
 import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.{FlownVehicles, RecordedSeeing}
-import skein.record.{Recording, RecordingReader}
+import skein.record.{Digest, Recording, RecordingReader}
 import skein.report.{Section, TextTable}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{Fit, ModelFile, SensorFile}
@@ -58,6 +58,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       _       <- Expect.that(horizon.toSeconds >= 0.2):
         s"--horizon: expected 200ms or more, came ${options.horizon}"
       recordings <- read(files)
+      _          <- once(files)
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
       fits       <- fit(flights, use, horizon.toSeconds)
       shown    = Shown(options.json.value)
@@ -86,6 +87,17 @@ final class IdentifyCommand(using scenarios: Scenarios)
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
     Expect.each(files)(file => RecordingReader.read(Path.of(file)).left.map(_.message))
+
+  /** A flight that counted twice would make the intervals too narrow. */
+  private def once(files: Vector[String]): Either[String, Unit] =
+    if files.sizeIs < 2 then Right(())
+    else
+      for
+        digests <- Expect.each(files)(file => Digest.ofFile(Path.of(file)).left.map(_.message))
+        same = files.zip(digests).groupMap(_._2)(_._1).values.find(_.sizeIs > 1)
+        _ <- Expect.that(same.isEmpty):
+          s"expected every flight once, came the same one in ${same.get.mkString(" and ")}"
+      yield ()
 
   private def chosen(
       flights: Vector[TimeHistory],
