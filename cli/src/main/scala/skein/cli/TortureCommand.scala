@@ -61,6 +61,9 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds)):
         s"--block: expected 1 to ${TortureQuestion.MostSeeds} " +
           s"flights, came ${options.cluster.block.getOrElse(0)}"
+      _ <- Expect.that(cluster.isEmpty || options.seeds <= TortureCommand.MostElsewhere):
+        s"--seeds: expected 1 to ${TortureCommand.MostElsewhere} with --workers or --cluster, " +
+          s"came ${options.seeds}"
       _ <- Expect.that(cluster.isDefined || options.out.isEmpty):
         "--out: expected with --workers or --cluster, for what they computed"
       shown = Shown(options.json.value)
@@ -100,6 +103,9 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
       .flatMap(_.toRight("no worker is left").map(_ => ()))
 
 object TortureCommand:
+  /** All blocks are known from the beginning. */
+  private val MostElsewhere = 1_000_000
+
   /** About half a second's, of one core. */
   private val BlockFlights = 2
   private val ShowNanos    = 10_000_000_000L

@@ -39,6 +39,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       Seq("--seeds", "100001"),
       "--seeds: expected 1 to 100000, came 100001"
     )
+    assertRefused(
+      TortureCommand("skein.cli.Main"),
+      Seq("--seeds", "1000001", "--workers", "1"),
+      "--seeds: expected 1 to 1000000 with --workers or --cluster, came 1000001"
+    )
 
   folder.test("a view that could not be looked at is told before the flight"): path =>
     val out                                           = path.resolve("out")
