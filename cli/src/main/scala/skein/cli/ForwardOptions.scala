@@ -27,8 +27,8 @@ final case class ForwardOptions(
     )
     altitude: Option[Double],
     @arg(doc =
-      "a sensor's FILE of ./skein identify: the pursuer knows the " +
-        "evader by this camera alone (default: true positions)"
+      "for search and budget alone, a sensor's FILE of ./skein identify: the " +
+        "pursuer knows the evader by this camera alone (default: true positions)"
     )
     eye: Option[String],
     @arg(doc = "the opponent's policy: a policy file or the name of a family (default: the paper's)")
