@@ -94,3 +94,29 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(isKeptWith(Array[Byte](0xa8.toByte, 0x0b, 0xf0.toByte, 0x0f)))
       assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
       assert(!isKeptWith(Array.emptyByteArray))
+
+  test("the last words to standard error are heard where all of a process group is ended"):
+    val folder = temporaryFolder()
+    Files.copy(checkout.toPath.resolve("project/quiet-vectors"), folder.resolve("quiet-vectors"))
+    script(
+      folder.resolve("launcher"),
+      """. ./quiet-vectors
+        |trap 'echo last >&2; exit 3' TERM
+        |echo first >&2
+        |until grep -q first said; do sleep 0.01; done
+        |kill -TERM 0""".stripMargin
+    )
+    // With job control a job has a process group of its own.
+    val (_, said) = run(
+      folder,
+      Map.empty,
+      "bash",
+      "-c",
+      """set -m
+        |./launcher 2>said &
+        |wait $!
+        |for _ in $(seq 200); do grep -q last said && break; sleep 0.01; done
+        |cat said""".stripMargin
+    )
+    // Behind what bash tells of a job that ended.
+    assert(clue(said).endsWith("first\nlast\n"))
