@@ -142,12 +142,13 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(unfit, 1)
     assert(reason.contains("expected"), reason)
 
-  recordings.test("a flight that is named twice, or has a copy, is not fitted to as if it were two"): folder =>
-    val flight               = folder.resolve("stream-vpn.duckdb")
-    val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
-    val (status, _, mistake) = run(IdentifyCommand(), flight.toString, copy.toString)
-    assertEquals(status, 1)
-    assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
+  recordings.test("a flight that is named twice, or has a copy, is not fitted to as if it were two"):
+    folder =>
+      val flight               = folder.resolve("stream-vpn.duckdb")
+      val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
+      val (status, _, mistake) = run(IdentifyCommand(), flight.toString, copy.toString)
+      assertEquals(status, 1)
+      assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
 
   recordings.test("report without --out writes beside the first recording"): folder =>
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)

@@ -147,5 +147,5 @@ object Objective:
           "expected capture(RADIUS_M, WITHIN_S) or captureTime(RADIUS_M) with numbers above 0 and below a million, " +
             s"came '$name(${arguments.get})'"
         )
-      case _                                            =>
+      case _ =>
         Left(s"expected one of $Forms, came '$name${arguments.fold("")(a => s"($a)")}'")
