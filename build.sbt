@@ -95,6 +95,9 @@ lazy val underAgent = Seq(
   run / javaOptions += s"-javaagent:${(vtimeAgent / Compile / packageBin).value}"
 )
 
+/** Its program runs in the checkout's root, where it is started: the paths that it prints begin there. */
+lazy val atRoot = run / baseDirectory := (ThisBuild / baseDirectory).value
+
 /** Any Pekko graph in virtual time. Depends on Pekko alone. */
 lazy val vtime = project
   .settings(artifact("vtime", "Any Pekko graph in virtual time"))
@@ -312,8 +315,8 @@ lazy val mutation = project
   .dependsOn(core % "compile->test", flow % "compile->test", record % "compile->test", cli % "compile->test")
   .settings(underAgent)
   .settings(
-    publish / skip      := true,
-    run / baseDirectory := (ThisBuild / baseDirectory).value,
+    atRoot,
+    publish / skip := true,
     Compile / run / mainClass := Some("skein.mutation.mutate"),
     // It changes folders of classes; sbt would run it on jars, copied aside.
     Runtime / fullClasspathAsJars     := (Runtime / fullClasspath).value,
@@ -326,19 +329,19 @@ lazy val mutation = project
 lazy val chase = project
   .in(file("examples/chase"))
   .dependsOn(cli)
-  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+  .settings(publish / skip := true, underAgent, atRoot, libraryDependencies ++= munit)
 
 /** A policy of one's own, flown against the paper's evader. */
 lazy val ownPolicy = project
   .in(file("examples/own-policy"))
   .dependsOn(cli)
-  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+  .settings(publish / skip := true, underAgent, atRoot, libraryDependencies ++= munit)
 
 /** A scenario of one's own in three dimensions, with its picture and all commands. */
 lazy val ownScenario = project
   .in(file("examples/own-scenario"))
   .dependsOn(cli)
-  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+  .settings(publish / skip := true, underAgent, atRoot, libraryDependencies ++= munit)
 
 /** The operators on a data source that is not a drone. */
 lazy val ownGraph = project
