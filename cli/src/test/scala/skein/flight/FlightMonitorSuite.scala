@@ -16,3 +16,7 @@ class FlightMonitorSuite extends munit.FunSuite:
     assert(clue(text).matches(" *[0-9.]+ m apart, +[0-9]+ ms old"))
     monitor.offer(Sighting(last.vehicle, last.sequence, "Third", 1, None))
     assert(clue(text).matches(" *[0-9]+ ms old"))
+
+  test("of a flight that has ended while others fly, progress tells that, and no age that grows"):
+    val seen = Some(LastSeen(Some(Metres(8.4)), Span.ofSeconds(7)))
+    assertEquals(FlightProgress("paused-none", Span.ofSeconds(10), seen, hasEnded = true).text, "ended")

@@ -45,7 +45,13 @@ final class FlightAssembly private[skein] (
   /** How far it is, in the controller's time. */
   def progress: FlightProgress =
     val now = clock.now()
-    FlightProgress(plan.id, now.since(startedAt), monitor.lastSeen(now), watchdog.silentFor)
+    FlightProgress(
+      plan.id,
+      now.since(startedAt),
+      monitor.lastSeen(now),
+      watchdog.silentFor,
+      flight.outcome.isCompleted
+    )
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
   val landed: Future[FlightResult] =

@@ -8,19 +8,21 @@ import skein.units.Decimals.fixed
 /** How far a flight is.
   *
   * @param silentFor how long nothing was heard of the simulator, where it is silent
+  * @param hasEnded whether it flies no more, while others still do
   */
 final case class FlightProgress(
     id: String,
     flown: Span,
     seen: Option[LastSeen],
-    silentFor: Option[Span] = None
+    silentFor: Option[Span] = None,
+    hasEnded: Boolean = false
 ):
   def text: String =
     val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
     val shown   = seen.map: seen =>
       seen.distance.fold("")(apart => s"${apart.value.fixed(1, width = 5)} m apart, ") +
         s"${seen.age.toMillis.fixed(0, width = 3)} ms old"
-    silence.orElse(shown).getOrElse("")
+    if hasEnded then "ended" else silence.orElse(shown).getOrElse("")
 
 /** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */
 trait ProgressBoard extends AutoCloseable:
