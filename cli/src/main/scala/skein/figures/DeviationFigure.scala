@@ -39,12 +39,24 @@ object DeviationFigure:
       val members = placed.zipWithIndex.collect { case ((_, `index`), place) => place }
       val middle  = panel.left + (members.sum.toDouble / members.size + 0.5) * slot + (index + 0.5) * gap
       Mark.Text(Point(middle, panel.bottom + 38), FlightTheme.link(link), anchor = Anchor.Middle)
-    val truth = panel.level(0, Stroke(FlightTheme.of("paused"), 1.2))
-    Drawing(
+    val truth   = panel.level(0, Stroke(FlightTheme.of("paused"), 1.2))
+    val drawing = Drawing(
       width + 70,
       height + 66,
       panel.rules(panel.left, panel.right) ++ panel.yAxis ++ (truth +: (marks ++ names))
     )
+    if deviations.exists(isLive) then Drawing.stacked(drawing, legend(panel.left)) else drawing
+
+  private def legend(left: Double): Drawing =
+    def item(label: String, live: Boolean) =
+      Legend.Item(label, 14, at => disc(at.moved(7, 0), Theme.labelColour, live))
+    Legend(left, item("live", live = true), item("in virtual time", live = false))
+
+  private def isLive(deviation: Deviation): Boolean = deviation.clock != ClockKind.Virtual.label
+
+  private def disc(centre: Point, colour: Colour, live: Boolean): Vector[Mark] =
+    Mark.Disc(centre, 4, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour)) +:
+      Option.when(live)(Mark.Disc(centre, 6.5, Some(Stroke(colour, 1.2)))).toVector
 
   private def mark(panel: Panel, deviation: Deviation, x: Double): Vector[Mark] =
     val colour                                        = FlightTheme.of(deviation.loop)
@@ -53,12 +65,9 @@ object DeviationFigure:
       Mark.line(Point(x, panel.atY(100 * from)), Point(x, panel.atY(100 * to)), Stroke(colour, width))
     val percent = s"${(100 * share.mean).signed(1)} %"
     val centre  = Point(x, panel.atY(100 * share.mean))
-    val isLive  = deviation.clock != ClockKind.Virtual.label
-    val ring    = Option.when(isLive)(Mark.Disc(centre, 6.5, Some(Stroke(colour, 1.2))))
     Vector(
       line(share.least, share.most, 1),
       line(share.mean - share.sd, share.mean + share.sd, 3.2),
-      Mark.Disc(centre, 4, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour)),
       Mark.Text(Point(x, panel.bottom + 13), deviation.name, Theme.smallSize, anchor = Anchor.Middle),
       Mark.Text(Point(x, panel.bottom + 24), percent, Theme.smallSize, Theme.tickColour, Anchor.Middle)
-    ) ++ ring
+    ) ++ disc(centre, colour, isLive(deviation))
