@@ -111,7 +111,7 @@ object EnvironmentBatch:
 
   /** What flies those of another scenario. */
   def engineOf(scenario: String): String =
-    s"scalar: environments of $scenario fly one by one; those of the duel fly by lanes"
+    s"scalar: environments of $scenario fly one by one; those of the duel fly by SIMD"
 
   /** @param opponent of the side that does not learn; without one, as the settings name it
     * @return or what was expected and came

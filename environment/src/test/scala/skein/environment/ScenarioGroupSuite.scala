@@ -41,7 +41,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
       Decided(seen.ownHeadingRad + towards(seen.fromOwnHeading(1).toFloat) * seen.elapsedS, ())
 
-  test("what flies is told: another scenario one by one, the duel by lanes"):
+  test("what flies is told: another scenario one by one, the duel by SIMD"):
     val team = Learner(surround, 2).batch.engine
     assert(team.startsWith("scalar: environments of surround"), team)
     val duel = Learner(EnvironmentSettings(), 2).batch.engine
