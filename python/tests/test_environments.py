@@ -187,6 +187,16 @@ def test_pettingzoo_finds_nothing_wrong():
     parallel_seed_test(lambda: DuelParallelEnv(start_within_m=(5, 30)), num_cycles=50)
 
 
+def test_the_spaces_of_both_sides_are_told_by_name_too():
+    pytest.importorskip("pettingzoo")
+    from skein_uav.parallel import DuelParallelEnv
+
+    with contextlib.closing(DuelParallelEnv()) as env:
+        for agent in env.possible_agents:
+            assert env.observation_spaces[agent] is env.observation_space(agent)
+            assert env.action_spaces[agent] is env.action_space(agent)
+
+
 def test_both_sides_rewards_add_up_to_nothing():
     pytest.importorskip("pettingzoo")
     from skein_uav.parallel import DuelParallelEnv

@@ -51,17 +51,19 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
         self.possible_agents = list(_AGENTS)
         self.agents: list[str] = []
         self.render_mode = render_mode
-        self._spaces = {agent: (observation_space(), action_space()) for agent in _AGENTS}
+        # By name, too, as PettingZoo's wrappers and skrl read them.
+        self.observation_spaces = {agent: observation_space() for agent in _AGENTS}
+        self.action_spaces = {agent: action_space() for agent in _AGENTS}
         self._random = np.random.default_rng()
         self._is_reset = self._is_closed = False
 
     def observation_space(self, agent: str) -> gym.spaces.Box:
         """Of an agent; always the same object."""
-        return self._spaces[agent][0]
+        return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gym.spaces.Box:
         """Of an agent; always the same object."""
-        return self._spaces[agent][1]
+        return self.action_spaces[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
