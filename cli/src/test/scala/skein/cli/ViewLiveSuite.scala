@@ -120,7 +120,9 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         step("wait", "!skein.flight.paused"),
         step("wait", "[...skein.flight.vehicles.values()].every(one => one.decided > skein.flight.now - 1)"),
         step("click", "#abort"),
-        step("wait", "skein.flight.ending")
+        step("wait", "skein.flight.ending"),
+        step("wait", "!skein.isConnected"),
+        step("ask", "state", "document.getElementById('state').textContent")
       )
       flying.land()
       val file     = out.resolve("predictive-vpn.duckdb")
@@ -131,6 +133,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         Vector(EventKind.Paused, EventKind.Continued, EventKind.Aborted)
       )
       assertEquals(seen("questions").arr.size, 3)
+      assertEquals(seen("told")("state").str, "Stopped: it was stopped from outside")
       // A street's objects, and its sky above what two cameras see.
       assert(seen("told")("obstacles").num >= 10, seen("told")("obstacles").toString)
       assertEquals(

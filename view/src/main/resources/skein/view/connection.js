@@ -12,7 +12,7 @@ export function connect(path, wanted, on) {
     socket = new WebSocket(`ws://${location.host}${path}`, protocols);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => typeof data === "string" ? text(JSON.parse(data), topics) : bytes(data, topics);
-    socket.onclose = () => { if (!ended) { on.closed(); timer = setTimeout(open, 1000); } };
+    socket.onclose = () => { if (!ended) { timer = setTimeout(open, 1000); on.closed(); } };
   };
   const text = (message, topics) => {
     if (message.op === "serverInfo") on.info(message);
@@ -40,6 +40,7 @@ export function connect(path, wanted, on) {
   };
   open();
   return {
+    isOpen() { return socket.readyState === WebSocket.OPEN; },
     close() { ended = true; clearTimeout(timer); socket.close(); },
     /** Plays or stands, and jumps where a time is given. */
     play(playing, speed, seekNs) {

@@ -62,7 +62,7 @@ export class Flight {
         break;
       case "prediction":
         vehicle.errorM = row.errorM;
-        this.series.error.put(at, this.line(vehicle), row.errorM);
+        this.series.error.put(at, this.line(vehicle), row.errorM === undefined ? undefined : row.errorM * 1000);
         break;
       case "event":
         this.eventCount++;

@@ -27,7 +27,7 @@ const isWanted = topic => topic.startsWith("/skein/") ? tables.includes(topic.sl
 let flight, connection, changed = false, recorded, playing, warnings;
 
 /** What a test asks the page. */
-window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, get cameras() { return [...cameras.cameras.values()]; }, frames: 0 };
+window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, get isConnected() { return connection.isOpen(); }, get cameras() { return [...cameras.cameras.values()]; }, frames: 0 };
 
 function show(id) {
   connection?.close();
@@ -80,7 +80,11 @@ function show(id) {
       changed = true;
     },
     warning(key, text) { warnings.set(key, text); find("lost").textContent = [...warnings.values()].join("; "); },
-    closed() { state("not connected", true); },
+    // When its flights have ended, a server goes; what the page shows stays.
+    closed() {
+      if (flight.ending && !recorded) connection.close();
+      else state("not connected", true);
+    },
   });
 }
 
@@ -128,7 +132,8 @@ function words() {
     return item;
   }));
   const signs = [
-    [vehicles.some(one => one.predicted), "ring: where its command acts"], [vehicles.some(one => one.plan), "dotted: its plan"],
+    [vehicles.some(one => one.predicted), "ring: where its command acts"], [vehicles.some(one => one.command), "arrow: commanded velocity"],
+    [vehicles.some(one => one.plan), "dotted: its plan"],
     [flight.clouds.size, "points: what lidars see"],
   ];
   find("signs").textContent = signs.filter(([is]) => is).map(([, words]) => words).join("; ");

@@ -4,7 +4,7 @@
 const kinds = [
   { series: "age", title: "Age of a vehicle's own data at its decisions, ms" },
   { series: "roundTrip", title: "Round trips, ms" },
-  { series: "error", title: "Error of predictions, m" },
+  { series: "error", title: "Error of predictions, mm" },
   { series: "distance", title: "Smallest distance between two vehicles, m", single: true },
 ];
 

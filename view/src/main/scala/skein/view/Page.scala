@@ -21,6 +21,7 @@ private[view] object Page:
     "/graph.js"        -> ("graph.js", code),
     "/cameras.js"      -> ("cameras.js", code),
     "/task.js"         -> ("task.js", code),
+    "/language.js"     -> ("language.js", code),
     "/uplot/uPlot.js"  -> ("uplot/uPlot.iife.min.js", code),
     "/uplot/uPlot.css" -> ("uplot/uPlot.min.css", css)
   ).map { case (path, (name, kind)) => path -> (kind, read(name)) }.toMap
