@@ -83,16 +83,14 @@ object LandscapeFigure:
       height * 1.2,
       height
     )
-    val heat  = HeatMap(landscape.xs, landscape.ys, landscape.cells.map(_.map(tally => Some(tally.mean))))
-    val scale = LandscapeScale.of(landscape.cells.flatten.map(_.mean), direction)
-    def mark(x: Double, y: Double, colour: Colour) =
-      Mark.Disc(panel.at(x, y), 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
-    val best   = mark(landscape.best(landscape.x), landscape.best(landscape.y.get), found)
-    val paper  = mark(xAxis.default, yAxis.default, plain)
+    val heat   = HeatMap(landscape.xs, landscape.ys, landscape.cells.map(_.map(tally => Some(tally.mean))))
+    val scale  = LandscapeScale.of(landscape.cells.flatten.map(_.mean), direction)
+    val best   = disc(panel.at(landscape.best(landscape.x), landscape.best(landscape.y.get)), found)
+    val paper  = disc(panel.at(xAxis.default, yAxis.default), plain)
     val legend = Legend(
       panel.left,
-      Legend.box("found", found),
-      Legend.box("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain)
+      named("found", found),
+      named("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain)
     )
     Drawing(
       panel.right + 120,
@@ -104,3 +102,9 @@ object LandscapeFigure:
         scale.bar(panel.right + 24, panel.top, panel.bottom, value) ++
         panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
     )
+
+  private def disc(centre: Point, colour: Colour): Mark =
+    Mark.Disc(centre, 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
+
+  private def named(label: String, colour: Colour): Legend.Item =
+    Legend.Item(label, 10, at => Vector(disc(at.moved(5, 0), colour)))

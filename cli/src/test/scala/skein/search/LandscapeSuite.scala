@@ -50,8 +50,13 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assertEquals(LandscapeFigure.fixed(at(3)), Some("at the best: capture radius = 1.5 m"))
     assertEquals(LandscapeFigure.fixed(at(4)), Some("at the best: capture radius = 1.5 m, gain = 1.75"))
     assertEquals(LandscapeFigure.fixed(at(6)), Some("4 others at the best"))
-    val texts = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes.collect:
-      case text: Mark.Text => text.content
+    val shapes = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes
+    val texts  = shapes.collect { case text: Mark.Text => text.content }
+    // What is marked, and the same marks in the legend.
+    assertEquals(
+      shapes.collect { case disc: Mark.Disc => disc.fill }.groupBy(identity).values.map(_.size).toVector,
+      Vector(2, 2)
+    )
     assert(
       Set("title", "turn rate, rad/s", "lead", "at the best: capture radius = 1.5 m").subsetOf(texts.toSet),
       texts
