@@ -88,6 +88,7 @@ private[cli] final class SearchJob(
       file <- OutFolder.write(folder, Seq(OutFolder.text(name, text)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       _ = found.doubt(ready.baseline.label).foreach(say)
+      _ = SearchResult.atLimits(ready.space, found.best).foreach(say)
       _ = disagreement(found.best, fresh.min(SearchResult.Checked)).foreach(say)
       pictures <-
         if state.isDone then landscape(found.best, effort.within(fresh), isStopped) else Right(Vector.empty)

@@ -1,6 +1,7 @@
 package skein.search
 
 import skein.optimise.{Evaluator, RunningStats, SearchState}
+import skein.policy.SearchSpace
 import skein.report.{Section, TextTable}
 import skein.units.Decimals.significant
 import skein.units.Interval
@@ -72,6 +73,20 @@ object SearchResult:
     )
 
   private val Allowed = 0.02
+
+  /** What is to be known where a candidate lies at limits of what was searched: farther on may be better. */
+  def atLimits(space: SearchSpace, candidate: Vector[Double]): Option[String] =
+    val found = space.axes.zip(candidate).flatMap: (axis, value) =>
+      val near = NearLimit * axis.width
+      if value <= axis.least + near then Some(s"${axis.name} at the least, ${axis.least}")
+      else if value >= axis.most - near then Some(s"${axis.name} at the most, ${axis.most}")
+      else None
+    Option.when(found.nonEmpty)(
+      s"the best lies at a limit of what was searched: ${found.mkString(" and ")}; farther on may be better"
+    )
+
+  /** Of an axis' width. */
+  private val NearLimit = 0.01
 
   /** @param state with a best candidate
     */

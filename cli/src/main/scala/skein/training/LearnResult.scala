@@ -30,7 +30,9 @@ final case class LearnResult(
     val episodes = s"fresh episodes, ${game.formula}"
     Section(
       s"Learned by ${question.algorithm} under ${question.conditions.loop} over ${question.link}",
-      s"The best of ${state.scores.size} policies, met after ${state.best.fold(0L)(_.steps)} steps.",
+      s"The best of ${state.scores.size} ${
+          if state.scores.size == 1 then "policy" else "policies"
+        }, met after ${state.best.fold(0L)(_.steps)} steps.",
       table = Some(TextTable(
         Vector("<policy", "<where", "mean", "± 95 %", "of", "<unit"),
         Vector(

@@ -34,7 +34,7 @@ private object ForeseenVehicle:
     val known =
       for
         plant <- plant
-        _     <- Planner.refusal(plant).map("plans fly by lanes, and " + _).toLeft(())
+        _     <- Planner.refusal(plant).map("plans are flown by SIMD, and " + _).toLeft(())
         rest = plant.initial
         _ <- Try(PlantState.of(rest, PlantState.numbers(rest))).toEither.left.map(_.getMessage)
       yield ForeseenVehicle(plant, PredictedVehicle.carriesS(plant, agent.speed.value.max(LeastMps)))

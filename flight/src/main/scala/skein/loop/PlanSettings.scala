@@ -43,7 +43,12 @@ final case class PlanSettings(
     def check(name: String, value: Any, isRight: Boolean, expected: String) =
       Option.when(!isRight)(s"$name: expected $expected, came $value")
     Seq(
-      check("deadline", s"${deadline.toMillis} ms", deadline > Span.Zero, "more than 0"),
+      check(
+        "deadline",
+        s"${deadline.toMillis} ms",
+        deadline > Span.Zero && deadline <= PlanSettings.MostDeadline,
+        s"more than 0 and at most ${PlanSettings.MostDeadline.toMillis} ms"
+      ),
       check("horizonSteps", horizonSteps, horizonSteps > 0 && horizonSteps <= 200, "1 to 200"),
       check(
         "step",
@@ -114,6 +119,10 @@ final case class PlanSettings(
 object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
+
+  /** How long a search for a plan may last: what it started from is farther behind then than any loop's data.
+    */
+  val MostDeadline: Span = Span.ofSeconds(2)
 
   /** On top of what is set, since vehicles do not follow their models exactly and commands come at other
     * times than expected, m.

@@ -77,7 +77,7 @@ class SettingsSuite extends munit.FunSuite:
           behaviours = 1,
           searches = 1
         ),
-        PlanSettings(horizonSteps = 200, step = ms(500), behaviours = 32, searches = 64),
+        PlanSettings(ms(2000), horizonSteps = 200, step = ms(500), behaviours = 32, searches = 64),
         PlanSettings(slices = 1, blocksPerSlice = 1, turningRadiusM = 0.001, slowestShare = 0),
         PlanSettings(slowestShare = 1, separationM = 0, geofenceM = 0, method = PlanSettings.PathIntegral)
       )
@@ -86,7 +86,12 @@ class SettingsSuite extends munit.FunSuite:
   test("plans: what is beyond is named, with what was expected"):
     for
       (settings, told) <- Seq(
-        PlanSettings(deadline = Span.Zero) -> "deadline: expected more than 0, came 0.0 ms",
+        PlanSettings(deadline =
+          Span.Zero
+        ) -> "deadline: expected more than 0 and at most 2000.0 ms, came 0.0 ms",
+        PlanSettings(deadline =
+          ms(2001)
+        ) -> "deadline: expected more than 0 and at most 2000.0 ms, came 2001.0 ms",
         PlanSettings(horizonSteps = 0)     -> "horizonSteps: expected 1 to 200, came 0",
         PlanSettings(horizonSteps = 201)   -> "horizonSteps: expected 1 to 200, came 201",
         PlanSettings(step = ms(9.5))       -> "step: expected 10 to 500 ms, came 9.5 ms",

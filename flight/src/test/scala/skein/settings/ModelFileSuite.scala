@@ -124,7 +124,10 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     val settings = read("plan", Late(0.75, 0.25)).fold(fail(_), identity)
     assertEquals(settings.loopSettings.model(0), PlantModel(Late(0.75, 0.25)))
     val said = read("plan", Fickle).left.getOrElse("accepted")
-    assert(said.contains("predictor: Pursuer: plans fly by lanes, and the vehicle is no formula: "), said)
+    assert(
+      said.contains("predictor: Pursuer: plans are flown by SIMD, and the vehicle is no formula: "),
+      said
+    )
     assert(read("predictive", Fickle).isRight)
     // Elsewhere, too.
     val fickle = PredictionModel.Own(Structure("late", late.space, _ => Fickle), Vector(0.75, 0.25))
