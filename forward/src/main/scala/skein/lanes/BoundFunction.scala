@@ -57,29 +57,36 @@ private[lanes] object BoundFunction:
   * @param parameters read at each call
   */
 private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Float] = Array.emptyFloatArray):
-  private val arrays  = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)
-  private val offsets = Array.ofDim[Int](arrays.length)
-  private val starts  = Array.ofDim[Int](arrays.length)
-  private val strides = Array.ofDim[Int](arrays.length)
-  private val scratch = Array.ofDim[Float](bound.function.scratch)
+  private val arrays   = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)
+  private val offsets  = Array.ofDim[Int](arrays.length)
+  private val starts   = Array.ofDim[Int](arrays.length)
+  private val strides  = Array.ofDim[Int](arrays.length)
+  private val scratch  = Array.ofDim[Float](bound.function.scratch)
+  private val function = bound.function
 
   /** Where an input's numbers begin, by the function's number of it. */
   def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
     // Nearly always the same one: to store a reference costs the collector's bookkeeping.
     if arrays(number) ne array then arrays(number) = array
     offsets(number) = offset
-    starts(number) = offset
-    strides(number) = stride
+    if stride != strides(number) || stride > 0 then
+      starts(number) = offset
+      strides(number) = stride
 
   def output(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
     input(bound.inputs.length + number, array, offset, stride)
 
-  def apply(): Unit = bound.function.apply(arrays, offsets, parameters, scratch)
+  def apply(): Unit = function.apply(arrays, offsets, parameters, scratch)
 
   /** In the first worlds alone. */
-  def apply(worlds: Int): Unit = bound.function.apply(arrays, offsets, parameters, scratch, worlds)
+  def apply(worlds: Int): Unit = function.apply(arrays, offsets, parameters, scratch, worlds)
 
-  def rewind(): Unit = System.arraycopy(starts, 0, offsets, 0, offsets.length)
+  /** What goes on goes back to where it was put. */
+  def rewind(): Unit =
+    var i = 0
+    while i < offsets.length do
+      if strides(i) > 0 then offsets(i) = starts(i)
+      i += 1
 
   /** Afterwards everything begins its stride further on, or, at the end of an array, at its start. */
   def next(): Unit =
