@@ -76,11 +76,11 @@ object SearchResult:
 
   /** What is to be known where a candidate lies at limits of what was searched: farther on may be better. */
   def atLimits(space: SearchSpace, candidate: Vector[Double]): Option[String] =
-    val found = space.axes.zip(candidate).flatMap: (axis, value) =>
-      val near = NearLimit * axis.width
-      if value <= axis.least + near then Some(s"${axis.name} at the least, ${axis.least}")
-      else if value >= axis.most - near then Some(s"${axis.name} at the most, ${axis.most}")
-      else None
+    val found = space.axes.zip(candidate).collect:
+      case (axis, value) if axis.margin(value) <= NearLimit =>
+        val limit =
+          if value < (axis.least + axis.most) / 2 then s"least, ${axis.least}" else s"most, ${axis.most}"
+        s"${axis.name} at the $limit"
     Option.when(found.nonEmpty)(
       s"the best lies at a limit of what was searched: ${found.mkString(" and ")}; farther on may be better"
     )

@@ -28,11 +28,10 @@ final case class LearnResult(
       val interval = Interval.of(tally.mean, tally.halfWidth95)
       Vector(policy, where, interval.mean, interval.half, tally.count.toString, unit)
     val episodes = s"fresh episodes, ${game.formula}"
+    val policies = if state.scores.size == 1 then "1 policy" else s"${state.scores.size} policies"
     Section(
       s"Learned by ${question.algorithm} under ${question.conditions.loop} over ${question.link}",
-      s"The best of ${state.scores.size} ${
-          if state.scores.size == 1 then "policy" else "policies"
-        }, met after ${state.best.fold(0L)(_.steps)} steps.",
+      s"The best of $policies, met after ${state.best.fold(0L)(_.steps)} steps.",
       table = Some(TextTable(
         Vector("<policy", "<where", "mean", "± 95 %", "of", "<unit"),
         Vector(

@@ -55,7 +55,7 @@ object Structure:
     Structure(label, SearchSpace(Vector(gain, lag, deadTime) ++ more), make)
 
   /** A first-order lag with gain and dead time: what the SIMD kernels fly. */
-  val Lag: Structure = reduced("lag")(v => ReducedModel(v(0), v(1), v(2), v(1), 0))
+  val Lag: Structure = reduced("lag")(v => ReducedModel.lag(v(0), v(1), v(2)))
 
   /** Besides, the velocity across the command has a lag of its own. */
   val Turn: Structure = reduced("turn", turnLag)(v => ReducedModel(v(0), v(1), v(2), v(3), 0))

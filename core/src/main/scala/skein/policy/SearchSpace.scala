@@ -16,6 +16,9 @@ final case class Axis(name: String, least: Double, most: Double, default: Double
 
   def width: Double = most - least
 
+  /** How far a value is from the nearer limit, over the width. */
+  def margin(value: Double): Double = (value - least).min(most - value) / width
+
 object Axis:
   /** With the default in the middle. */
   def apply(name: String, least: Double, most: Double): Axis = Axis(name, least, most, (least + most) / 2)

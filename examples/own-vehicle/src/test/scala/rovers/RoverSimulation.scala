@@ -41,7 +41,7 @@ private final case class Laps(mps: Double = 2) extends Scenario:
 class RoverSimulation extends munit.FunSuite:
   import Program.scenarios
   // Fits take seconds, and longer on a busy machine.
-  override val munitTimeout = 5.minutes
+  override val munitTimeout = 2.minutes
   private val loops         =
     Seq[LoopKind | OwnLoop](
       LoopKind.Sequential,

@@ -8,6 +8,7 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
+import skein.forecast.Structure
 import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
@@ -93,12 +94,14 @@ object VehicleChoice:
           for
             file <- read(path, altitudeM)
             lag  <- file.reduced.toRight(s"$path has no model of three parameters")
-          yield VehicleChoice(text, s"reduced model of $path, ${described(lag)}", PlantResponse(lag))
+          yield ofLag(text, lag, path)
         case path =>
           for file <- read(path, altitudeM)
-          yield
-            val kind = if file.plant.isInstanceOf[ReducedModel] then "reduced model" else "model"
-            VehicleChoice(text, s"$kind ${file.use.label} of $path", PlantResponse(file.plant))
+          yield file.plant match
+            case lag: ReducedModel if file.use == Structure.Lag => ofLag(text, lag, path)
+            case plant                                          =>
+              val kind = if plant.isInstanceOf[ReducedModel] then "reduced model" else "model"
+              VehicleChoice(text, s"$kind ${file.use.label} of $path", PlantResponse(plant))
 
   private def read(path: String, altitudeM: Double)(using Scenarios): Either[String, ModelFile] =
     if Files.isRegularFile(Path.of(path)) then
@@ -107,6 +110,9 @@ object VehicleChoice:
         _    <- ModelFile.mistake(file.altitudeM, altitudeM).map(mistake => s"$path: $mistake").toLeft(())
       yield file
     else Left(s"expected $forms, came '$path'")
+
+  private def ofLag(text: String, lag: ReducedModel, path: String) =
+    VehicleChoice(text, s"reduced model of $path, ${described(lag)}", PlantResponse(lag))
 
   private def described(lag: ReducedModel) =
     s"gain ${lag.gain}, lag ${lag.lagS} s, dead time ${lag.deadTimeS} s"

@@ -26,6 +26,9 @@ import jdk.incubator.vector.VectorOperators;
 final class ForecastLagVehicles implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 
+  /** In the place of less, s: no vehicle gets anywhere within. */
+  private static final double LEAST_LAG_S = 1e-9;
+
   private final float speedMps, lagS;
 
   /**
@@ -33,7 +36,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
    */
   ForecastLagVehicles(double speedMps, double lagS) {
     this.speedMps = (float) speedMps;
-    this.lagS = (float) Math.max(lagS, LaneVehicles.LEAST_LAG_S);
+    this.lagS = (float) Math.max(lagS, LEAST_LAG_S);
   }
 
   @Override

@@ -37,7 +37,7 @@ import skein.vehicle.ReducedModel;
  * on its own commands alone, to the bit: those of others only decide whether zeros are added.
  *
  * <p>{@link PlantFlights} flies the same vehicle under every loop. This second way exists for {@code
- * stream}, where it makes 100 million agent-steps a second and the other 54.
+ * stream}, where it makes 100 million agent-steps a second and pieces 54.
  */
 final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;

@@ -32,9 +32,6 @@ abstract class LaneVehicles {
       SEEN_VY = 5 * WORLDS,
       OWN = 6 * WORLDS;
 
-  /** In the place of no lag, s: no vehicle gets anywhere within. */
-  static final double LEAST_LAG_S = 1e-9;
-
   final float[] state;
 
   private final float[] kept = new float[4 * WORLDS];

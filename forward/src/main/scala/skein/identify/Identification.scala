@@ -138,7 +138,7 @@ object Identification:
         value,
         value - quantile * deviation(i),
         value + quantile * deviation(i),
-        (value - axis.least).min(axis.most - value) <= AtBound * (axis.most - axis.least)
+        axis.margin(value) <= AtBound
       )
     val squares                  = solution.residuals.map(error => error * error)
     def rms(offset: Int): Double =

@@ -31,9 +31,8 @@ private[skein] trait LaneDynamics:
     */
   def vehicles(duelist: Duelist): TimetableVehicles
 
-  /** How long one of its steps lasts at most, s; 0 where its flight is known for as long as a command acts.
-    */
-  def stepS: Double = 0
+  /** How long one of its steps lasts at most, s. */
+  def stepS: Double
 
   /** Whether its flight is known in pieces, from which it can be read at any moment of the near past. */
   def fliesAlone: Boolean = true
@@ -88,8 +87,7 @@ private[skein] object LaneDynamics:
 
 /** Vehicles whose readings are carried forward. */
 private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
-  export model.{clock, deadTimeS, flights, handoverS}
-  override def stepS: Double                         = model.stepS
+  export model.{clock, deadTimeS, flights, handoverS, stepS}
   override def fliesAlone: Boolean                   = model.fliesAlone
   override def predictor: Option[TimetablePredictor] = Some(by)
   def vehicles(duelist: Duelist): TimetableVehicles  =
@@ -99,7 +97,7 @@ private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredicto
 
 /** By [[TimetablePlants]] and [[PlantFlights]]; a lag alone also by [[LagVehicles]]. */
 private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
-  override def stepS: Double                        = lanes.plant.stepS
+  def stepS: Double                                 = lanes.plant.stepS
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
@@ -125,6 +123,7 @@ private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: Quadrotor
   private val stepNs    = Nanos.of(model.quadrotor.stepS)
   private val hoveredNs = Nanos.of(model.hoveredS)
 
+  def stepS: Double                                 = model.quadrotor.stepS
   def deadTimeS: Double                             = 0
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist, LaneQuadrotors(lanes))

@@ -35,6 +35,10 @@ private[lanes] final class PlantExpressions(
   /** Position and velocity at the end, north and east. */
   val seen: Vector[Node] = reading.outputs.map((_, node) => readOwn.convert(node))
 
+  /** The same where the position counts from a start. */
+  def seenFrom(startX: Node, startY: Node): Vector[Node] =
+    Vector(trace.add(seen(0), startX), trace.add(seen(1), startY)) ++ seen.drop(2)
+
   /** How many parameters there are. */
   val parameters: Int = 1 + stepOwn.derived.size + readOwn.derived.size
 

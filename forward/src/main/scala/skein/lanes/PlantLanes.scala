@@ -52,7 +52,9 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
       outputs.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(count + i)) else node)
   )
   val stages: PlantStages = PlantStages(stepping, reading)
-  val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
+
+  /** Searches, whose worlds share delays, do not wait for it to be compiled. */
+  lazy val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
 
 private[skein] object PlantLanes:
   private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()

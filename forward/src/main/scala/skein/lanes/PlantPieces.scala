@@ -41,9 +41,7 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
 
   private val seen =
     if places.isDefined then expressions.seen
-    else
-      expressions.seen.zipWithIndex.map: (node, i) =>
-        if i < 2 then trace.add(node, trace.input(starts(i))) else node
+    else expressions.seenFrom(trace.input(starts(0)), trace.input(starts(1)))
 
   /** The state a time after the step began, row by row. */
   val flown: BoundFunction = bound(expressions.stepped)

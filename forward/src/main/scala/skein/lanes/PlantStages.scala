@@ -50,8 +50,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
       order.forall(isAdded) && moves(stepped) == Seq(number) && moves(seen) == Seq(axis)
 
   private val located =
-    if places.isDefined then seen
-    else seen.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(StartX + i)) else node)
+    if places.isDefined then seen else expressions.seenFrom(trace.input(StartX), trace.input(StartY))
   private val (ofState, timed) =
     cut(
       stepped ++ located,
