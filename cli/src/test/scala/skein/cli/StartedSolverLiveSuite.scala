@@ -2,12 +2,12 @@ package skein.cli
 
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
-import skein.testing.{Lengthy, TemporaryFolders}
+import skein.testing.{Conclusive, Lengthy, TemporaryFolders}
 
 /** `decide` and `fly` as two programs that the launcher's script starts, as it is made by `cli/stage`: what
   * it leaves out of their command lines, no test within a process sees.
   */
-class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
+class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Conclusive:
   private lazy val scratch = temporaryFolder()
 
   private def started(name: String, words: String*): (Process, Path) =
@@ -24,18 +24,19 @@ class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   test("a flight's manoeuvres are planned by a solver of another process, with the JDK's vectors"):
     assume(Files.exists(Launchers.staged), "./sbtw cli/stage makes the launcher")
-    val (solver, solverLog) = started("decide", "decide", "--at", "tcp://127.0.0.1:0")
-    try
-      val (flight, flightLog) = started(
-        "fly",
-        ("fly --loop plan --link none --duration 3s --deadline 400ms --twins 0 --solver " +
-          addressIn(solverLog, solver) + " --out " + scratch.resolve("flown")).split(' ')*
-      )
-      try assert(flight.waitFor(3, TimeUnit.MINUTES), Files.readString(flightLog))
-      finally flight.destroyForcibly(): Unit
-      val told = Files.readString(flightLog)
-      assertEquals(flight.exitValue, 0, told)
-      assert(clue(told).contains("plan, solver"))
-      assert(!told.contains("jdk.incubator.vector,"), told)
-      assert(clue(Files.readString(solverLog)).contains("has ended"))
-    finally solver.destroyForcibly(): Unit
+    conclusive:
+      val (solver, solverLog) = started("decide", "decide", "--at", "tcp://127.0.0.1:0")
+      try
+        val (flight, flightLog) = started(
+          "fly",
+          ("fly --loop plan --link none --duration 3s --deadline 400ms --twins 0 --solver " +
+            addressIn(solverLog, solver) + " --out " + scratch.resolve("flown")).split(' ')*
+        )
+        try assert(flight.waitFor(3, TimeUnit.MINUTES), Files.readString(flightLog))
+        finally flight.destroyForcibly(): Unit
+        val told = Files.readString(flightLog)
+        assertEquals(flight.exitValue, 0, told)
+        assert(clue(told).contains("plan, solver"))
+        assert(!told.contains("jdk.incubator.vector,"), told)
+        assert(clue(Files.readString(solverLog)).contains("has ended"))
+      finally solver.destroyForcibly(): Unit

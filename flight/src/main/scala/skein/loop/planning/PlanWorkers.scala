@@ -1,11 +1,12 @@
 package skein.loop.planning
 
 import java.util.concurrent.{ConcurrentLinkedQueue, ThreadFactory}
-import java.util.concurrent.atomic.AtomicReference
+import java.util.concurrent.atomic.{AtomicReference, AtomicReferenceArray}
 import java.util.concurrent.locks.LockSupport
 import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
+import skein.units.Span
 
 /** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so
   * that what each finds depends on the number of its slices alone.
@@ -55,25 +56,33 @@ final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
   def close(): Unit = ()
 
 /** Searches on threads of its own until it is asked for the result; several problems take turns, slice by
-  * slice.
+  * slice. A thread that gives way hardly runs where other programs keep all processors busy, and the JVM
+  * waits for it whenever it stops all threads. So one that was `patience` over a slice, which takes
+  * milliseconds, is replaced by a usual one.
   *
   * @param threads and searches per problem
-  * @param factory of threads that should give way to those of control
+  * @param factory of threads that give way to those of control
+  * @param usual of threads that do not
   */
-final class ThreadedPlanWorkers(threads: Int, factory: ThreadFactory) extends PlanWorkers:
+final class ThreadedPlanWorkers(
+    threads: Int,
+    factory: ThreadFactory,
+    usual: ThreadFactory = ThreadedPlanWorkers.usual,
+    patience: Span = ThreadedPlanWorkers.Patience
+) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
 
   // Without a lock, which a worker without the processor could keep the stream's thread waiting for.
   private val waiting            = ConcurrentLinkedQueue[ThreadedPlanWorkers.Search]()
   @volatile private var isClosed = false
-  private val workers            = Vector.fill(threads)(factory.newThread(() => work()))
-  workers.foreach(_.start())
+  private val workers            = AtomicReferenceArray[Thread](threads)
+  (0 until threads).foreach(employ(_, factory, givesWay = true))
 
   def begin(problem: PlanProblem, warm: JointPlan): PlanSearch =
     val searches = Vector.tabulate(threads)(ThreadedPlanWorkers.Search(problem, warm, _))
     for search <- searches do
       val _ = waiting.add(search)
-    workers.foreach(LockSupport.unpark)
+    wake()
     new PlanSearch:
       def found: Vector[JointPlan]    = searches.map(_.found)
       def finish(): Vector[JointPlan] = searches.map(_.finish())
@@ -81,18 +90,33 @@ final class ThreadedPlanWorkers(threads: Int, factory: ThreadFactory) extends Pl
   /** Ends the threads; searches under way find nothing more. */
   def close(): Unit =
     isClosed = true
-    workers.foreach(LockSupport.unpark)
+    wake()
 
-  private def work(): Unit =
-    val planner = JointPlanner()
-    while !isClosed do
+  private def wake(): Unit = (0 until threads).foreach(worker => LockSupport.unpark(workers.get(worker)))
+
+  private def employ(worker: Int, factory: ThreadFactory, givesWay: Boolean): Unit =
+    val thread = factory.newThread(() => work(worker, givesWay))
+    workers.set(worker, thread)
+    thread.start()
+
+  private def work(worker: Int, givesWay: Boolean): Unit =
+    val planner    = JointPlanner()
+    var isReplaced = false
+    while !isReplaced && !isClosed do
       Option(waiting.poll()) match
         case None         => LockSupport.park(this)
         case Some(search) =>
+          val begun = System.nanoTime
           if search.improve(planner) then
             val _ = waiting.add(search)
+          isReplaced = givesWay && System.nanoTime - begun > patience.toNanos
+    if isReplaced then employ(worker, usual, givesWay = false)
 
 private object ThreadedPlanWorkers:
+  /** Less than the silence of a simulator that is told. */
+  private val Patience = Span.ofMillis(300)
+
+  private val usual = Thread.ofPlatform().daemon().name("skein-plan-usual-", 1).factory()
 
   /** One search; worked on by one thread at a time. */
   final class Search(problem: PlanProblem, warm: JointPlan, number: Int):

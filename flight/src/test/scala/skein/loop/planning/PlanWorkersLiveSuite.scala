@@ -1,8 +1,11 @@
 package skein.loop.planning
 
+import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
 import skein.planning.*
 import skein.testing.Optimised
+import skein.units.Span
 import skein.vehicle.{PlaneReading, ReducedModel}
 
 /** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is
@@ -72,6 +75,30 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
     val later  = finished(workers, problem(2))
     assert(later.forall(_.slices > 3))
     assertEquals(search.finish().map(_.slices), found.map(_.slices))
+
+  test("a thread that was too long over a slice is replaced by a usual one, and the search goes on"):
+    val usual   = Thread.ofPlatform().daemon().name("usual-", 1).factory()
+    val made    = AtomicInteger()
+    val gaveWay = ConcurrentLinkedQueue[Thread]()
+    val workers = ThreadedPlanWorkers(
+      2,
+      work =>
+        val thread = Thread(work)
+        gaveWay.add(thread)
+        thread
+      ,
+      work =>
+        made.incrementAndGet()
+        usual.newThread(work)
+      ,
+      patience = Span.Zero
+    )
+    try
+      assert(finished(workers, problem(1)).forall(_.slices > 3))
+      gaveWay.forEach(_.join(60_000))
+      assert(!gaveWay.asScala.exists(_.isAlive))
+      assertEquals(made.get, 2)
+    finally workers.close()
 
   test("threads end when they are no longer wanted"):
     def ours    = Thread.getAllStackTraces.keySet.asScala.filter(_.getName.startsWith("skein-plan")).toSet
