@@ -1,6 +1,6 @@
 package skein.view
 
-import scala.collection.immutable.{Queue, TreeMap, VectorMap}
+import scala.collection.immutable.{TreeMap, VectorMap}
 
 /** What waits for one viewer. The newest wins: where more waits than may, the oldest is lost, first of the
   * subscription that has too much, then of all. Notices of the server are few, one a key, and go before
@@ -12,7 +12,7 @@ final case class Outbox[A] private (
     limits: ViewerLimits,
     notices: VectorMap[String, A],
     waiting: TreeMap[Long, Outbox.Waiting[A]],
-    places: Map[Long, Queue[Long]],
+    places: Map[Long, Vector[Long]],
     bytes: Long,
     next: Long,
     lost: Long
@@ -25,7 +25,7 @@ final case class Outbox[A] private (
   /** @param most of this subscription that may wait
     */
   def offered(subscription: Long, message: A, size: Int, most: Int = limits.waiting): Outbox[A] =
-    val places2 = places.updated(subscription, places.getOrElse(subscription, Queue.empty).enqueue(next))
+    val places2 = places.updated(subscription, places.getOrElse(subscription, Vector.empty) :+ next)
     copy(
       waiting = waiting.updated(next, Outbox.Waiting(subscription, message, size)),
       places = places2,
@@ -41,7 +41,10 @@ final case class Outbox[A] private (
 
   /** Nothing more of a subscription. */
   def unsubscribed(subscription: Long): Outbox[A] =
-    places.getOrElse(subscription, Queue.empty).foldLeft(this)(_.without(_))
+    places.getOrElse(subscription, Vector.empty).foldLeft(this)(_.without(_))
+
+  /** Nothing of what waits but the notices. */
+  def emptied: Outbox[A] = copy(waiting = TreeMap.empty, places = Map.empty, bytes = 0)
 
   private def bounded(subscription: Long, most: Int): Outbox[A] =
     val own = places(subscription)
@@ -53,9 +56,11 @@ final case class Outbox[A] private (
 
   private def losing(place: Long) = without(place).copy(lost = lost + 1)
 
+  /** @param place the first of its subscription
+    */
   private def without(place: Long): Outbox[A] =
     val gone = waiting(place)
-    val left = places(gone.subscription).filterNot(_ == place)
+    val left = places(gone.subscription).tail
     copy(
       waiting = waiting - place,
       places = if left.isEmpty then places - gone.subscription else places.updated(gone.subscription, left),

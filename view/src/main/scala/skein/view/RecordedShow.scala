@@ -13,7 +13,7 @@ final class RecordedShow(
     id: String,
     vehicles: Vector[String],
     rows: Vector[(Long, Record)],
-    limits: ViewerLimits = ViewerLimits(),
+    limits: ViewerLimits = ViewerLimits.OfRecording,
     scene: Scene = Scene.Empty
 ) extends Show(id, RecordedShow.topics(vehicles, rows), limits):
 

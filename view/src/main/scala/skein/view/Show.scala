@@ -73,7 +73,9 @@ abstract class Show private[view] (
         subscription <- viewer.subscriptionsTo(channel)
       do viewer.offer(subscription, shown.at, shown.payload, latest(channel))
 
-  protected def forget(): Unit = synchronized(newest.clear())
+  protected def forget(): Unit = synchronized:
+    newest.clear()
+    viewers.foreach(_.empty())
 
   protected def notice(key: String, message: ServerMessage): Unit = synchronized:
     viewers.foreach(_.notice(key, message))

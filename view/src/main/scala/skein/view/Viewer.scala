@@ -35,6 +35,9 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
     val most    = if newestOnly then 1 else limits.waiting
     put(_.offered(subscription, message, message.bytes.length, most))
 
+  /** What waits is of no use any more. */
+  def empty(): Unit = synchronized { outbox = outbox.emptied }
+
   def notice(key: String, message: ServerMessage): Unit = put(_.noticed(key, message))
 
   def lost: Long = synchronized(outbox.lost)
@@ -45,7 +48,7 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
       toldLost = outbox.lost
       Some(ServerText(Protocol.warning(
         "lost",
-        s"$toldLost messages were lost: this viewer is slower than the flight"
+        s"$toldLost older messages are not shown: more came than may wait for this viewer"
       )))
     else
       outbox.taken match

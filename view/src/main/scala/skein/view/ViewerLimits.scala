@@ -17,3 +17,9 @@ final case class ViewerLimits(
     waiting: Int = 512,
     waitingBytes: Long = 2L * 1024 * 1024
 )
+
+object ViewerLimits:
+  /** A jump within a recording shows at once all that came before: 40 s of twenty vehicles. Viewers share the
+    * bytes.
+    */
+  val OfRecording: ViewerLimits = ViewerLimits(waiting = 65_536, waitingBytes = 64L * 1024 * 1024)
