@@ -1,9 +1,11 @@
 package skein.search
 
-import java.io.{FileNotFoundException, IOException}
+import java.io.{BufferedOutputStream, FileNotFoundException, IOException, OutputStream}
 import java.nio.channels.FileChannel
+import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, NoSuchFileException, Path, StandardCopyOption, StandardOpenOption}
 import java.util.zip.CRC32C
+import scala.util.Using
 import upickle.default.{ReadWriter, write as writeJson}
 
 /** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it:
@@ -59,14 +61,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
     * @return or why not
     */
   def write(folder: Path, state: A): Either[String, Unit] =
-    val target  = folder.resolve(name)
-    val written = folder.resolve(s"$name.new")
-    try
-      Files.writeString(written, json(state))
-      force(written)
-      Files.move(written, target, StandardCopyOption.ATOMIC_MOVE, StandardCopyOption.REPLACE_EXISTING)
-      Right(())
-    catch case failed: IOException => Left(s"cannot write $target: $failed")
+    replace(folder.resolve(name), folder.resolve(s"$name.new"))(_.write(json(state).getBytes(UTF_8)))
 
 private[skein] object StateFile:
   private val Seal      = ",\"crc32c\":"
@@ -77,8 +72,20 @@ private[skein] object StateFile:
     sum.update(text.getBytes("UTF-8"))
     sum.getValue.toString
 
-  /** All that was written to the file is on the disk when this returns. */
-  def force(file: Path): Unit =
-    val channel = FileChannel.open(file, StandardOpenOption.WRITE)
-    try channel.force(true)
-    finally channel.close()
+  /** Replaces a file, so that whatever happens there is the old one or the new one.
+    *
+    * @param part where it is written before; nothing is left there but by a process that was killed
+    * @return or why not
+    */
+  def replace(target: Path, part: Path)(write: OutputStream => Unit): Either[String, Unit] =
+    try
+      Using.resource(BufferedOutputStream(Files.newOutputStream(part), Buffer))(write)
+      Using.resource(FileChannel.open(part, StandardOpenOption.WRITE))(_.force(true))
+      Files.move(part, target, StandardCopyOption.ATOMIC_MOVE, StandardCopyOption.REPLACE_EXISTING)
+      Right(())
+    catch
+      case failed: IOException =>
+        part.toFile.delete(): Unit
+        Left(s"cannot write $target: $failed")
+
+  private val Buffer = 1 << 20

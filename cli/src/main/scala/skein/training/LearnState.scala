@@ -2,7 +2,6 @@ package skein.training
 
 import java.io.{
   BufferedInputStream,
-  BufferedOutputStream,
   DataInputStream,
   DataOutputStream,
   EOFException,
@@ -79,15 +78,17 @@ object LearnFile:
       learner: Learner
   ): Either[String, Unit] =
     val file = numbers(folder, state.rounds)
-    try
-      val sum = CRC32C()
-      Using.resource(BufferedOutputStream(Files.newOutputStream(file), Buffer)): bytes =>
+    for
+      _ <- StateFile.replace(file, folder.resolve("learner.new")): bytes =>
+        val sum = CRC32C()
         learner.save(DataOutputStream(CheckedOutputStream(bytes, sum)))
         DataOutputStream(bytes).writeLong(sum.getValue)
-      StateFile.force(file)
-      onDisk.write(folder, LearnFile(Version, question, state)).map: _ =>
-        Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
-          _.forEach(other => if other != file then Files.delete(other))
-    catch case failed: IOException => Left(s"cannot write $file: $failed")
+      _ <- onDisk.write(folder, LearnFile(Version, question, state))
+      _ <-
+        try
+          Right(Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
+            _.forEach(other => if other != file then Files.delete(other)))
+        catch case failed: IOException => Left(s"cannot delete what was before $file: $failed")
+    yield ()
 
   private val Buffer = 1 << 20

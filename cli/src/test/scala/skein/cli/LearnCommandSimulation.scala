@@ -1,6 +1,8 @@
 package skein.cli
 
+import java.io.{DataInput, DataOutput, IOException}
 import java.nio.file.{Files, Path}
+import skein.learn.{Learner, Network, Task}
 import skein.scenario.Scenarios
 import skein.search.Judge
 import skein.settings.PolicyFile
@@ -174,13 +176,33 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
+  folder.test("where the disk is full, the learner's numbers before are kept and no part of others is"):
+    path =>
+      final class Numbers(isFull: Boolean) extends Learner:
+        def actor: Network                                                     = ???
+        def begin(round: Long): Unit                                           = ()
+        def explore(seen: Array[Float], actions: Array[Float]): Unit           = ()
+        def learn(seen: Array[Float], actions: Array[Float], task: Task): Unit = ()
+        def isFinite: Boolean                                                  = true
+        def load(in: DataInput): Unit                                          = ()
+        def save(out: DataOutput): Unit                                        =
+          out.write(new Array[Byte](4_000_000))
+          if isFull then throw IOException("No space left on device")
+      val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
+      def written(rounds: Int, isFull: Boolean) =
+        LearnFile.write(path, question, LearnState(rounds), Numbers(isFull))
+      assertEquals(written(1, isFull = false), Right(()))
+      assert(clue(written(2, isFull = true)).left.exists(_.contains("No space left on device")))
+      assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-1.bin"))
+      assertEquals(written(3, isFull = false), Right(()))
+      assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-3.bin"))
+
   test("a folder of something else, or with a damaged state, is not gone on with"):
     val folder = temporaryFolder()
     assert(
       LearnFile.read(folder).left.exists(_.contains("expected the folder of learning, of ./skein learn"))
     )
     Files.writeString(folder.resolve(LearnFile.Name), "{}"): Unit
-    assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
     val setup    = question.setup.fold(fail(_), identity)
     val rounds   = LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0)
