@@ -47,7 +47,10 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
   def read(folder: Path): Either[String, A] =
     val file = folder.resolve(name)
     try
+      val within = Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(_ != null)
       if Files.exists(file) && !Files.isRegularFile(file) then Left(s"$file: expected a file")
+      else if within.exists(Files.isRegularFile(_)) then
+        Left(s"$folder: expected the folder of $what, came a file")
       else parse(Files.readString(file)).left.map(mistake => s"$file: $mistake")
     catch
       case _: (NoSuchFileException | FileNotFoundException) =>

@@ -203,6 +203,11 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       LearnFile.read(folder).left.exists(_.contains("expected the folder of learning, of ./skein learn"))
     )
     Files.writeString(folder.resolve(LearnFile.Name), "{}"): Unit
+    for below <- Seq(LearnFile.Name, s"${LearnFile.Name}/in") do
+      assert(clue(LearnFile.read(folder.resolve(below))).left.exists(_.endsWith(
+        "expected the folder of learning, of ./skein learn, came a file"
+      )))
+    assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
     val setup    = question.setup.fold(fail(_), identity)
     val rounds   = LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0)
