@@ -3,7 +3,7 @@ package skein.blocks
 import java.io.IOException
 import java.nio.ByteBuffer
 import java.nio.channels.FileChannel
-import java.nio.file.{Path, StandardOpenOption}
+import java.nio.file.{Files, Path, StandardOpenOption}
 import java.util.zip.CRC32
 import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
@@ -22,6 +22,7 @@ import scala.util.Using
   * @param broken bytes of the file, as it was opened, that belong to no whole record
   */
 final class Ledger private (
+    file: Path,
     channel: FileChannel,
     index: mutable.HashMap[BlockKey, (Long, Int)],
     private var end: Long,
@@ -55,9 +56,11 @@ final class Ledger private (
   /** All that was accepted is on the disk when this returns. */
   def force(): Unit = channel.force(false)
 
+  /** Of one without an answer no file is left. */
   def close(): Unit = if channel.isOpen then
     force()
     channel.close()
+    if index.isEmpty then Files.deleteIfExists(file): Unit
 
 object Ledger:
   val Name             = "blocks.ledger"
@@ -83,7 +86,7 @@ object Ledger:
         val _       = channel.truncate(0)
         val heading = ByteBuffer.wrap(Magic ++ question.toArray)
         while heading.hasRemaining do { val _ = channel.write(heading) }
-        Right(Ledger(channel, mutable.HashMap.empty, First, size))
+        Right(Ledger(file, channel, mutable.HashMap.empty, First, size))
       else
         val heading = read(channel, 0, First)
         if !heading.take(Magic.length).sameElements(Magic) then
@@ -96,7 +99,7 @@ object Ledger:
           val index = mutable.HashMap.empty[BlockKey, (Long, Int)]
           val found = scan(channel)((key, at, length) => { val _ = index.getOrElseUpdate(key, (at, length)) })
           val _     = channel.truncate(found.end)
-          Right(Ledger(channel, index, found.end, found.broken))
+          Right(Ledger(file, channel, index, found.end, found.broken))
     catch case failed: IOException => Left(s"cannot open the ledger $file: $failed")
 
   /** What a ledger holds, read from the file alone.

@@ -180,8 +180,9 @@ final class CoordinatorSimulation(
     restarts += 1
     run += 1
     ledger.close()
-    val kept = savedTo + (random.nextDouble() * (Files.size(file) - savedTo + 1)).toLong
-    val _    = scala.util.Using.resource(FileChannel.open(file, StandardOpenOption.WRITE))(_.truncate(kept))
+    if Files.exists(file) then
+      val kept = savedTo + (random.nextDouble() * (Files.size(file) - savedTo + 1)).toLong
+      val _    = scala.util.Using.resource(FileChannel.open(file, StandardOpenOption.WRITE))(_.truncate(kept))
     ledger = open()
     begin()
 

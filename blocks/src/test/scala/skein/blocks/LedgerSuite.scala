@@ -83,6 +83,10 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       assert(ledger.size < 3 && ledger.broken > 0, s"byte $at")
       ledger.close()
 
+  file.test("one that was opened for nothing leaves no file"): path =>
+    open(path).close()
+    assert(!Files.exists(path))
+
   file.test("another question's ledger, and a file that is none, are refused by name"): path =>
     written(path, 1)
     val other = Ledger.open(path, ArraySeq.from(Array.fill[Byte](32)(8)))
