@@ -1,5 +1,6 @@
 package skein.budget
 
+import scala.annotation.tailrec
 import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 
@@ -28,37 +29,45 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
     *
     * @param onProgress told how many episodes are flown
     * @param onRow told of all rows that are known, after each
-    * @return or why there is none
+    * @return of a map that was cancelled those rows; or why there are none
     */
   def map(
       onProgress: Long => Unit,
       isCancelled: () => Boolean,
-      onRow: Vector[Vector[Option[RunningStats]]] => Unit = _ => ()
+      onRow: BudgetSweep.Rows => Unit = _ => ()
   ): Either[String, LatencyBudget] =
     for
       truth <- subject.truth
       per   <- tolerance.per(truth).left.map(mistake => s"${subject.formula}: $mistake")
-      rows  <- links
-        .grouped(subject.rowsTogether)
-        .foldLeft[Either[String, Vector[Vector[Option[RunningStats]]]]](Right(Vector.empty)):
-          (before, rows) =>
-            before.flatMap: above =>
-              val flown = above.flatten.flatten.size.toLong * episodes
-              val cells = BudgetCells(
-                rows.flatten.flatten,
-                episodes,
-                done => onProgress(flown + done),
-                isCancelled
-              )
-              subject.tallies(cells).map: tallies =>
-                val next  = tallies.iterator
-                val known = above ++ rows.map(_.map(_.map(_ => next.next())))
-                onRow(known)
-                known
-    yield LatencyBudget(axes.meansMs, axes.jittersMs, rows, truth, per)
+      rows  <- rowsFrom(Vector.empty, onProgress, isCancelled, onRow)
+    yield LatencyBudget(axes.meansMs, axes.jittersMs.take(rows.size), rows, truth, per)
+
+  @tailrec private def rowsFrom(
+      above: BudgetSweep.Rows,
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean,
+      onRow: BudgetSweep.Rows => Unit
+  ): Either[String, BudgetSweep.Rows] =
+    val rows = links.slice(above.size, (above.size.toLong + subject.rowsTogether).min(links.size).toInt)
+    if rows.isEmpty then Right(above)
+    else
+      val flown = above.flatten.flatten.size.toLong * episodes
+      val cells =
+        BudgetCells(rows.flatten.flatten, episodes, done => onProgress(flown + done), isCancelled)
+      subject.tallies(cells) match
+        case Left(BudgetSubject.Stopped) if above.nonEmpty => Right(above)
+        case Left(reason)                                  => Left(reason)
+        case Right(tallies)                                =>
+          val next  = tallies.iterator
+          val known = above ++ rows.map(_.map(_.map(_ => next.next())))
+          onRow(known)
+          rowsFrom(known, onProgress, isCancelled, onRow)
 
   /** Episodes of the map. */
   def expected: Long = known.size.toLong * episodes
+
+object BudgetSweep:
+  type Rows = Vector[Vector[Option[RunningStats]]]
 
 /** Where the cells lie: round trips' means and jitters, ms, from 0 in even steps. */
 final case class BudgetAxes(meansMs: Vector[Double], jittersMs: Vector[Double])

@@ -95,9 +95,13 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           maps <- options.view.serving("budget"): task =>
             elsewhere(cluster, options, questions, subjects, folder, threads):
               fly(options, _, tolerance, axes, legs, task)
-          _ = tell(options, maps, atJitterMs)
-          files <- write(maps, folder)
-        yield Shown(options.json.value).say(s"written: ${files.mkString(", ")}")
+          isWhole = maps.size == subjects.size && maps.forall(_.budget.jittersMs == axes.jittersMs)
+          _       = tell(options, maps, atJitterMs)
+          files <- write(maps, isWhole, folder)
+          _ = Shown(options.json.value).say(s"written: ${files.mkString(", ")}")
+          _ <-
+            Expect.that(isWhole)(s"${BudgetSubject.Stopped}; what was flown until then is told and written")
+        yield ()
     yield ()
 
   private def tell(options: BudgetOptions, maps: Vector[BudgetMap], atJitterMs: Double): Unit =
@@ -209,7 +213,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     val shown             = Shown(options.json.value)
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
-      Expect.each(flown): subject =>
+      def mapOf(subject: BudgetSubject) =
         val what  = s"${subject.loop} every ${subject.periodMs.significant(4)} ms"
         val sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
         shown.say(
@@ -231,10 +235,12 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
             onShow.rows
           )
           _ = line.end()
-          _ = shown.say(f"${sweep.expected}%,d episodes in ${(System.nanoTime() - startedAt) * 1e-9}%.1f s")
+          _ = shown.say(
+            f"${budget.cells.flatten.flatten.size.toLong * sweep.episodes}%,d episodes in ${(System.nanoTime() - startedAt) * 1e-9}%.1f s"
+          )
           marks <-
-            Expect.all(Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)):
-              (name, roundTrip) => sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
+            Expect.all(if stopped then Nil else BudgetCommand.Marked): (name, roundTrip) =>
+              sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
         yield BudgetMap(
           subject.loop,
           subject.periodMs,
@@ -249,11 +255,27 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           marks.toVector,
           legs
         )
+      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, subject) =>
+        before.flatMap: maps =>
+          if stopped && maps.nonEmpty then before
+          else
+            mapOf(subject) match
+              case Left(BudgetSubject.Stopped) if maps.nonEmpty => before
+              case one                                          => one.map(maps :+ _)
 
-  private def write(maps: Vector[BudgetMap], folder: Path): Either[String, Vector[Path]] =
-    val csv = (BudgetMap.CsvHeader +: maps.flatMap(_.csvRows)).mkString("", "\n", "\n")
+  /** A part of a map replaces no whole one, and has no picture: it may be of one row. */
+  private def write(
+      maps: Vector[BudgetMap],
+      isWhole: Boolean,
+      folder: Path
+  ): Either[String, Vector[Path]] =
+    val csv  = (BudgetMap.CsvHeader +: maps.flatMap(_.csvRows)).mkString("", "\n", "\n")
+    val name = if isWhole then "map" else "partial-map"
     OutFolder.write(
       folder,
-      OutFolder.picture("map", BudgetFigure(maps), "latency budget") :+
-        OutFolder.text("map.csv", csv) :+ OutFolder.text("map.json", BudgetMap.json(maps))
+      (if isWhole then OutFolder.picture(name, BudgetFigure(maps), "latency budget") else Vector.empty) :+
+        OutFolder.text(s"$name.csv", csv) :+ OutFolder.text(s"$name.json", BudgetMap.json(maps))
     )
+
+private object BudgetCommand:
+  private val Marked = Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)

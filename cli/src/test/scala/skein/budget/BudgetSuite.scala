@@ -51,8 +51,12 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assert(flying.map(count => done = count, () => false).isRight)
     assertEquals(done, flying.expected)
 
-  test("a cancelled map is none"):
+  test("a cancelled map has the rows that were flown until then; without any it is none"):
     assertEquals(sweep("stream", 5).map(_ => (), () => true), Left(BudgetSubject.Stopped))
+    val whole       = map(sweep("stream", 5))
+    var isCancelled = false
+    val cut         = sweep("stream", 5).map(_ => (), () => isCancelled, rows => isCancelled = rows.size == 2)
+    assertEquals(cut, Right(whole.copy(jittersMs = whole.jittersMs.take(2), cells = whole.cells.take(2))))
 
   private def shown(bound: Vector[Double], legs: Legs = Legs.RoundTrip) = BudgetMap(
     "stream",
