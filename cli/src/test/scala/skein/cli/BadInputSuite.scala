@@ -62,6 +62,12 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     assertRefused(FlyCommand(), Seq("--link", "vnp"), "skein fly: --link: unknown latency profile \"vnp\"")
     assertRefused(FlyCommand(), Seq("--loop", "streem"), "skein fly: --loop: no loop 'streem'")
     assertRefused(FlyCommand(), Seq("--duration=-5s"), "--duration: expected a duration that is not negative")
+    assertRefused(
+      FlyCommand(),
+      Seq("--duration", "0s"),
+      "skein fly: --duration: expected two periods (200.0 ms)"
+    )
+    assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
 
   test("what follows multirotors alone refuses a scenario with cars, and says so"):
     val cars = Seq("--scenario", "convoy")

@@ -204,7 +204,7 @@ object FlySettings:
         given ConfigReader[Scenario]    = ConfigReader.fromFunction(_ => Right(scenario))
         given ConfigReader[FlySettings] = ConfigKeys.reader
         ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(told)
-      valid <- validated(settings)
+      valid <- validated(settings, timed)
     yield valid
 
   private val Duration = "skein.fly.duration"
@@ -218,7 +218,7 @@ object FlySettings:
       case other => ConfigReaderFailures(other).prettyPrint()
     .mkString("\n")
 
-  private def validated(settings: FlySettings): Either[String, FlySettings] =
+  private def validated(settings: FlySettings, config: Config): Either[String, FlySettings] =
     val mistakes = Seq(
       Option.when(settings.loops.isEmpty)("loops: expected at least one loop, came none"),
       Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
@@ -270,7 +270,16 @@ object FlySettings:
       )
     ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
-    Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
+    Either.cond(all.isEmpty, settings, all.map(placed(_, config)).mkString("\n"))
+
+  /** A mistake about a key whose value is an option's is told by that, others by the key. */
+  private def placed(mistake: String, config: Config): String =
+    val (key, said) = mistake.span(_ != ':')
+    val path        = s"skein.fly.$key"
+    Option
+      .when(config.hasPath(path))(config.getValue(path).origin.description)
+      .filter(_.startsWith("--"))
+      .getOrElse(path) + said
 
   /** `paused` waits with its simulator stopped. */
   def decidedElsewhere(loop: AnyLoop): Boolean = loop != LoopKind.Paused
