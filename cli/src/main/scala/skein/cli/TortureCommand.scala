@@ -57,6 +57,9 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
         .map(mistake => s"--duration: $mistake")
       threads <- ForwardOptions.threadCount(options.threads)
       _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
+      mostFirst = Long.MaxValue - options.seeds + 1
+      _ <- Expect.that(options.first <= mostFirst):
+        s"--first: expected up to $mostFirst, since the other seeds follow it, came ${options.first}"
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds)):
         s"--block: expected 1 to ${TortureQuestion.MostSeeds} " +

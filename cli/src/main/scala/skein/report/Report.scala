@@ -3,7 +3,7 @@ package skein.report
 import java.io.IOException
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
-import scala.util.Using
+import scala.util.{Try, Using}
 import skein.figures.Figure
 import skein.flight.InParallel
 import skein.measure.{FlightSet, FlightSummary}
@@ -14,9 +14,10 @@ import skein.scenario.Scenarios
 /** Turns recordings into tables and pictures; needs nothing but the recordings. */
 object Report:
 
-  /** Summarises recordings. All files are tried; every one that cannot be read is named. Blocks. */
+  /** Summarises recordings, each file once. All are tried; every one that cannot be read is named. Blocks. */
   def read(files: Seq[Path])(using Scenarios): Either[Seq[RecordError], FlightSet] =
-    val (unread, read) = onAllCores(files)(RecordingReader.read).partitionMap(identity)
+    val once           = files.distinctBy(file => Try(file.toRealPath()).getOrElse(file))
+    val (unread, read) = onAllCores(once)(RecordingReader.read).partitionMap(identity)
     Either.cond(unread.isEmpty, of(read), unread)
 
   def of(recordings: Seq[Recording])(using Scenarios): FlightSet = FlightSet(recordings.map(FlightSummary.of))

@@ -45,6 +45,13 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       "--seeds: expected 1 to 1000000 with --workers or --cluster, came 1000001"
     )
 
+  test("seeds beyond the largest number are refused"):
+    assertRefused(
+      TortureCommand("skein.cli.Main"),
+      Seq("--first", Long.MaxValue.toString, "--seeds", "2"),
+      s"--first: expected up to ${Long.MaxValue - 1}, since the other seeds follow it"
+    )
+
   folder.test("a view that could not be looked at is told before the flight"): path =>
     val out                                           = path.resolve("out")
     def refused(expected: String)(arguments: String*) =

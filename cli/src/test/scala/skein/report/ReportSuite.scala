@@ -44,6 +44,13 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         val ratio = document.getDocumentElement.getAttribute("width").toDouble / image.getWidth
         assertEqualsDouble(ratio, 1 / 3.0, 0.001)
 
+  folder.test("a file that is named twice is one flight"): folder =>
+    val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
+    val file   = folder.resolve("flight.duckdb")
+    assert(MemoryRecorder(flight.heading).writeTo(file).isRight)
+    val named = Seq(file, folder.resolve("./flight.duckdb"), file)
+    assertEquals(Report.read(named).map(_.all.size), Right(1))
+
   test("the page needs nothing beside itself"):
     val page    = HtmlReport.render(set, ReportFigures.of(set))
     val links   = "(?:src|href|url|@import)\\s*[=(]".r.findFirstIn(page)
