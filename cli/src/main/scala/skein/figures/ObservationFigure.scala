@@ -18,7 +18,7 @@ object ObservationFigure:
     val flights = set.flights.filter(_.roles.nonEmpty)
     Option.when(flights.nonEmpty):
       Drawing.stacked(
-        Drawing.grid(TimingObservation.values.toVector.map(panel(_, flights)), columns = 2),
+        Drawing.grid(FlightSummary.observations(flights).map(panel(_, flights)), columns = 2),
         legend(flights)
       )
 

@@ -47,24 +47,32 @@ object SummaryTables:
     */
   def observations(set: FlightSet): TextTable =
     val paper = Option.when(set.flights.exists(_.published.nonEmpty))("paper").toVector
+    val shown = FlightSummary.observations(set.flights)
+    val ages  = Vector("true own") ++ Option.when(shown.exists(_.isOfOpponent))("opp.'s")
     TextTable(
-      Vector("<loop", "<link", "<for") ++
-        Vector("own age", "opp.'s age", "own move", "opp.'s move").flatMap(_ +: paper) ++
-        Vector("true own", "opp.'s"),
+      Vector("<loop", "<link", "<for") ++ shown.map(header).flatMap(_ +: paper) ++ ages,
       for
         summary <- set.flights
         role    <- summary.roles
       yield
         val published = summary.published.map(_.observedMs)
-        val observed  = TimingObservation.values.toVector.flatMap: observation =>
+        val observed  = shown.flatMap: observation =>
           role.observedMs.get(observation).fold("")(ms =>
             s"${ms.mean.brief}/${ms.median.brief}/${ms.p99.brief}"
           ) +: paper.map(_ =>
             published.fold("")(means => Published.ofRole(means(observation), role.role).brief)
           )
         Vector(summary.name, summary.flight.link, role.role) ++ observed ++
-          Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs).map(_.fold("")(age => age.mean.brief))
+          Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs)
+            .take(ages.size)
+            .map(_.fold("")(age => age.mean.brief))
     )
+
+  private def header(observation: TimingObservation) = observation match
+    case TimingObservation.OwnAge            => "own age"
+    case TimingObservation.OpponentAge       => "opp.'s age"
+    case TimingObservation.SinceOwnMove      => "own move"
+    case TimingObservation.SinceOpponentMove => "opp.'s move"
 
   /** How much was done, and what did not go as wished; of the rarer kinds of events those that occurred. */
   def counts(set: FlightSet): TextTable =

@@ -8,6 +8,8 @@ import skein.measure.{
   PredictionErrors,
   PredictionGroup
 }
+import skein.figures.ObservationFigure
+import skein.plot.Mark
 import skein.record.{Event, EventKind, Planned, Recording}
 import skein.scenario.Scenarios
 import skein.units.*
@@ -201,6 +203,20 @@ class TablesSuite extends munit.FunSuite:
       def mean(of: Vector[Span]) = (of.map(_.toMillis).sum / of.size).brief
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
     assertEquals(TimingObservation.values.size, paper.size)
+
+  test("of opponents nothing is told where nobody has one"):
+    val duel = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
+    val set  = Report.of(Seq(duel.copy(heading =
+      duel.heading.copy(flight = duel.heading.flight.copy(scenario = "surround"))
+    )))
+    val table = SummaryTables.observations(set)
+    assertEquals(
+      table.header.map(_.stripPrefix("<")),
+      Vector("loop", "link", "for", "own age", "own move", "true own")
+    )
+    assert(table.rows.nonEmpty && table.rows.forall(_.size == table.header.size))
+    val titles = ObservationFigure(set).get.shapes.collect { case text: Mark.Text => text.content }
+    assert(titles.contains("Own location age") && !titles.exists(_.contains("pponent")), titles)
 
   test("without a flight of the paper's nothing stands beside what was observed"):
     val slope = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)

@@ -97,6 +97,8 @@ final case class FlightSummary(
 
 /** The decisions for all vehicles of one role.
   *
+  * @param opponentTrueAgeMs absent, as what is observed of an opponent, where the role's policies regard the
+  *   team instead
   * @param ownTrueAgeMs from when physics was sampled to the decision
   */
 final case class RoleSummary(
@@ -104,9 +106,16 @@ final case class RoleSummary(
     observedMs: Map[TimingObservation, Distribution],
     ownTrueAgeMs: Option[Distribution],
     opponentTrueAgeMs: Option[Distribution]
-)
+):
+  def hasOpponent: Boolean = observedMs.keys.exists(_.isOfOpponent)
 
 object FlightSummary:
+
+  /** Those that stand in tables; what is of an opponent, where anybody has one. */
+  def observations(flights: Seq[FlightSummary]): Vector[TimingObservation] =
+    TimingObservation.values.toVector.filter(one =>
+      !one.isOfOpponent || flights.exists(_.roles.exists(_.hasOpponent))
+    )
 
   def of(recording: Recording)(using Scenarios): FlightSummary =
     val tracks   = RecordedTracks.of(recording)
@@ -115,7 +124,7 @@ object FlightSummary:
       recording.flight,
       tracks,
       scenario,
-      roles(recording),
+      roles(recording, scenario),
       roundTripsMs(recording),
       recording.readings.size,
       recording.decisions.size,
@@ -169,7 +178,11 @@ object FlightSummary:
   /** What may be missing at both ends of a flight between its time and its readings. */
   private val Margin = Span.ofSeconds(2)
 
-  private def roles(recording: Recording): Vector[RoleSummary] =
+  private def roles(recording: Recording, scenario: Option[Scenario]): Vector[RoleSummary] =
+    val isOther                 = recording.heading.parameters.exists(_.name == "policy")
+    def isAgainst(role: String) = isOther || scenario.forall(
+      _.agents.exists(agent => agent.policy.isAgainstOne && agent.role.toString.equalsIgnoreCase(role))
+    )
     val roleOf = recording.heading.vehicles.map(vehicle =>
       vehicle.name -> vehicle.role.toLowerCase(java.util.Locale.ROOT)
     ).toMap
@@ -181,10 +194,11 @@ object FlightSummary:
         RoleSummary(
           role,
           TimingObservation.values
+            .filter(!_.isOfOpponent || isAgainst(role))
             .flatMap(observation => Distribution.of(decisions.flatMap(observation.ms)).map(observation -> _))
             .toMap,
           Distribution.of(decisions.flatMap(_.trueAge).map(_.own.toMillis)),
-          Distribution.of(decisions.flatMap(_.trueAge).map(_.opponent.toMillis))
+          Distribution.of(decisions.flatMap(_.trueAge).filter(_ => isAgainst(role)).map(_.opponent.toMillis))
         )
 
   private def roundTripsMs(recording: Recording): Option[Distribution] =
