@@ -7,26 +7,27 @@ import skein.scenario.Track
 import skein.units.*
 
 /** The paper's Figures 4 and 5: where the vehicles flew, seen from above (north is up), one panel per flight,
-  * with equal scales on both axes. Starts are rings, ends are discs.
+  * all of one range, with equal scales on both axes. Starts are rings, ends are discs.
   */
 object TrajectoryFigure:
   private val side = 210.0
 
   def apply(set: FlightSet): Option[Drawing] =
-    val panels = set.flights.filter(_.tracks.nonEmpty).map(panel)
-    Option.when(panels.nonEmpty)(Drawing.stacked(
-      Drawing.grid(panels, columns = 4.min(panels.size)),
-      legend(set)
-    ))
+    val flights = set.flights.filter(_.tracks.nonEmpty)
+    Option.when(flights.nonEmpty):
+      val positions = flights.flatMap(_.tracks.flatMap(_.positionsNed))
+      val xs        = positions.map(_.x)
+      val ys        = positions.map(_.y)
+      // Equal scales: both axes span the larger of the two extents, each around its own middle.
+      val span  = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
+      val east  = PlotAxis.centred("east y, m", ys, span)
+      val north = PlotAxis.centred("north x, m", xs, span)
+      Drawing.stacked(
+        Drawing.grid(flights.map(panel(_, east, north)), columns = 4.min(flights.size)),
+        legend(set)
+      )
 
-  private def panel(summary: FlightSummary): Drawing =
-    val positions = summary.tracks.flatMap(_.positionsNed)
-    val xs        = positions.map(_.x)
-    val ys        = positions.map(_.y)
-    // Equal scales: both axes span the larger of the two extents, each around its own middle.
-    val span  = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
-    val east  = PlotAxis.centred("east y, m", ys, span)
-    val north = PlotAxis.centred("north x, m", xs, span)
+  private def panel(summary: FlightSummary, east: PlotAxis, north: PlotAxis): Drawing =
     val panel = Panel(east, north, 52, 34, side, side)
     val title = panel.title(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
     Drawing(

@@ -3,6 +3,8 @@ package skein.report
 import java.nio.file.{Files, Path}
 import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
+import skein.figures.TrajectoryFigure
+import skein.plot.Mark
 import skein.record.{MemoryRecorder, RecordError, Recording}
 import skein.scenario.Scenarios
 import skein.testing.{TemporaryFolders, Unhurried}
@@ -43,6 +45,11 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         val image = ImageIO.read(Path.of(s"$stem.png").toFile)
         val ratio = document.getDocumentElement.getAttribute("width").toDouble / image.getWidth
         assertEqualsDouble(ratio, 1 / 3.0, 0.001)
+
+  test("all panels of trajectories have one range"):
+    val texts = TrajectoryFigure(set).get.shapes.collect { case text: Mark.Text => text.content }
+    val ticks = texts.filter(_.toDoubleOption.isDefined).groupMapReduce(identity)(_ => 1)(_ + _)
+    assert(ticks.nonEmpty && ticks.values.forall(_ % set.flights.size == 0), ticks)
 
   folder.test("a file that is named twice is one flight"): folder =>
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
