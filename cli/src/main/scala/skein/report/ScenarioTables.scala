@@ -50,7 +50,12 @@ object ScenarioTables:
     for
       flight          <- flown.flights
       (limit, broken) <- flown.scenario.limits.map(limit =>
-        (limit, flight.result.violations.filter(_.limit.text == limit.text))
+        (
+          limit,
+          flight.result.violations.filter(one =>
+            one.limit.text == limit.text && one.limit.value == limit.value
+          )
+        )
       )
       (one, index) <- broken.take(MostListed).zipWithIndex
     yield

@@ -1,6 +1,7 @@
 package skein.scenario
 
 import skein.units.*
+import skein.units.Decimals.significant
 
 /** What may not happen: a quantity of some vehicles that must stay at or above a value, or at or below it.
   *
@@ -126,7 +127,7 @@ object Limit:
     for one <- vehicles.toVector; other <- (0 until one).toVector yield Vector(other, one)
 
   private def brief(value: Double): String =
-    if value == StrictMath.rint(value) && value.abs < 1e9 then value.toLong.toString else value.toString
+    if value == StrictMath.rint(value) && value.abs < 1e9 then value.toLong.toString else value.significant(6)
 
 /** One stretch of time in which a limit was broken.
   *

@@ -74,6 +74,8 @@ class LimitSuite extends munit.FunSuite:
       instant => tracks.altitudeM(vehicle, instant) - 9
     )
     assertEquals(above.text, "height over the hill of at least 2 m")
+    assertEquals(Limit.floor(Metres(16 / 3.0)).text, "altitude of at least 5.33333 m")
+    assertEquals(Limit.ceiling(Metres(12_345_678)).text, "altitude of at most 12345678 m")
     assertEquals(above.violations(passing).map(_.vehicles), Vector(Vector(0)))
 
   test("a series is reduced to measures, over the whole flight or a part of it"):
