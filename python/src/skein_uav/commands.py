@@ -59,11 +59,11 @@ class Found:
     result : DataFrame
         The policy found and the one it started from, each with its mean on fresh episodes and a 95 % interval.
     policy : Path or None
-        A policy file for ``fly(policy=…)``; None for a team's scenario, whose settings are in `result`.
+        A policy file in `folder`, for ``fly(policy=…)``; None for a team's scenario, whose settings are in `result`.
     landscape : DataFrame or None
         The objective around the policy found; None if the search was stopped before.
     folder : Path
-        State, policy and pictures.
+        State, policy and pictures; temporary, unless ``search(out=…)`` named it.
     """
 
     result: pd.DataFrame
