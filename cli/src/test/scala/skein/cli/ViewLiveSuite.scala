@@ -110,6 +110,11 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
           "skein.cameras.map(one => [...one.canvas.getContext('2d').getImageData(2, 2, 1, 1).data])"
         ),
         step("ask", "parts", "document.querySelectorAll('#graph rect').length"),
+        step(
+          "ask",
+          "crossed",
+          "[...document.querySelectorAll('#graph svg > text[paint-order] ~ path')].length"
+        ),
         step("click", "#pause"),
         step("wait", "skein.flight.paused"),
         step("sleep", 1500),
@@ -152,6 +157,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       assertEquals(seen("told")("decided"), seen("told")("still"))
       // Two of each part of a vehicle, and due, events, view, cast, steered, fan, record, feed back.
       assertEquals(seen("told")("parts").num.toInt, 18)
+      assertEquals(seen("told")("crossed").num.toInt, 0, "lines above labels")
       for vehicle <- seen("told")("before").arr do
         val places = recorded.readings.filter(_.vehicle == vehicle(0).str).map(_.state.value.positionNed)
         assert(

@@ -51,14 +51,14 @@ export class Graph {
       root.append(back
         ? svg("path", { d: `M${to.x + to.wide / 2},${to.y + high} l-4,7 h8 z`, fill: "#b8860b" })
         : svg("path", { d: `M${x1},${y1} l-7,-4 v8 z`, fill: "#98a2b3" }));
-      const label = svg("text", back
-        ? { x: (from.x + to.x + to.wide) / 2, y: bottom - 16, "text-anchor": "middle", fill: "#667085", "font-size": 10 }
-        : meets(edge)
-          ? { x: x0 + 4, y: y0 - 5, fill: "#667085", "font-size": 10 }
-          : { x: x1 - 9, y: y1 - 5, "text-anchor": "end", fill: "#667085", "font-size": 10 }, "");
-      this.labels.set(number, label);
-      root.append(label);
+      const place = back
+        ? { x: (from.x + to.x + to.wide) / 2, y: bottom - 16, "text-anchor": "middle" }
+        : meets(edge) ? { x: x0 + 4, y: y0 - 5 } : { x: x1 - 9, y: y1 - 5, "text-anchor": "end" };
+      const edged = { fill: "#667085", "font-size": 10, stroke: "#fff", "stroke-width": 3, "paint-order": "stroke" };
+      this.labels.set(number, svg("text", { ...place, ...edged }, ""));
     });
+    // Above all lines, some of which curve through their places.
+    root.append(...this.labels.values());
     for (const { name } of stages) {
       const { x, y, wide } = spots.get(name);
       const box = svg("rect", { x, y, width: wide, height: high, rx: 5, fill: "#fff", stroke: "#475467", "stroke-width": 1.2 });

@@ -92,8 +92,13 @@ export class FlightMap {
     }
     for (let north = Math.ceil((view.north - height / 2 / view.scale) / step) * step; y(north) > 0; north += step) {
       line(pen, 0, y(north), width, y(north));
-      if (y(north) < height - 16) pen.fillText(`${north} m`, width - 38, y(north) - 3);
+      if (y(north) > 30 && y(north) < height - 16) pen.fillText(`${north} m`, width - 38, y(north) - 3);
     }
+    pen.strokeStyle = "#98a2b3";
+    arrow(pen, 12, height - 26, 12, height - 56);
+    arrow(pen, 12, height - 26, 42, height - 26);
+    pen.fillText("north", 8, height - 61);
+    pen.fillText("east", 46, height - 22);
   }
 
   obstacles(all, width, height, x, y) {
