@@ -1,7 +1,5 @@
 import contextlib
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -33,13 +31,6 @@ def make():
     yield one
     for env in made:
         env.close()
-
-
-def test_java_starts_without_its_remark_on_the_vector_module_and_hides_nothing_else():
-    script = "import os; from skein_uav import jvm; jvm.start(); os.write(2, b'then')"
-    told = {**os.environ, "JAVA_TOOL_OPTIONS": "-Dskein.told=1", "PYTHONPATH": os.pathsep.join(sys.path)}
-    ran = subprocess.run([sys.executable, "-c", script], env=told, capture_output=True, text=True, check=True)
-    assert ran.stderr == "Picked up JAVA_TOOL_OPTIONS: -Dskein.told=1\nthen"
 
 
 @pytest.mark.parametrize("name", ["Pursuit", "Evasion"])
