@@ -47,8 +47,8 @@ final class DuelAgents extends TimetableAgents {
     super.start(timetable, worlds);
     // The timetable keeps the first heading at place 0.
     headings.fill(0, WORLDS, startHeading);
-    policy.start(startHeading);
-    if (eye != null) eye.start();
+    policy.start(startHeading, worlds);
+    if (eye != null) eye.start(worlds);
     Arrays.fill(effort, 0f);
   }
 

@@ -39,6 +39,8 @@ class LanePolicy {
 
   private final boolean withEffort;
 
+  private int worlds = WORLDS;
+
   /** So many directions and changes of the heading are decided, before what is remembered. */
   private final int decided;
 
@@ -144,7 +146,7 @@ class LanePolicy {
     set(outputs + 1, into.sin, intoAt);
     if (withEffort) set(outputs + 2, turned, 0);
     if (form.keepsHeading()) set(outputs + decided + memories, newHeading, 0);
-    function.apply(arrays, offsets, parameters, scratch);
+    function.apply(arrays, offsets, parameters, scratch, worlds);
   }
 
   private void set(int place, float[] array, int offset) {
@@ -153,7 +155,9 @@ class LanePolicy {
     offsets[place] = offset;
   }
 
-  void start(float headingRad) {
+  /** Back to the start of an episode, of which the first worlds count. */
+  void start(float headingRad, int worlds) {
+    this.worlds = worlds;
     Arrays.fill(heading, headingRad);
     System.arraycopy(initial, 0, memory, 0, initial.length);
   }

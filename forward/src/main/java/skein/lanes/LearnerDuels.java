@@ -213,8 +213,8 @@ public final class LearnerDuels implements TimetableScores {
   }
 
   @Override
-  public void start() {
-    scores.start();
+  public void start(int worlds) {
+    scores.start(worlds);
   }
 
   @Override

@@ -61,7 +61,7 @@ final class LoopDuelAgents extends LaneAgents {
     super.start();
     Arrays.fill(effort, 0f);
     for (Directions each : new Directions[] {sent, sentBefore, decided}) each.fill(0, WORLDS, startHeading);
-    policy.start(startHeading);
+    policy.start(startHeading, WORLDS);
   }
 
   @Override

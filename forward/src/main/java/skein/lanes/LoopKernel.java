@@ -73,7 +73,7 @@ final class LoopKernel {
   void fly(int[] worldKeys, TabledDelays[] links) {
     offers.start(worldKeys, links);
     for (LaneAgents each : agents) each.start();
-    scores.start();
+    scores.start(WORLDS);
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
         for (LaneAgents each : agents) each.startRow(row);

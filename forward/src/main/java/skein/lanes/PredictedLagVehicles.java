@@ -14,12 +14,18 @@ import skein.vehicle.PlantModel;
  */
 final class PredictedLagVehicles extends PredictedVehicles {
   private final float speed;
+  private int worlds = WORLDS;
 
   /**
    * @param speedMps what commands come to in the end
    */
   PredictedLagVehicles(double speedMps) {
     speed = (float) speedMps;
+  }
+
+  @Override
+  void start(int worlds) {
+    this.worlds = worlds;
   }
 
   @Override
@@ -33,17 +39,19 @@ final class PredictedLagVehicles extends PredictedVehicles {
       int into,
       Propagation propagation,
       boolean withVelocity) {
-    float carried = (float) propagation.first(), kept = (float) propagation.second();
+    float carried = propagation.first(), kept = propagation.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
     carry(seenY, seenVy, carried, seenY, reading, into);
     if (withVelocity) {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    for (Propagation.Part part : propagation.parts()) {
-      int place = part.command();
+    int[] commands = propagation.commands();
+    float[] numbers = propagation.numbers();
+    for (int part = 0; part < commands.length; part++) {
+      int place = commands[part];
       if (place != Propagation.Rest()) {
-        float moved = part.numbers()[0] * speed, faster = part.numbers()[1] * speed;
+        float moved = numbers[2 * part] * speed, faster = numbers[2 * part + 1] * speed;
         add(sent.cos, place * WORLDS, moved, seenX, into);
         add(sent.sin, place * WORLDS, moved, seenY, into);
         if (withVelocity) {
@@ -54,24 +62,24 @@ final class PredictedLagVehicles extends PredictedVehicles {
     }
   }
 
-  private static void carry(
+  private void carry(
       float[] position, float[] velocity, float seconds, float[] predicted, int from, int into) {
     FloatVector factor = constant(seconds);
-    for (int i = 0; i < WORLDS; i += LANES)
+    for (int i = 0; i < worlds; i += LANES)
       FloatVector.fromArray(SPECIES, velocity, from + i)
           .fma(factor, FloatVector.fromArray(SPECIES, position, from + i))
           .intoArray(predicted, into + i);
   }
 
-  private static void keep(float[] velocity, float share, int from, int into) {
+  private void keep(float[] velocity, float share, int from, int into) {
     FloatVector factor = constant(share);
-    for (int i = 0; i < WORLDS; i += LANES)
+    for (int i = 0; i < worlds; i += LANES)
       FloatVector.fromArray(SPECIES, velocity, from + i).mul(factor).intoArray(velocity, into + i);
   }
 
-  private static void add(float[] what, int from, float times, float[] to, int at) {
+  private void add(float[] what, int from, float times, float[] to, int at) {
     FloatVector factor = constant(times);
-    for (int i = 0; i < WORLDS; i += LANES)
+    for (int i = 0; i < worlds; i += LANES)
       FloatVector.fromArray(SPECIES, what, from + i)
           .fma(factor, FloatVector.fromArray(SPECIES, to, at + i))
           .intoArray(to, at + i);

@@ -55,7 +55,7 @@ final class TimetableKernel {
       throw new IllegalArgumentException(
           "a timetable of " + timetable.vehicles() + " vehicles for " + agents.length);
     for (TimetableAgents each : agents) each.start(timetable, worlds);
-    scores.start();
+    scores.start(worlds);
     operations = timetable.operations();
     views = timetable.views();
     numbers = timetable.numbers();

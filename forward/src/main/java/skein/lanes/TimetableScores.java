@@ -2,8 +2,12 @@ package skein.lanes;
 
 /** Adds up what many worlds come to, once a period. */
 interface TimetableScores {
-  /** Back to the start of an episode. */
-  void start();
+  /**
+   * Back to the start of an episode.
+   *
+   * @param worlds those that count are the first
+   */
+  void start(int worlds);
 
   /**
    * Where all vehicles are now.

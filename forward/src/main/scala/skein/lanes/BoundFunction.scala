@@ -63,6 +63,10 @@ private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
   private val strides  = Array.ofDim[Int](arrays.length)
   private val scratch  = Array.ofDim[Float](bound.function.scratch)
   private val function = bound.function
+  private var worlds   = LaneFunction.COUNT
+
+  /** From now on the first worlds alone count. */
+  def use(worlds: Int): Unit = this.worlds = worlds
 
   /** Where an input's numbers begin, by the function's number of it. */
   def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
@@ -76,10 +80,7 @@ private[lanes] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
   def output(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
     input(bound.inputs.length + number, array, offset, stride)
 
-  def apply(): Unit = function.apply(arrays, offsets, parameters, scratch)
-
-  /** In the first worlds alone. */
-  def apply(worlds: Int): Unit = function.apply(arrays, offsets, parameters, scratch, worlds)
+  def apply(): Unit = function.apply(arrays, offsets, parameters, scratch, worlds)
 
   /** What goes on goes back to where it was put. */
   def rewind(): Unit =

@@ -62,6 +62,9 @@ private[lanes] abstract class CameraTrackerLanes(
       Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, newAxis).zipWithIndex
   do decided.output(output, array, 0)
 
+  /** From now on the first worlds alone count. */
+  protected def use(worlds: Int): Unit = for call <- Seq(detected, joined, decided) do call.use(worlds)
+
   /** Nothing is known but where the opponent starts. */
   protected def forget(): Unit =
     for state <- Seq(newest, before) do Arrays.fill(state, 0f)

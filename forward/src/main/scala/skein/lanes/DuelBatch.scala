@@ -82,7 +82,7 @@ final class DuelBatch(
         apart.fold(_ => scalar, LoopFlyer(duel, timing, _, _, scalar))
     val together: DuelFlyer = lanes.fold(_ => alone, TimetableFlyer(_, timetables, alone))
 
-  private val timetables = Timetables(MostBytes)
+  private val timetables = Timetables()
   private val workers    = Vector.fill(threads)(Worker())
 
   private val accelerated: Option[Either[String, AcceleratedDuels]] =
@@ -173,6 +173,3 @@ final class DuelBatch(
       LaneThreads.run(workers, batches, isCancelled, done => onProgress(came.flown + done)): (worker, some) =>
         flyer(worker).fly(worlds, some, radiusM, outcomes)
     outcomes
-
-  /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
-  private inline val MostBytes = 64L << 20

@@ -31,5 +31,6 @@ private[lanes] final class StepClock(
       pieceS += lengthS
       pieces += 1
     into(at) = pieces.toFloat
-    for (number, i) <- told(atS - pieceS).zipWithIndex do into(at + 1 + i) = number.toFloat
+    val numbers = told(atS - pieceS)
+    for i <- numbers.indices do into(at + 1 + i) = numbers(i).toFloat
     if acts then pieceS = atS

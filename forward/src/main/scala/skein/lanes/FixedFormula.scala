@@ -129,6 +129,9 @@ private[skein] object FixedFormula:
     def outputs(count: Int, array: Array[Float], from: Int): Unit =
       for i <- 0 until count do output(i, array, from + i * TimetableVehicles.WORLDS)
 
+    /** From now on the first worlds alone count. */
+    def use(worlds: Int): Unit = call.use(worlds)
+
     def apply(): Unit = call()
 
     /** Afterwards rows are the next ones. */

@@ -14,7 +14,6 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   private val goal    = Array.ofDim[Float](3 * VEHICLES)
   private val steps   = Array(lanes.step(one, other, goal), lanes.step(other, one, goal))
-  private var used    = VEHICLES
   private var isOther = false
 
   // Nearly always all hover at one place: that, and the state's numbers there.
@@ -40,7 +39,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   private val orientation: Vector[Int] = Vector("qw", "qx", "qy", "qz").map(rowOf)
   private val angular: Vector[Int]     = Vector("wx", "wy", "wz").map(rowOf)
 
-  def use(vehicles: Int): Unit = used = vehicles
+  def use(vehicles: Int): Unit = steps.foreach(_.use(vehicles))
 
   /** Lets it hover, settled, told to hold this place. */
   def hover(place: Int, goalNed: Vector3): Unit =
@@ -73,7 +72,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   def fly(count: Int): Unit =
     var left = count
     while left > 0 do
-      steps(if isOther then 1 else 0)(used)
+      steps(if isOther then 1 else 0)()
       isOther = !isOther
       left -= 1
 

@@ -12,6 +12,8 @@ private[lanes] final class PredictedPlants(lanes: PlantLanes, speedMps: Double) 
   private val flight = StagedFlight(lanes, speedMps, origin, origin)
   private val still  = Directions(WORLDS)
 
+  override def start(worlds: Int): Unit = flight.use(worlds)
+
   def predict(
       seenX: Array[Float],
       seenY: Array[Float],
@@ -27,13 +29,13 @@ private[lanes] final class PredictedPlants(lanes: PlantLanes, speedMps: Double) 
     System.arraycopy(seenY, reading, flight.state, WORLDS, WORLDS)
     System.arraycopy(seenVx, reading, flight.state, 2 * WORLDS, WORLDS)
     System.arraycopy(seenVy, reading, flight.state, 3 * WORLDS, WORLDS)
-    val parts = propagation.parts
-    var i     = 0
-    while i < parts.length do
-      val command   = parts(i).command
+    val (commands, perPart) = (propagation.commands, propagation.perPart)
+    var i                   = 0
+    while i < commands.length do
+      val command   = commands(i)
       val commanded = if command == Propagation.Rest then still else sent
       val from      = command.max(0) * WORLDS
       if i == 0 then flight.begin(commanded, from) else flight.act(commanded, from)
-      flight.flyTo(parts(i).numbers, 0)
+      flight.flyTo(propagation.numbers, i * perPart)
       i += 1
     flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)

@@ -50,7 +50,8 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
   /** From now on a quantity is waited for to be at most this. */
   def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most
 
-  def start(): Unit =
+  def start(worlds: Int): Unit =
+    for stage <- stages do stage.shown.call.use(worlds)
     shared(ScoreLanes.Time) = 0
     for number <- judged.indices do forget(number)
 

@@ -33,6 +33,10 @@ private[lanes] final class StagedFlight(
   private val resting                 = bound(stages.begin, state, atRest)
   lanes.rest(state, 0)
 
+  /** From now on the first worlds alone count. */
+  def use(worlds: Int): Unit =
+    for call <- Vector(beginning, resting) ++ moving.calls ++ other.calls do call.use(worlds)
+
   /** By what is kept of a step in one place; what is kept of the next step goes to another, or to the same.
     */
   private final class Moving(val kept: Array[Float], to: Array[Float]):
@@ -40,6 +44,7 @@ private[lanes] final class StagedFlight(
     val look: LaneCall     = bound(stages.look, kept)
     val act: LaneCall      = bound(stages.act, kept, to)
     val goOn: LaneCall     = bound(stages.goOn, kept, to)
+    def calls              = Vector(position, look, act, goOn)
 
   private def bound(of: BoundFunction, rows: Array[Float], to: Array[Float] = null): LaneCall =
     val call = LaneCall(of, parameters)

@@ -12,7 +12,10 @@ private[lanes] final class TeamViews(val lanes: TeamLanes):
   val values: Array[Float] = Array.ofDim(lanes.shared.outputs * worlds)
   for number <- 0 until lanes.shared.outputs do call.call.output(number, values, number * worlds)
 
-  def start(): Unit = last = TeamViews.Nothing
+  /** Back to the start of an episode, of which the first worlds count. */
+  def start(worlds: Int): Unit =
+    call.call.use(worlds)
+    last = TeamViews.Nothing
 
   /** Computes [[values]] of a view, unless they stand there already. */
   def show(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
@@ -68,8 +71,10 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews):
     startSin(world) = StrictMath.sin(headingRad).toFloat
     for number <- numbers.indices do parameters(number * WORLDS + world) = numbers(number).toFloat
 
-  def start(): Unit =
-    team.start()
+  /** The same. */
+  def start(worlds: Int): Unit =
+    team.start(worlds)
+    call.call.use(worlds)
     System.arraycopy(startCos, 0, cos, 0, WORLDS)
     System.arraycopy(startSin, 0, sin, 0, WORLDS)
 
@@ -129,7 +134,7 @@ private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: LaneDynamics
 
   override def start(timetable: Timetable, worlds: Int): Unit =
     super.start(timetable, worlds)
-    decisions.start()
+    decisions.start(worlds)
 
   /** Cosine and sine of the heading decided last, by world. */
   private[lanes] def direction: (Array[Float], Array[Float]) = decisions.direction
@@ -171,7 +176,7 @@ private[lanes] final class LoopTeamAgents private (
 
   override def start(): Unit =
     super.start()
-    decisions.start()
+    decisions.start(TimetableAgents.WORLDS)
 
   override def needsVelocity: Boolean = team.lanes.needsVelocity
 

@@ -28,7 +28,7 @@ final class TeamBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
-  private val timetables = Timetables(MostBytes)
+  private val timetables = Timetables()
   private val workers    = Vector.fill(threads)(Worker())
 
   private val accelerated: Option[Either[String, AcceleratedTeams]] =
@@ -228,6 +228,3 @@ final class TeamBatch(
 
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
       kernel.fly(keys, links.map(_.asInstanceOf[TabledDelays]))
-
-  /** Of some 90 kB for each vehicle and minute; a search flies the same few episodes again and again. */
-  private inline val MostBytes = 256L << 20

@@ -40,7 +40,7 @@ private[skein] final class Timetable private[lanes] (
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
-  def bytes: Long =
+  lazy val bytes: Long =
     4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
 
 private[skein] object Timetable:
@@ -158,7 +158,7 @@ private final class TimetableCompiler(
     case Note.Predict(vehicle, _, reading, from, way) =>
       readings(vehicle).usedAt(from, at)
       decidedUpon(vehicle)(from) = true
-      for part <- way.parts if part.command > 0 do headings(vehicle).usedAt(part.command, at)
+      for command <- way.commands if command > 0 do headings(vehicle).usedAt(command, at)
     case _: Note.Look | _: Note.Join => ()
 
   private def usedAt(view: Int, at: Int): Unit =
@@ -225,7 +225,7 @@ private final class TimetableCompiler(
     placed += 1
     size += 1
     readings(vehicle).release(from, at)
-    for part <- note.way.parts if part.command > 0 do headings(vehicle).release(part.command, at)
+    for command <- note.way.commands if command > 0 do headings(vehicle).release(command, at)
 
   private def act(note: Note.Act, at: Int): Unit =
     import note.{decision, vehicle}

@@ -17,7 +17,10 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: Duelist,
   /** By world, whether an image shows the opponent: 1 or 0. */
   protected def found(image: Int): Array[Float] = Arrays.copyOf(images(image), WORLDS)
 
-  def start(): Unit = forget()
+  /** Back to the start of an episode, of which the first worlds count. */
+  def start(worlds: Int): Unit =
+    use(worlds)
+    forget()
 
   /** Takes an image.
     *

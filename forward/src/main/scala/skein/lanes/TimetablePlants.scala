@@ -14,7 +14,9 @@ private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
   private val resting     = lanes.resting
   private var isCommanded = false
 
-  def start(worlds: Int): Unit = isCommanded = false
+  def start(worlds: Int): Unit =
+    flight.use(worlds)
+    isCommanded = false
 
   def rest(world: Int): Unit = flight.rest(world)
 

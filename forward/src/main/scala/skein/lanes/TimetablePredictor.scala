@@ -34,7 +34,7 @@ private[lanes] object CoastPredictor extends TimetablePredictor, Propagator:
   def propagator: Propagator                               = this
   def next(legs: Vector[Propagator.Leg]): Propagator       = this
   def predicted(legs: Vector[Propagator.Leg]): Propagation =
-    Propagation(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
+    Propagation(Array.empty, Array.empty, legs.iterator.map(_.span.toSeconds).sum.toFloat, 1)
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of
   * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
@@ -47,14 +47,19 @@ private[lanes] final class LagPredictor(val model: ReducedModel) extends Timetab
   def propagator: Propagator = CommandPropagator(model.deadTimeS, propagation)
 
   private def propagation(flown: Vector[CommandPropagator.Flown], totalS: Double): Propagation =
-    val lag   = FirstOrderLag(model.lagS)
-    val parts = flown.map: part =>
+    val lag     = FirstOrderLag(model.lagS)
+    val numbers = flown.flatMap: part =>
       val (left, after)               = (totalS - part.fromS, totalS - part.untilS)
       val (carriedLeft, carriedAfter) = (lag.carriesS(left), lag.carriesS(after))
       val moved                       = (left - carriedLeft) - (after - carriedAfter)
       val reached                     = carriedLeft / model.lagS - carriedAfter / model.lagS
-      Propagation.Part(part.decision, Array(moved.toFloat, reached.toFloat))
-    Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
+      Vector(moved.toFloat, reached.toFloat)
+    Propagation(
+      flown.map(_.decision).toArray,
+      numbers.toArray,
+      lag.carriesS(totalS).toFloat,
+      lag.remains(totalS).toFloat
+    )
 
 /** By [[PredictedPlants]]. */
 private[lanes] final class PlantPredictor(val lanes: PlantLanes) extends TimetablePredictor:
@@ -65,10 +70,11 @@ private[lanes] final class PlantPredictor(val lanes: PlantLanes) extends Timetab
   def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, duelist.speed)
 
   def propagator: Propagator =
-    CommandPropagator(lanes.plant.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))
+    CommandPropagator(lanes.plant.deadTimeS, (flown, _) => propagation(flown))
 
-  private def pieces(part: CommandPropagator.Flown): Propagation.Part =
-    val clock   = StepClock(lanes, tell, part.fromS)
-    val numbers = Array.ofDim[Float](clock.numbers)
-    clock.tell(part.untilS, acts = false, numbers, 0)
-    Propagation.Part(part.decision, numbers)
+  private def propagation(flown: Vector[CommandPropagator.Flown]): Propagation =
+    val perPart = 1 + lanes.stages.times
+    val numbers = Array.ofDim[Float](flown.size * perPart)
+    for (part, i) <- flown.zipWithIndex do
+      StepClock(lanes, tell, part.fromS).tell(part.untilS, acts = false, numbers, i * perPart)
+    Propagation(flown.map(_.decision).toArray, numbers)

@@ -20,6 +20,8 @@ private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuad
 
   def start(worlds: Int): Unit =
     flown.use(worlds)
+    position.use(worlds)
+    velocity.use(worlds)
     for world <- 0 until WORLDS do rest(world)
 
   def rest(world: Int): Unit = flown.hover(world, hold)

@@ -40,7 +40,7 @@ class LanePolicySimulation extends munit.FunSuite:
           observation.elapsed(world) = (0.1 * random.nextDouble()).toFloat
           known.fill(world, world + 1, knownHeadings(world))
         own.fill(0, worlds, ownHeading)
-        lanes.start(ownHeading.toFloat)
+        lanes.start(ownHeading.toFloat, LanePolicy.WORLDS)
         lanes.decide(observation, own, 0, known, 0, into, 0)
         for (policy, world) <- policies.zipWithIndex do
           val seen = PlanarObservation(

@@ -207,7 +207,7 @@ object TeamAgreementSimulation:
       policy.course(observed)
 
   object NoScores extends TimetableScores:
-    def start(): Unit = ()
+    def start(worlds: Int): Unit = ()
     def score(
         agents: Array[TimetableAgents],
         views: Array[Int],

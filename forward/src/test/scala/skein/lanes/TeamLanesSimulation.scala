@@ -43,7 +43,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   /** Positions of all vehicles at every score, by world. */
   private final class PlacesByWorld(count: Int) extends TimetableScores:
     val places: ArrayBuffer[Array[(Double, Double)]] = ArrayBuffer.empty
-    def start(): Unit                                = places.clear()
+    def start(worlds: Int): Unit                     = places.clear()
     def score(
         all: Array[TimetableAgents],
         views: Array[Int],

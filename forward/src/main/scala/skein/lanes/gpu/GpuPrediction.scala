@@ -42,27 +42,25 @@ private[lanes] object GpuPrediction:
 
   /** How many numbers one of a propagation's records has at most. */
   def mostNumbers(of: Propagation): Int =
-    2.max(2 * of.parts.iterator.map(_.numbers.length).maxOption.getOrElse(0))
+    2.max(2 * of.perPart)
 
   /** Tells the numbers of a propagation's beginning. */
   def tellBegin(of: Propagation, tell: (Int, Float) => Unit): Unit =
-    tell(0, of.first.toFloat)
-    tell(1, of.second.toFloat)
+    tell(0, of.first)
+    tell(1, of.second)
 
   /** Those of a part, and of the time at which the part before ended: a plant goes on from there. */
   def tellPart(of: Propagation, part: Int, tell: (Int, Float) => Unit): Unit =
-    val own = of.parts(part).numbers
-    for i <- own.indices do tell(i, own(i))
-    if part > 0 then tellTime(of, part - 1, own.length, tell)
+    for i <- 0 until of.perPart do tell(i, of.numbers(part * of.perPart + i))
+    if part > 0 then tellTime(of, part - 1, of.perPart, tell)
 
   /** Those of the time at which the last part ends. */
   def tellEnd(of: Propagation, tell: (Int, Float) => Unit): Unit =
-    if of.parts.nonEmpty then tellTime(of, of.parts.length - 1, 0, tell)
+    if of.commands.nonEmpty then tellTime(of, of.commands.length - 1, 0, tell)
 
   /** Behind how many steps there are, a part has the numbers of its end. */
   private def tellTime(of: Propagation, part: Int, from: Int, tell: (Int, Float) => Unit): Unit =
-    val numbers = of.parts(part).numbers
-    for i <- 1 until numbers.length do tell(from + i - 1, numbers(i))
+    for i <- 1 until of.perPart do tell(from + i - 1, of.numbers(part * of.perPart + i))
 
 /** By [[skein.lanes.PredictedLagVehicles]]. */
 private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) extends GpuPrediction:

@@ -126,8 +126,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     record(labels.predict(agent))
     field(1, place(1))
     GpuPrediction.tellBegin(propagation, time)
-    for part <- propagation.parts.indices do
-      val command = propagation.parts(part).command
+    for (command, part) <- propagation.commands.zipWithIndex do
       record(labels.carry(agent))
       field(1, if command == Propagation.Rest then -1 else layout.heading(agent, command))
       GpuPrediction.tellPart(propagation, part, time)

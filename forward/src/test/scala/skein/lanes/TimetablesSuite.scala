@@ -1,0 +1,25 @@
+package skein.lanes
+
+class TimetablesSuite extends munit.FunSuite:
+  private def made(numbers: Int): Timetable =
+    Timetable(1, Array.empty, 1, Array.ofDim(numbers), Array.empty, Array.empty, 0, 0)
+
+  test("of episodes that go round, some are found again where not all have room"):
+    val timetables = Timetables(mostBytes = 100 * made(10).bytes)
+    var times      = 0
+    for _ <- 1 to 20; episode <- 1 to 150 do
+      val _ = timetables.getOrMake(episode):
+        times += 1
+        made(10)
+    // The oldest first, all would be made 20 times; 100 of 150 have room.
+    assert(clue(times) < 1800)
+
+  test("what has room is made once, and one that has none is made all the same"):
+    val timetables           = Timetables(mostBytes = 3 * made(10).bytes)
+    var times                = 0
+    def get(of: Int)(n: Int) = timetables.getOrMake(of):
+      times += 1
+      made(n)
+    for _ <- 1 to 5; episode <- 1 to 3 do get(episode)(10): Unit
+    assertEquals(times, 3)
+    assertEquals(get(4)(1000).times.length, 1000)
