@@ -1,5 +1,6 @@
 package skein.search
 
+import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.Delays
 import skein.lanes.{Accelerator, DuelBatch}
 import skein.optimise.{
@@ -207,7 +208,7 @@ final case class SearchSetup(
 
   /** As a policy file. */
   def file(found: Found): (String, String) =
-    val eye     = question.conditions.eye.fold("")(file => s"  eye = \"$file\"\n")
+    val eye     = question.conditions.eye.fold("")(file => s"  eye = ${quoteString(file)}\n")
     val remarks =
       SearchResult.objective(text, unit, found.fresh, baseline.name, found.baseline) +
         s"""found {
@@ -216,10 +217,10 @@ final case class SearchSetup(
            |  method = ${question.method}
            |  loop = ${question.conditions.loop}
            |  periodMs = ${question.conditions.periodMs}
-           |  link = "${question.link}"
-           |  plant = "${question.conditions.plant}"
-           |  vehicles = "${conditions.vehicle.description}"
-           |$eye  opponent = "${question.opponent}"
+           |  link = ${quoteString(question.link)}
+           |  plant = ${quoteString(question.conditions.plant)}
+           |  vehicles = ${quoteString(conditions.vehicle.description)}
+           |$eye  opponent = ${quoteString(question.opponent)}
            |  altitudeM = ${question.conditions.altitudeM}
            |  durationS = ${question.conditions.durationS}
            |  candidates = ${question.candidates}

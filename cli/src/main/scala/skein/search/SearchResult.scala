@@ -1,5 +1,6 @@
 package skein.search
 
+import com.typesafe.config.ConfigUtil.quoteString
 import skein.optimise.{Evaluator, RunningStats, SearchState}
 import skein.policy.SearchSpace
 import skein.report.{Section, TextTable}
@@ -108,13 +109,13 @@ object SearchResult:
       paper: RunningStats
   ): String =
     s"""objective {
-       |  formula = "$text"
+       |  formula = ${quoteString(text)}
        |  # mean over fresh episodes; the true one lies within ± halfWidth95 with 95 % confidence
        |  mean = ${fresh.mean}
        |  halfWidth95 = ${fresh.halfWidth95}
        |  sd = ${fresh.sd}
        |  episodes = ${fresh.count}
-       |  unit = "$unit"
+       |  unit = ${quoteString(unit)}
        |  # $paperName with the paper's constants, on the same episodes
        |  paperMean = ${paper.mean}
        |  paperHalfWidth95 = ${paper.halfWidth95}

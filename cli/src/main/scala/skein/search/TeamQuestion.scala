@@ -1,5 +1,6 @@
 package skein.search
 
+import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.{Delays, Engagement}
 import skein.lanes.{Accelerator, TeamBatch, TeamCandidate}
 import skein.optimise.{
@@ -298,7 +299,7 @@ final case class TeamSetup(
          |skein.fly {
          |  scenario = ${kind.name}
          |  ${kind.name} {
-         |${settings.map((key, value) => s"    $key = $value").mkString("\n")}
+         |${settings.map((key, value) => s"    $key = ${quoteString(value)}").mkString("\n")}
          |  }
          |}
          |""".stripMargin

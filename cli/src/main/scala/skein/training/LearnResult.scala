@@ -1,5 +1,6 @@
 package skein.training
 
+import com.typesafe.config.ConfigUtil.quoteString
 import skein.optimise.{Evaluator, RunningStats}
 import skein.plot.Drawing
 import skein.report.{Section, TextTable}
@@ -73,10 +74,10 @@ final case class LearnResult(
        |  algorithm = ${question.algorithm}
        |  loop = ${question.conditions.loop}
        |  periodMs = ${question.conditions.periodMs}
-       |  link = "${question.link}"
-       |  plant = "${question.conditions.plant}"
-       |  scenario = "${scenario}"
-       |  opponent = "${question.opponent}"
+       |  link = ${quoteString(question.link)}
+       |  plant = ${quoteString(question.conditions.plant)}
+       |  scenario = ${quoteString(scenario)}
+       |  opponent = ${quoteString(question.opponent)}
        |  altitudeM = ${question.conditions.altitudeM}
        |  steps = ${state.rounds * setup.stepsOfRound}
        |  stepsOfBest = ${state.best.fold(0L)(_.steps)}

@@ -1,10 +1,14 @@
 package skein.search
 
+import com.typesafe.config.Config
 import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
+import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, SearchState, RunningStats}
-import skein.scenario.Scenarios
+import skein.scenario.{Measure, Scenario, ScenarioKind, Scenarios, Surround}
+import skein.settings.{HoconFile, PolicyFile, ScenarioSettings}
 import skein.testing.{Optimised, TemporaryFolders}
+import skein.training.{LearnBest, LearnQuestion, LearnResult, LearnState}
 
 class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
@@ -52,6 +56,62 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     Files.delete(file)
     assertEquals(NamedFiles.changed(before), Vector(file.toString))
     Files.delete(folder)
+
+  folder.test("what is written for people can be read back, whatever files the question names"): folder =>
+    val link  = s"file:${Files.writeString(folder.resolve("our \"own\" \\ $link.txt"), "20\n30\n")}"
+    val tally = RunningStats.of(2)(_.toDouble)
+    def read(text: String): Config =
+      val file = Files.writeString(folder.resolve("policy.conf"), text).toString
+      assert(PolicyFile.read(file).isRight, PolicyFile.read(file))
+      HoconFile.read(file).fold(fail(_), identity)
+    val ready = question("grid").copy(link = link).setup.fold(fail(_), identity)
+    val found = ready.file(Found(ready.search.start, ready.space.defaults, tally, tally))._2
+    assertEquals(read(found).getString("found.link"), link)
+    val asked = LearnQuestion(
+      "ppo",
+      "pursuer",
+      "last10s",
+      Conditions("stream", "reduced", 100, 12),
+      link,
+      "paper-evader turningRadiusM=8.0",
+      steps = 1,
+      environments = 1,
+      lessonS = 5,
+      startLeastM = 3,
+      startMostM = 30,
+      turnRateRadPerS = 3,
+      LearnerSettings(hidden = Vector(1), batch = 1),
+      episodes = 2,
+      fresh = 2,
+      seed = 1
+    )
+    val setup   = asked.setup.fold(fail(_), identity)
+    val weights = setup.family.space.defaults.dropRight(setup.bounds.size)
+    val state   = LearnState(best = Some(LearnBest(1, 1, weights)))
+    val learned = LearnResult(setup, state, setup.policy(weights), tally, tally, None).file
+    assertEquals(read(learned).getString("learned.link"), link)
+
+  test("settings that are text are flown as they were searched"):
+    given Scenarios = Scenarios(ScenarioKind(SearchFileSuite.Signed()))
+    val asked       = TeamQuestion(
+      "signed",
+      Map("sign" -> "a: \"b\" # c, {d}"),
+      Vector(Varied("ring-m", 4, 12)),
+      "off-ring",
+      "grid",
+      Conditions("stream", "drag", 100, 12),
+      "vpn",
+      candidates = 4,
+      episodes = 2,
+      population = 4,
+      seed = 3,
+      fresh = 4
+    )
+    val ready   = asked.setup.fold(fail(_), identity)
+    val tally   = RunningStats.of(2)(_.toDouble)
+    val written = ready.file(Found(ready.search.start, ready.space.defaults, tally, tally))._2
+    val read    = HoconFile.parse(written, "scenario.conf").flatMap(ScenarioSettings.read)
+    assertEquals(read, Right(ready.scenario(ready.space.defaults)))
 
   test("a run leaves its last state in the folder, and nothing half-written"):
     val folder = temporaryFolder()
@@ -156,3 +216,8 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     test(s"a wrong $name is refused by the option's name"):
       val mistake = wrong.setup.left.getOrElse("accepted")
       for part <- parts do assert(mistake.contains(part), mistake)
+
+object SearchFileSuite:
+  final case class Signed(sign: String = "", ringM: Double = 8) extends Scenario:
+    def agents                             = Surround(ringM = ringM).agents
+    override def measures: Vector[Measure] = Surround(ringM = ringM).measures
