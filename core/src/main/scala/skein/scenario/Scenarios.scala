@@ -24,6 +24,12 @@ final case class Scenarios(
   require(kinds.nonEmpty, "at least one kind of scenario is needed")
   require(names.distinct.size == names.size, s"every kind needs a name of its own: ${names.mkString(", ")}")
 
+  private val unspeakable = names.find(!_.matches("""[\p{L}\p{N}_-]+"""))
+  require(
+    unspeakable.isEmpty,
+    s"expected letters, digits and dashes as a scenario's name, came '${unspeakable.mkString}'"
+  )
+
   PolicyFamily.mistake(families).foreach(why => throw IllegalArgumentException(why))
 
   /** Skein's first. */

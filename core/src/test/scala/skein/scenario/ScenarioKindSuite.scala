@@ -75,6 +75,14 @@ class ScenarioKindSuite extends munit.FunSuite:
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))
 
+  test("a scenario's name can be told from what stands beside it in recordings and configurations"):
+    final case class Called(override val name: String = "") extends Scenario:
+      def agents: Vector[Agent] = Vector.empty
+    for name <- Seq("ridge, by night", "ridge.north", "ridge {}", "") do
+      val refused = intercept[IllegalArgumentException](Scenarios(ScenarioKind(Called(name))))
+      assert(refused.getMessage.contains(s"came '$name'"), refused.getMessage)
+    assertEquals(Scenarios(ScenarioKind(Called("über-2_b"))).names, Vector("über-2_b"))
+
   test("the distance between words counts letters to change"):
     assertEquals(Nearest.distance("durration", "duration"), 1)
     assertEquals(Nearest.distance("", "loops"), 5)
