@@ -9,7 +9,7 @@ import skein.measure.FlightSummary
 import skein.policy.{NeuralShape, Role}
 import skein.report.Section
 import skein.scenario.{PaperDuel, Scenarios}
-import skein.search.{ClusterEvaluator, Conditions, Effort, Judge}
+import skein.search.{ClusterEvaluator, Conditions, Effort, Judge, NamedFiles}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.training.*
 import skein.units.Decimals.significant
@@ -115,6 +115,7 @@ final class LearnCommand(program: String)(using Scenarios)
     for
       _    <- Arguments.resumed(options, may, "--threads, --flights and who judges")
       file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
+      _    <- NamedFiles.unchanged(file.files, "learning")
     yield (Path.of(folder), file.question, file.state)
 
   private def begin(options: LearnOptions): Either[String, Begun] =

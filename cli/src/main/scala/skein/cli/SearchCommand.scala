@@ -108,10 +108,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     for
       _    <- Arguments.resumed(options, may, "--threads and who computes")
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
-      changed = NamedFiles.changed(file.files)
-      _ <- Expect.that(changed.isEmpty):
-        s"--resume: ${changed.mkString(", ")} no longer holds what it held when the search began: expected " +
-          "the same, or a new search"
+      _    <- NamedFiles.unchanged(file.files, "the search")
     yield (Path.of(folder), file.question, Some(file.state))
 
   private def begin(options: SearchOptions): Either[String, Begun] =

@@ -2,6 +2,7 @@ package skein.search
 
 import java.nio.file.{Files, InvalidPathException, Path}
 import skein.cluster.jars.Sha256
+import skein.units.Expect
 
 /** Files that a question names: what they held when it was asked. */
 object NamedFiles:
@@ -24,3 +25,13 @@ object NamedFiles:
     */
   def changed(before: Map[String, String]): Vector[String] =
     before.filter((path, digest) => !digests(Seq(path)).get(path).contains(digest)).keys.toVector.sorted
+
+  /** @param before of [[digests]]
+    * @param began for example `the search`
+    * @return or which of the files do not let it be gone on with
+    */
+  def unchanged(before: Map[String, String], began: String): Either[String, Unit] =
+    val changes = changed(before)
+    Expect.that(changes.isEmpty):
+      s"--resume: ${changes.mkString(", ")} no longer holds what it held when $began began: expected " +
+        "the same, or to begin anew"

@@ -24,6 +24,8 @@ final class LearnRun(
   import LearnRun.*
   import setup.question
 
+  private val files = LearnFile.files(question)
+
   /** @param isStopped asked at every step; the round under way is given up then
     * @param onRound told of every state
     * @return the last state, or why there is none
@@ -76,7 +78,7 @@ final class LearnRun(
       judging = None
     def save() =
       judged()
-      folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
+      folder.fold(Right(()))(LearnFile.write(_, question, state, files, learner))
     var savedAt = nanoTime()
 
     var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())

@@ -11,7 +11,7 @@ import java.nio.file.{Files, NoSuchFileException, Path}
 import java.util.zip.{CRC32C, CheckedInputStream, CheckedOutputStream}
 import scala.util.Using
 import skein.learn.Learner
-import skein.search.StateFile
+import skein.search.{NamedFiles, StateFile}
 import skein.units.Expect
 import upickle.default.ReadWriter
 
@@ -39,14 +39,25 @@ final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) d
 
 /** Learning as it stands on disk: `learn.json` with question and state, and beside it all numbers of the
   * learner.
+  *
+  * @param files [[NamedFiles.digests]] of what the question names
   */
-final case class LearnFile(version: Int, question: LearnQuestion, state: LearnState) derives ReadWriter
+final case class LearnFile(
+    version: Int,
+    question: LearnQuestion,
+    state: LearnState,
+    files: Map[String, String] = Map.empty
+) derives ReadWriter
 
 object LearnFile:
   val Name           = "learn.json"
   val Version        = 2
   private val onDisk = StateFile[LearnFile](Name, Version, "learning, of ./skein learn")
   export onDisk.read
+
+  /** What the files that a question names hold now. */
+  def files(question: LearnQuestion): Map[String, String] =
+    NamedFiles.digests(Seq(question.link, question.conditions.plant))
 
   private def numbers(folder: Path, rounds: Int) = folder.resolve(s"learner-$rounds.bin")
 
@@ -75,6 +86,7 @@ object LearnFile:
       folder: Path,
       question: LearnQuestion,
       state: LearnState,
+      files: Map[String, String],
       learner: Learner
   ): Either[String, Unit] =
     val file = numbers(folder, state.rounds)
@@ -83,7 +95,7 @@ object LearnFile:
         val sum = CRC32C()
         learner.save(DataOutputStream(CheckedOutputStream(bytes, sum)))
         DataOutputStream(bytes).writeLong(sum.getValue)
-      _ <- onDisk.write(folder, LearnFile(Version, question, state))
+      _ <- onDisk.write(folder, LearnFile(Version, question, state, files))
       _ <-
         try
           Right(Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):

@@ -140,6 +140,20 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assert(goOn >= 0 && row > goOn, out)
     assert(lines(row).contains(" 100  m"), out)
 
+  test("learning does not go on with a link that holds other delays than when it began"):
+    val folder   = temporaryFolder()
+    val link     = Files.writeString(folder.resolve("link.txt"), "20\n30\n")
+    val question =
+      LearnCommand.question(LearnOptionsOf(short ++ Seq("--link", s"file:$link"))).fold(fail(_), identity)
+    val setup = question.setup.fold(fail(_), identity)
+    LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0L)
+      .run(LearnState(), 1, () => true)(_ => ())
+      .fold(fail(_), state => assertEquals(state.rounds, 0))
+    Files.writeString(link, "150\n200\n"): Unit
+    val (status, _, err) = run(Seq("--resume", folder.toString))
+    assertEquals(status, 1, err)
+    assert(clue(err).contains(s"--resume: $link no longer holds what it held when learning began"))
+
   test("what cannot be learned is told in a line"):
     def refused(expected: String, words: String*) =
       val (status, _, err) =
