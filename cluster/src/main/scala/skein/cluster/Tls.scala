@@ -2,9 +2,12 @@ package skein.cluster
 
 import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
 import java.io.IOException
+import java.net.InetSocketAddress
 import java.nio.file.{Files, Path}
 import java.security.{GeneralSecurityException, KeyStore}
-import javax.net.ssl.{KeyManagerFactory, SSLContext, TrustManagerFactory}
+import javax.net.ssl.{KeyManagerFactory, SSLContext, SSLException, SSLSocket, TrustManagerFactory}
+import scala.util.Using
+import skein.link.{Address, TransportError}
 
 /** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are
   * verified.
@@ -30,7 +33,28 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
       Right(made)
     catch
       case failed: (IOException | GeneralSecurityException) =>
-        Left(s"--tls: cannot read the certificates in ${keyStore.getParent}: ${failed.getMessage}")
+        // A file that is cut off fails without a word.
+        Left(
+          s"--tls: cannot read the certificates in ${keyStore.getParent}: " +
+            Option(failed.getMessage).getOrElse("a file is damaged or cut off")
+        )
+
+  /** Why there is no trusted connection to who listens there, where that is a matter of certificates. Takes
+    * two seconds at most for each way.
+    */
+  private[cluster] def refusal(at: Endpoint): Option[String] =
+    context.toOption.flatMap: made =>
+      val tried = Using(made.getSocketFactory.createSocket().asInstanceOf[SSLSocket]): socket =>
+        val parameters = socket.getSSLParameters
+        parameters.setEndpointIdentificationAlgorithm("HTTPS")
+        socket.setSSLParameters(parameters)
+        socket.connect(InetSocketAddress(at.host, at.port), Tls.ProbeMillis)
+        socket.setSoTimeout(Tls.ProbeMillis)
+        socket.startHandshake()
+        // In TLS 1.3 the other side judges after the handshake has ended here.
+        socket.getInputStream.read()
+      tried.failed.toOption.collect:
+        case reason: SSLException => TransportError.NotTrusted(Address(at.host, at.port), reason).getMessage
 
   private[cluster] def config: Config =
     def quoted(text: Any) = ConfigUtil.quoteString(text.toString)
@@ -57,6 +81,8 @@ object Tls:
   val TrustStore = "trust.p12"
   val Password   = "password"
 
+  private val ProbeMillis = 2_000
+
   /** Reads a folder with `node.p12`, `trust.p12` and `password`.
     *
     * @return or what is missing
@@ -64,13 +90,15 @@ object Tls:
   def of(folder: Path): Either[String, Tls] =
     val missing =
       Vector(KeyStore, TrustStore, Password).filterNot(name => Files.isReadable(folder.resolve(name)))
-    Either.cond(
-      missing.isEmpty,
-      Tls(
-        folder.resolve(KeyStore),
-        folder.resolve(TrustStore),
-        Files.readString(folder.resolve(Password)).trim
-      ),
-      s"--tls: expected $KeyStore, $TrustStore and $Password in " +
-        s"$folder, cannot read ${missing.mkString(", ")}"
-    )
+    if missing.nonEmpty then
+      Left(
+        s"--tls: expected $KeyStore, $TrustStore and $Password in " +
+          s"$folder, cannot read ${missing.mkString(", ")}"
+      )
+    else
+      try
+        val password = Files.readString(folder.resolve(Password)).trim
+        Right(Tls(folder.resolve(KeyStore), folder.resolve(TrustStore), password))
+      catch
+        case failed: IOException =>
+          Left(s"--tls: cannot read ${folder.resolve(Password)}: ${failed.getMessage}")

@@ -83,7 +83,8 @@ final class WorkerNode(
             case End.Refused(reason)            => Some(Left(reason))
             case program: Fetched               => Some(Right(Some(program)))
             case _ if waited > patience.toNanos =>
-              Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s"))
+              val why = tls.flatMap(_.refusal(coordinator)).fold("")("; " + _)
+              Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s$why"))
             case _ =>
               val left = (patience.toNanos - waited) / 1_000_000_000
               tell(s"cannot reach the coordinator at $coordinator; joining again, for $left s at most")
