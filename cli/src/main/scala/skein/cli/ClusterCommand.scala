@@ -38,4 +38,4 @@ object ClusterCommand
           "Copy each folder to its machine alone. Who has " +
             s"$folder/signer.p12 and its password can make more."
         )
-    case words => Left(s"expected ./skein cluster certificates DIR, came '${words.mkString(" ")}'")
+    case words => Left(s"expected ./skein cluster certificates FOLDER, came '${words.mkString(" ")}'")

@@ -18,7 +18,7 @@ import skein.scenario.Scenarios
 import skein.settings.{PredictionModel, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{Briefing, FlightDeciders, SolverDesk, SolverServer}
-import skein.units.{Clock, Expect}
+import skein.units.{Clock, Decimals, Expect}
 
 /** Options of `./skein decide`. */
 final case class DecideOptions(
@@ -181,7 +181,7 @@ final class DecideCommand(using scenarios: Scenarios)
     WarmUp.fly(alike, WarmUp.Flights, Clock.system) match
       case Left(reason)   => say(s"not warmed up: $reason")
       case Right(flights) =>
-        say(s"warmed up by $flights virtual flights")
+        say(s"warmed up by ${Decimals.counted(flights, "virtual flight")}")
         BackgroundThread.compilersGiveWay(): Unit
         ControlThreads.lead(): Unit
 

@@ -40,7 +40,7 @@ final case class SolverSecurity(
               isLoopback(at),
               None,
               s"--tls: expected certificates of both sides where the solver at $at is reached " +
-                "by other machines; ./skein cluster certificates DIR makes a lab's. Without " +
+                "by other machines; ./skein cluster certificates FOLDER makes a lab's. Without " +
                 "them it is of this machine alone, such as tcp://127.0.0.1:7400"
             )
       yield Checked(read, Map.empty)
@@ -56,7 +56,7 @@ final case class SolverSecurity(
               isLoopback(broker),
               Map.empty[String, String],
               s"--tls: expected certificates where the Kafka broker at $broker is of " +
-                "another machine; ./skein cluster certificates DIR makes a lab's, and " +
+                "another machine; ./skein cluster certificates FOLDER makes a lab's, and " +
                 "--kafka-security FILE tells of others. Without them the broker is of " +
                 "this machine alone, such as kafka://127.0.0.1:9092/PREFIX"
             )
