@@ -111,9 +111,13 @@ final class FlyCommand(using Scenarios)
     yield ()
 
   private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
-    plans.map(plan => DuckDbRecorder.free(plan.file(out))).collectFirst { case Left(why) =>
+    val twice = plans.groupBy(_.file(out)).collectFirst { case (file, Seq(one, other, _*)) =>
+      s"${one.id} and ${other.id} would both be recorded as $file: expected names that differ in letters or digits"
+    }
+    val there = plans.map(plan => DuckDbRecorder.free(plan.file(out))).collectFirst { case Left(why) =>
       why.message
-    }.toLeft(())
+    }
+    twice.orElse(there).toLeft(())
 
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     if settings.loops.forall(FlyCommand.warm) then Right(())

@@ -10,6 +10,7 @@ import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.{Png, Svg}
 import skein.record.{RecordError, Recording, RecordingReader}
 import skein.scenario.Scenarios
+import skein.settings.FlightPlan
 
 /** Turns recordings into tables and pictures; needs nothing but the recordings. */
 object Report:
@@ -74,7 +75,12 @@ object Report:
       val (unpainted, painted) =
         onAllCores(figures)(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
       for (name, bytes) <- painted do Files.write(folder.resolve(s"$name.png"), bytes)
-      Right(Output(page, unpainted.headOption, isReplaced, others(page, flights.map(_.flight.id).toSet)))
+      Right(Output(
+        page,
+        unpainted.headOption,
+        isReplaced,
+        others(page, flights.map(flight => FlightPlan.fileName(flight.flight.id)).toSet)
+      ))
     catch case failed: IOException => Left(s"cannot write the report to $page: $failed")
 
   private def others(page: Path, shown: Set[String]): Vector[String] =
@@ -82,8 +88,8 @@ object Report:
       files.iterator.asScala
         .map(_.getFileName.toString)
         .filter(_.endsWith(DuckDb))
-        .map(_.stripSuffix(DuckDb))
         .filterNot(shown)
+        .map(_.stripSuffix(DuckDb))
         .toVector
         .sorted
 

@@ -65,6 +65,19 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(status, 1)
     assert(err.contains("/ is not a recording: it is a folder"), err)
 
+  test("flights over links with signs in their names have files of their own, and their report knows them"):
+    val folder = temporaryFolder()
+    val words  = "fly --clock virtual --loop stream --duration 1s --link".split(' ').toSeq
+    val flown  = Ran.of(Main.run(words ++ Seq("constant:50ms", "--out", folder.resolve("one").toString)))
+    assertEquals(flown.status, 0, flown.err)
+    assert(clue(flown.said).contains("Report: ") && !flown.said.contains("does not show"))
+    val links = Seq("a b", "a_b").map(name => s"file:${Files.writeString(folder.resolve(name), "20\n")}")
+    val both  = folder.resolve("both")
+    val ran   = Ran.of(Main.run(words ++ Seq(links.head, "--link", links.last, "--out", both.toString)))
+    assertEquals(ran.status, 1, ran.out)
+    assert(clue(ran.err).contains("would both be recorded as") && ran.err.linesIterator.size == 1)
+    assertEquals(Files.list(both).count, 0L)
+
   recordings.test("report --json gives the tables alone on standard output"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
     val (status, text, err) =

@@ -173,7 +173,7 @@ final case class FlightPlan(
     policy.fold(settings.fleet)(_.file.flownIn(settings.fleet))
 
   /** Where its recording goes. */
-  def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
+  def file(folder: Path): Path = folder.resolve(FlightPlan.fileName(id))
 
   /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the
     * same seed, then with the seeds that follow.
@@ -181,6 +181,10 @@ final case class FlightPlan(
   def twins(count: Int): Vector[FlightPlan] =
     Vector.tabulate(count): index =>
       copy(id = s"$id-virtual${if index == 0 then "" else s"-${index + 1}"}", seed = seed + index)
+
+object FlightPlan:
+  /** Of the recording of a flight. */
+  def fileName(id: String): String = id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb"
 
 object FlySettings:
   /** The air of forward simulation and of the built-in simulator is that at the ground. */
