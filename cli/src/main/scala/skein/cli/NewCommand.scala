@@ -35,7 +35,7 @@ object NewCommand
         _ <- write(folder, name)
       yield
         Console.out.println(s"written: $folder")
-        Console.out.println(s"fly it: cd $folder && ./skein fly --clock virtual")
+        Console.out.println(s"fly it: cd ${OutFolder.typed(folder)} && ./skein fly --clock virtual")
         Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
     case words => Left(s"expected one name, came ${words.size}: ./skein new NAME")
 

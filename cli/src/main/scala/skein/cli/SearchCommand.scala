@@ -116,7 +116,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     for
       question <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
       _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
-        s"--out: $folder holds a search already; --resume $folder goes on with it"
+        s"--out: $folder holds a search already; --resume ${OutFolder.typed(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, None)
 

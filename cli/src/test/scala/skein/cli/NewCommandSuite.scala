@@ -24,6 +24,12 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(Files.isExecutable(project.resolve("skein")))
     assert(Files.readString(project.resolve("build.sbt")).contains("ridge-watch"))
 
+  folder.test("what it says can be typed into a shell, whatever the folder is called"): folder =>
+    for (name, typed) <- Seq("ridge" -> s"$folder/ridge", "my 'own' ü" -> s"'$folder/my '\\''own'\\'' ü'") do
+      val (status, told) = run("ridge-watch", "--out", s"$folder/$name")
+      assertEquals(status, 0, told)
+      assert(clue(told).contains(s"fly it: cd $typed && ./skein"))
+
   folder.test("a folder that is there is left alone"): folder =>
     val (status, told) = run("ridge-watch", "--out", folder.toString)
     assertNotEquals(status, 0)

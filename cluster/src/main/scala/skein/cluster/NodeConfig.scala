@@ -14,9 +14,9 @@ private[cluster] object NodeConfig:
     */
   def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
     for _ <- (listen +: joins.toSeq).find(!_.isLoopback && tls.isEmpty).toLeft(()).left.map(beyond =>
-        s"expected certificates of both sides (--tls DIR) where ${beyond.host} is " +
+        s"expected certificates of both sides (--tls FOLDER) where ${beyond.host} is " +
           "of another machine, or reached by others; ./skein cluster certificates " +
-          "DIR makes a lab's, and without them only 127.0.0.1 is used"
+          "FOLDER makes a lab's, and without them only 127.0.0.1 is used"
       )
     yield ConfigFactory
       .defaultOverrides()
