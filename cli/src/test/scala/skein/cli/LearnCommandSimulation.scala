@@ -204,7 +204,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
           if isFull then throw IOException("No space left on device")
       val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
       def written(rounds: Int, isFull: Boolean) =
-        LearnFile.write(path, question, LearnState(rounds), Numbers(isFull))
+        LearnFile.write(path, question, LearnState(rounds), Map.empty, Numbers(isFull))
       assertEquals(written(1, isFull = false), Right(()))
       assert(clue(written(2, isFull = true)).left.exists(_.contains("No space left on device")))
       assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-1.bin"))

@@ -271,7 +271,9 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(computed(coordinator.node), answers)
       for (outcome, why) <- refused.zip(Vector("", s"no trusted connection to $to, ", "")) do
         val told = Await.result(outcome, 90.seconds)
-        assert(clue(told).left.exists(reason => reason.startsWith("no coordinator at") && reason.contains(why)))
+        assert(clue(told).left.exists(reason =>
+          reason.startsWith("no coordinator at") && reason.contains(why)
+        ))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
       anna.stop()
 
