@@ -91,4 +91,5 @@ private[skein] object StateFile:
         part.toFile.delete(): Unit
         Left(s"cannot write $target: $failed")
 
-  private val Buffer = 1 << 20
+  /** Bytes read or written at once. */
+  val Buffer: Int = 1 << 20

@@ -68,7 +68,7 @@ object LearnFile:
       val file = numbers(folder, state.rounds)
       try
         val sum = CRC32C()
-        Using.resource(BufferedInputStream(Files.newInputStream(file), Buffer)): bytes =>
+        Using.resource(BufferedInputStream(Files.newInputStream(file), StateFile.Buffer)): bytes =>
           learner.load(DataInputStream(CheckedInputStream(bytes, sum)))
           val isWhole = DataInputStream(bytes).readLong() == sum.getValue && bytes.read() < 0
           Expect.that(isWhole && learner.isFinite):
@@ -102,5 +102,3 @@ object LearnFile:
             _.forEach(other => if other != file then Files.delete(other)))
         catch case failed: IOException => Left(s"cannot delete what was before $file: $failed")
     yield ()
-
-  private val Buffer = 1 << 20

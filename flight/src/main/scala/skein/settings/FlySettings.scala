@@ -1,6 +1,6 @@
 package skein.settings
 
-import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
+import com.typesafe.config.{Config, ConfigFactory, ConfigOrigin, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.{CannotConvert, ConfigReaderFailures, ConvertFailure}
@@ -213,11 +213,14 @@ object FlySettings:
 
   private val Duration = "skein.fly.duration"
 
+  /** The option that a value came from, if one did. */
+  private def optionOf(origin: ConfigOrigin): Option[String] =
+    Some(origin.description).filter(_.startsWith("--"))
+
   /** A value whose origin is an option is told by that, others by their place. */
   private def told(failures: ConfigReaderFailures): String =
     failures.toList.map:
-      case ConvertFailure(CannotConvert(_, _, because), Some(origin), _)
-          if origin.description.startsWith("--") =>
+      case ConvertFailure(CannotConvert(_, _, because), Some(origin), _) if optionOf(origin).isDefined =>
         s"${origin.description}: $because"
       case other => ConfigReaderFailures(other).prettyPrint()
     .mkString("\n")
@@ -281,8 +284,8 @@ object FlySettings:
     val (key, said) = mistake.span(_ != ':')
     val path        = s"skein.fly.$key"
     Option
-      .when(config.hasPath(path))(config.getValue(path).origin.description)
-      .filter(_.startsWith("--"))
+      .when(config.hasPath(path))(config.getValue(path).origin)
+      .flatMap(optionOf)
       .getOrElse(path) + said
 
   /** `paused` waits with its simulator stopped. */

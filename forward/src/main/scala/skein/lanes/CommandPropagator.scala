@@ -44,6 +44,14 @@ private object CommandPropagator:
   /** Under which decision's command the model flies from when until when, s from the reading. */
   final case class Flown(decision: Int, fromS: Double, untilS: Double)
 
+  /** Of what is flown, with so many numbers of each part, which are put into an array from an index on. */
+  def told(flown: Vector[Flown], perPart: Int, first: Double = 0, second: Double = 0)(
+      tell: (Flown, Array[Float], Int) => Unit
+  ): Propagation =
+    val numbers = Array.ofDim[Float](flown.size * perPart)
+    for (part, i) <- flown.zipWithIndex do tell(part, numbers, i * perPart)
+    Propagation(flown.map(_.decision).toArray, numbers, first.toFloat, second.toFloat)
+
   /** What [[PlantModel.Flying]] knows of commands, by their decisions.
     *
     * @param coming and in how long each acts

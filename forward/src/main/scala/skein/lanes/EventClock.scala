@@ -24,7 +24,7 @@ private[lanes] final class StepClock(
 ) extends EventClock:
   private val lengthS = lanes.plant.stepS
 
-  def numbers: Int                                                        = 1 + lanes.stages.times
+  def numbers: Int                                                        = StepClock.numbers(lanes)
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
     var pieces = 0
     while atS > pieceS + lengthS do
@@ -34,3 +34,7 @@ private[lanes] final class StepClock(
     val numbers = told(atS - pieceS)
     for i <- numbers.indices do into(at + 1 + i) = numbers(i).toFloat
     if acts then pieceS = atS
+
+private[lanes] object StepClock:
+  /** How many numbers tell a time. */
+  def numbers(lanes: PlantLanes): Int = 1 + lanes.stages.times

@@ -47,19 +47,12 @@ private[lanes] final class LagPredictor(val model: ReducedModel) extends Timetab
   def propagator: Propagator = CommandPropagator(model.deadTimeS, propagation)
 
   private def propagation(flown: Vector[CommandPropagator.Flown], totalS: Double): Propagation =
-    val lag     = FirstOrderLag(model.lagS)
-    val numbers = flown.flatMap: part =>
+    val lag = FirstOrderLag(model.lagS)
+    CommandPropagator.told(flown, perPart = 2, lag.carriesS(totalS), lag.remains(totalS)): (part, into, at) =>
       val (left, after)               = (totalS - part.fromS, totalS - part.untilS)
       val (carriedLeft, carriedAfter) = (lag.carriesS(left), lag.carriesS(after))
-      val moved                       = (left - carriedLeft) - (after - carriedAfter)
-      val reached                     = carriedLeft / model.lagS - carriedAfter / model.lagS
-      Vector(moved.toFloat, reached.toFloat)
-    Propagation(
-      flown.map(_.decision).toArray,
-      numbers.toArray,
-      lag.carriesS(totalS).toFloat,
-      lag.remains(totalS).toFloat
-    )
+      into(at) = ((left - carriedLeft) - (after - carriedAfter)).toFloat
+      into(at + 1) = (carriedLeft / model.lagS - carriedAfter / model.lagS).toFloat
 
 /** By [[PredictedPlants]]. */
 private[lanes] final class PlantPredictor(val lanes: PlantLanes) extends TimetablePredictor:
@@ -73,8 +66,5 @@ private[lanes] final class PlantPredictor(val lanes: PlantLanes) extends Timetab
     CommandPropagator(lanes.plant.deadTimeS, (flown, _) => propagation(flown))
 
   private def propagation(flown: Vector[CommandPropagator.Flown]): Propagation =
-    val perPart = 1 + lanes.stages.times
-    val numbers = Array.ofDim[Float](flown.size * perPart)
-    for (part, i) <- flown.zipWithIndex do
-      StepClock(lanes, tell, part.fromS).tell(part.untilS, acts = false, numbers, i * perPart)
-    Propagation(flown.map(_.decision).toArray, numbers)
+    CommandPropagator.told(flown, StepClock.numbers(lanes)): (part, into, at) =>
+      StepClock(lanes, tell, part.fromS).tell(part.untilS, acts = false, into, at)
