@@ -27,8 +27,8 @@ private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantF
   /** The next state: of the state's numbers, then the commanded velocity and the time. */
   def step: FixedFormula = form.step.of(plant)
 
-  /** Position and velocity: of the state's numbers, then where it starts. */
-  def read: FixedFormula = form.read.of(plant)
+  /** Its steps where all are equally long. */
+  def steps: PlantSteps = form.steps
 
   /** Its step in parts. */
   def stages: PlantStages = form.stages
@@ -43,17 +43,11 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
 
   def fits(other: Plant[?]): Boolean = stepping.fits(other) && reading.fits(other)
 
-  val step: FixedFormula = FixedFormula(stepping, plant)
-  val read: FixedFormula = FixedFormula(
-    reading,
-    plant,
-    extra = 2,
-    changed = (trace, outputs) =>
-      outputs.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(count + i)) else node)
-  )
+  val step: FixedFormula  = FixedFormula(stepping, plant)
   val stages: PlantStages = PlantStages(stepping, reading)
 
-  /** Searches, whose worlds share delays, do not wait for it to be compiled. */
+  /** Searches, whose worlds share delays, do not wait for these to be compiled. */
+  lazy val steps: PlantSteps   = PlantSteps(stepping, reading, stages.places)
   lazy val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
 
 private[skein] object PlantLanes:

@@ -40,7 +40,7 @@ private[planning] final class OpponentLanes(steps: Int):
       decision.begin(opponent, dtS)
       val speed = opponent.speed.toFloat
       for step <- 0 until steps do
-        decision(own, into, cos, sin, step * Size)
+        decision(own, into, cos, sin, step)
         into.fly(decision.cos, decision.sin, speed)
 
 private object OpponentLanes:
@@ -70,30 +70,28 @@ private object OpponentLanes:
       fill(In.Heading, StrictMath.IEEEremainder(opponent.headingRad, 2 * math.Pi))
       for (number, i) <- form.initialOf(opponent.policy).zipWithIndex do fill(In.Memory + i, number)
 
-    /** @param at where the row of each way begins
-      */
     def apply(
         seen: VehicleLanes,
         own: VehicleLanes,
         seenCos: Array[Float],
         seenSin: Array[Float],
-        at: Int
+        step: Int
     ): Unit =
-      reading(0, seen, at)
-      reading(inputs + count, own, at)
-      put(In.KnownCos, seenCos, at)
-      put(In.KnownSin, seenSin, at)
+      reading(0, seen, step)
+      reading(inputs + count, own, step)
+      put(In.KnownCos, seenCos, step * Size)
+      put(In.KnownSin, seenSin, step * Size)
       function(arrays, offsets, parameters, scratch)
       swap(In.OwnCos, 0)
       swap(In.OwnSin, 1)
       for i <- 0 until form.memories do swap(In.Memory + i, 2 + i)
       if form.keepsHeading then swap(In.Heading, count - 1)
 
-    private def reading(first: Int, way: VehicleLanes, at: Int): Unit =
-      put(first, way.x, at)
-      put(first + 1, way.y, at)
-      put(first + 2, way.vx, at)
-      put(first + 3, way.vy, at)
+    private def reading(first: Int, vehicle: VehicleLanes, step: Int): Unit =
+      put(first, vehicle.way, VehicleLanes.row(step, 0))
+      put(first + 1, vehicle.way, VehicleLanes.row(step, 1))
+      put(first + 2, vehicle.way, VehicleLanes.row(step, 2))
+      put(first + 3, vehicle.way, VehicleLanes.row(step, 3))
 
     private def put(number: Int, array: Array[Float], at: Int): Unit =
       arrays(number) = array

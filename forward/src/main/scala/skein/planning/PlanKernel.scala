@@ -13,6 +13,7 @@ import skein.lanes.FixedFormula
   */
 private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps):
   import PlanKernel.*
+  import VehicleLanes.{Apart, row}
 
   private var flown       = Option.empty[(Situation, PlanCost, Double)]
   private var geofences   = Vector.empty[Geofence]
@@ -36,22 +37,18 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
     call.output(4, north, 0)
     call.output(5, east, 0)
   private val inside = Compiled("added", alike = 0): call =>
-    call.rows(1, own.x, Size, Size)
-    call.rows(2, own.y, Size, Size)
+    for axis <- 0 to 1 do call.rows(1 + axis, own.way, row(1, axis), Apart)
   private val neared     = Compiled("neared", alike = 4)(_ => ())
   private val approached = Compiled("approached", alike = 0): call =>
     for (values, i) <- Seq(sum, nearest).zipWithIndex do
       call.rows(i, values, 0, Size)
       call.outputRows(i, values, Size, Size)
-    for (values, i) <- Seq(own.x, own.y, target.x, target.y).zipWithIndex do
-      call.rows(2 + i, values, Size, Size)
+    for (vehicle, first) <- Seq(own -> 2, target -> 4); axis <- 0 to 1 do
+      call.rows(first + axis, vehicle.way, row(1, axis), Apart)
   private val ended = Compiled("ended", alike = 4): call =>
     for (values, i) <- Seq(sum, nearest).zipWithIndex do call.input(1 + i, values, lastRow)
-    for
-      (way, first) <- Seq(own -> 3, target -> 7);
-      (values, i)  <- Seq(way.x, way.y, way.vx, way.vy).zipWithIndex
-    do
-      call.input(first + i, values, steps * Size)
+    for (vehicle, first) <- Seq(own -> 3, target -> 7); number <- 0 to 3 do
+      call.input(first + number, vehicle.way, row(steps, number))
 
   def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit =
     flown = Some((situation, objective, dtS))
@@ -104,8 +101,7 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
     val keep   = neared.of(objective)
     keep.everywhere(6, dtS.toFloat)
     for step <- 0 until steps do
-      keep.input(1, own.x, (step + 1) * Size)
-      keep.input(2, own.y, (step + 1) * Size)
+      for axis <- 0 to 1 do keep.input(1 + axis, own.way, row(step + 1, axis))
       keep.everywhere(5, objective.separation.clearance((step + 1) * dtS).toFloat)
       for other <- situation.others do
         keep.everywhere(3, (other.x(step) - origin.northM).toFloat)

@@ -5,13 +5,14 @@ import scala.collection.mutable
 import skein.lanes.PlantLanes
 import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 
-/** One vehicle in each candidate's world: positions, m, and velocities, m/s, north and east, at the start and
-  * at the end of each step; by row, then by candidate. The start is row 0. Mutable.
+/** One vehicle in each candidate's world: north, east, m, and velocity north and east, m/s, a row of each at
+  * the start and at the end of each step. Mutable.
   */
 private[planning] final class VehicleLanes(steps: Int):
   import VehicleLanes.*
 
-  val x, y, vx, vy: Array[Float] = Array.ofDim((steps + 1) * Size)
+  /** Where they stand. */
+  val way: Array[Float] = Array.ofDim((steps + 1) * Apart)
 
   private val known          = mutable.HashMap.empty[(Plant[?], Double), Flight]
   private var flight         = Option.empty[Flight]
@@ -34,12 +35,13 @@ private[planning] final class VehicleLanes(steps: Int):
     fill(0, at.northM - origin.northM, at.eastM - origin.eastM, at.northMps, at.eastMps)
     flight.foreach(_.begin(vehicle.state))
 
-  private def fill(row: Int, north: Double, east: Double, northMps: Double, eastMps: Double): Unit =
-    val (from, to) = (row * Size, (row + 1) * Size)
-    Arrays.fill(x, from, to, north.toFloat)
-    Arrays.fill(y, from, to, east.toFloat)
-    Arrays.fill(vx, from, to, northMps.toFloat)
-    Arrays.fill(vy, from, to, eastMps.toFloat)
+  private def fill(step: Int, north: Double, east: Double, northMps: Double, eastMps: Double): Unit =
+    fill(row(step, 0), north)
+    fill(row(step, 1), east)
+    fill(row(step, 2), northMps)
+    fill(row(step, 3), eastMps)
+
+  private def fill(from: Int, value: Double): Unit = Arrays.fill(way, from, from + Size, value.toFloat)
 
   /** Goes along a track. */
   def follow(track: PredictedTrack, origin: PlaneReading, dtS: Double): Unit =
@@ -57,60 +59,55 @@ private[planning] final class VehicleLanes(steps: Int):
   private def flightOf(plant: Plant[?], dtS: Double): Flight =
     val pieces = PredictedVehicle.pieces(plant, dtS)
     plant match
-      case model: ReducedModel if pieces == 1 && ShortLagStep.fits(model, dtS) =>
-        LagFlight(ShortLagStep(model, dtS, x, y, vx, vy))
-      case _ => PlantFlight(plant, pieces, dtS / pieces)
+      case model: ReducedModel if pieces == 1 && ShortLagSteps.fits(model, dtS) =>
+        Flight(ShortLagSteps(model), pieces, dtS)
+      case _ => Flight(plant, pieces, dtS / pieces)
 
-  private final class LagFlight(step: ShortLagStep) extends Flight:
-    private var row = 0
-
-    def begin(state: Any): Unit = row = 0
-
-    def fly(north: Array[Float], east: Array[Float], speed: Float): Unit =
-      step.fly(row, north, east, speed)
-      row += 1
-
-  /** The state's numbers have a row for each piece of a step. */
-  private final class PlantFlight(plant: Plant[?], pieces: Int, pieceS: Double) extends Flight:
+  /** How a plant is flown step by step. */
+  private final class Flight(plant: Plant[?], pieces: Int, pieceS: Double):
     private val lanes  = PlantLanes.of(plant).fold(why => throw IllegalArgumentException(why), identity)
-    private val step   = lanes.step.call
-    private val read   = lanes.read.call
     private val count  = lanes.count
-    private val states = Array.fill(count)(Array.ofDim[Float]((steps * pieces + 1) * Size))
-    for (values, i) <- states.zipWithIndex do
-      step.rows(i, values, 0, Size)
-      step.outputRows(i, values, Size, Size)
-      read.rows(i, values, pieces * Size, pieces * Size)
-    for (values, i) <- Seq(x, y, vx, vy).zipWithIndex do read.outputRows(i, values, Size, Size)
-    private val commandedN, commandedE = Array.ofDim[Float](Size)
-    step.input(count, commandedN, 0)
-    step.input(count + 1, commandedE, 0)
-    step.input(count + 2, Array.fill(Size)(pieceS.toFloat), 0)
-    read.input(count, startX, 0)
-    read.input(count + 1, startY, 0)
+    private val isWay  = pieces == 1 && lanes.steps.isRead
+    private val call   = lanes.steps.call(plant, pieceS, reads = !isWay)
+    private val apart  = if isWay then Apart else (count + Numbers) * Size
+    private val states = if isWay then way else Array.ofDim[Float](2 * apart)
+    private val starts = Array(startX, startY)
+    private var step   = 0
+    call.rows(states, 0, apart)
+    call.outputRows(states, apart, apart)
+    call.starts(startX, startY)
 
     def begin(state: Any): Unit =
-      for (number, i) <- PlantState.numbers(state).zipWithIndex do
-        Arrays.fill(states(i), 0, Size, number.toFloat)
-      step.rewind()
-      read.rewind()
+      call.rewind()
+      step = 0
+      if !isWay then
+        for (number, i) <- PlantState.numbers(state).zipWithIndex do
+          Arrays.fill(states, i * Size, (i + 1) * Size, number.toFloat)
+        for places <- lanes.steps.places; axis <- 0 to 1; world <- 0 until Size do
+          states(places(axis) * Size + world) += starts(axis)(world)
 
     def fly(north: Array[Float], east: Array[Float], speed: Float): Unit =
-      var i = 0
-      while i < Size do
-        commandedN(i) = north(i) * speed
-        commandedE(i) = east(i) * speed
-        i += 1
-      for _ <- 1 to pieces do step.next()
-      read.next()
+      call.command(north, east, speed)
+      var piece = 0
+      while piece < pieces do
+        call.next()
+        piece += 1
+      step += 1
+      if !isWay then
+        val flown = step * pieces % 2 * apart
+        System.arraycopy(states, flown + count * Size, way, row(step, 0), Apart)
 
-private object VehicleLanes:
+private[planning] object VehicleLanes:
   private final val Size = CandidateBlock.Size
+
+  /** Position and velocity, north and east. */
+  private final val Numbers = 4
+
+  /** How far a step's rows are from the last one's. */
+  final val Apart = Numbers * Size
 
   /** Kept; of more, all are compiled anew. */
   private val MostPlants = 64
 
-  /** How a plant is flown step by step. */
-  private sealed trait Flight:
-    def begin(state: Any): Unit
-    def fly(north: Array[Float], east: Array[Float], speed: Float): Unit
+  /** Where a row begins: of north, east, velocity north, east. */
+  def row(step: Int, number: Int): Int = step * Apart + number * Size

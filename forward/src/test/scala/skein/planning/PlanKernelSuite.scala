@@ -5,7 +5,7 @@ import skein.lanes.{Bicycle, DuelAgreement, PolicyLanes, Rolling, UnseenPolicySu
 import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
 import skein.signal.SplitMix64
-import skein.vehicle.{PlaneReading, PlantFlight, ReducedModel}
+import skein.vehicle.{PlaneReading, Plant, PlantFlight, ReducedModel}
 
 class PlanKernelSuite extends munit.FunSuite:
   private val size                = CandidateBlock.Size
@@ -139,6 +139,12 @@ class PlanKernelSuite extends munit.FunSuite:
       assertAgree(situation(Behaviour(track)).copy(own = moving), objective)
       assertAgree(situation(Behaviour(evader.copy(vehicle = moving.moved(8, 2)))), objective)
 
+  test("kernel and scalar reference agree where a plant's steps are shorter than the plan's"):
+    for stepS <- Seq(0.1, 0.05, 0.04) do
+      val moving = PredictedVehicle(Sliding(stepS), PlaneReading(0, 0, 6, 1), 1, 2, 0.5)
+      assertAgree(situation(Behaviour(track)).copy(own = moving), objective)
+      assertAgree(situation(Behaviour(evader.copy(vehicle = moving.moved(8, 2)))), objective)
+
   test("a step longer than the plant's is flown in pieces"):
     val own    = vehicle(PlaneReading(1, 2, 6, 1))
     val halves = own.flown(3, 4, 0.1).flown(3, 4, 0.1)
@@ -232,3 +238,14 @@ class PlanKernelSuite extends munit.FunSuite:
     val mean  = drawn.sum / drawn.size
     assertEqualsDouble(mean, 0, 0.03)
     assertEqualsDouble(drawn.map(value => (value - mean) * (value - mean)).sum / drawn.size, 1, 0.03)
+
+/** A plant whose state is what is read of it. */
+private final case class Sliding(stepS: Double) extends Plant[PlaneReading]:
+  def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
+  def read(state: PlaneReading): PlaneReading = state
+
+  def step(from: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+    val share    = dtS / (0.4 + dtS)
+    val (vx, vy) =
+      (from.northMps + share * (northMps - from.northMps), from.eastMps + share * (eastMps - from.eastMps))
+    PlaneReading(from.northM + vx * dtS, from.eastM + vy * dtS, vx, vy)
