@@ -9,18 +9,21 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.VectorMask;
 
 /**
- * By a plant whose state is what is read of it: its steps begin at the reading, where a command arrives, with
+ * By a plant whose whole state a reading tells: its steps begin at the reading, where a command arrives, with
  * each turn, and after {@code stepS}. {@link PredictedPlants} is the same where the times are those of all
  * worlds. {@code skein.vehicle.PlantModel} begins a step more where a command that acts is told again.
  */
 final class ForecastPlants implements ForecastVehicles {
-  private static final int WORLDS = LanePolicy.WORLDS, NUMBERS = LaneObservation.READ;
+  private static final int WORLDS = LanePolicy.WORLDS;
 
   private final float speedMps, stepS;
-  private final FixedFormula.Call step;
+  private final FixedFormula.Call correct, step, look;
 
-  /** Position and velocity where a step begins, and where it ends. */
-  private final float[] from = new float[NUMBERS * WORLDS], to = new float[NUMBERS * WORLDS];
+  /** How many numbers a state is. */
+  private final int count;
+
+  /** The state where a step begins, and where it ends. */
+  private final float[] from, to;
 
   private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
 
@@ -30,21 +33,29 @@ final class ForecastPlants implements ForecastVehicles {
   /** Where it is flown on. */
   private final float[] goes = new float[WORLDS];
 
-  ForecastPlants(PlantLanes lanes, double speedMps) {
+  ForecastPlants(PlantLanes lanes, PlantCorrection correction, double speedMps) {
     this.speedMps = (float) speedMps;
     stepS = (float) lanes.plant().stepS();
+    count = lanes.count();
+    from = new float[count * WORLDS];
+    to = new float[count * WORLDS];
+    correct = correction.call();
+    correct.outputs(count, from, 0);
     step = lanes.step().call();
-    step.inputs(0, NUMBERS, from, 0);
-    step.input(NUMBERS, north, 0);
-    step.input(NUMBERS + 1, east, 0);
-    step.input(NUMBERS + 2, forS, 0);
-    step.outputs(NUMBERS, to, 0);
+    step.inputs(0, count, from, 0);
+    step.input(count, north, 0);
+    step.input(count + 1, east, 0);
+    step.input(count + 2, forS, 0);
+    step.outputs(count, to, 0);
+    look = lanes.read().call();
+    look.inputs(0, count, from, 0);
   }
 
   @Override
   public void predict(
       LaneVectors vectors, ForecastTrack way, float[] read, float[] into) {
-    System.arraycopy(read, LaneVehicles.SEEN_X, from, 0, from.length);
+    correct.inputs(count, LaneObservation.READ, read, LaneVehicles.SEEN_X);
+    correct.apply();
     Arrays.fill(flownS, 0f);
     Arrays.fill(forS, stepS);
     for (int turn = 0; turn < way.turns; turn++) {
@@ -54,7 +65,8 @@ final class ForecastPlants implements ForecastVehicles {
         take(vectors);
       }
     }
-    System.arraycopy(from, 0, into, 0, from.length);
+    look.outputs(LaneObservation.READ, into, 0);
+    look.apply();
   }
 
   /** The command from a turn on, and until when it stands. */

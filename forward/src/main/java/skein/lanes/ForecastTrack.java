@@ -23,7 +23,7 @@ import skein.forecast.VehicleForecast;
 /**
  * What is known of one vehicle in many worlds: when it was read last, the commands sent since, and which of
  * them it takes the vehicle to fly under. The scalar reference is {@link VehicleForecast} with a {@link
- * skein.vehicle.PlantModel} whose state is what is read of it: of its past only the commands count that wait
+ * skein.vehicle.PlantModel} whose whole state a reading tells: of its past only the commands count that wait
  * out the dead time.
  *
  * <p>{@link #lay} lays the way from the reading to a moment: turns, one after the other, at which the vehicle

@@ -11,6 +11,28 @@ abstract class PredictedVehicles {
   /** Back to the start of an episode. */
   void start(int worlds) {}
 
+  /** All readings of one world's vehicle have become those of its start, at rest. */
+  void restart(int world, float[] seenX, float[] seenY, float[] seenVx, float[] seenVy) {}
+
+  /**
+   * Takes a reading that enters a forecast, where it does not tell all that is known of a vehicle.
+   *
+   * @param seenX positions and velocities that were read, north and east, by place
+   * @param sent the commands, by place
+   * @param from the index of the first world of the reading that entered before; negative if none did
+   * @param reading the same of this one
+   * @param propagation the way to it
+   */
+  void enter(
+      float[] seenX,
+      float[] seenY,
+      float[] seenVx,
+      float[] seenVy,
+      Directions sent,
+      int from,
+      int reading,
+      Propagation propagation) {}
+
   /**
    * Carries a reading forward.
    *

@@ -14,7 +14,8 @@ final class TimetableKernel {
   static final int WORLDS = LanePolicy.WORLDS;
 
   /** Kinds of a timetable's operations. */
-  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, EXPOSE = 5, JOIN = 6;
+  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, EXPOSE = 5, JOIN = 6,
+      ENTER = 7;
 
   private final TimetableAgents[] agents;
   private final TimetableScores scores;
@@ -90,6 +91,16 @@ final class TimetableKernel {
               operations[field + 3] * WORLDS,
               propagations[operations[field + 4]],
               withVelocity);
+      case ENTER ->
+          agent.vehicles.predicted.enter(
+              agent.vehicles.seenX,
+              agent.vehicles.seenY,
+              agent.vehicles.seenVx,
+              agent.vehicles.seenVy,
+              agent.headings,
+              first < 0 ? -1 : first * WORLDS,
+              operations[field + 3] * WORLDS,
+              propagations[operations[field + 4]]);
       case DECIDE ->
           agent.decide(
               agents,

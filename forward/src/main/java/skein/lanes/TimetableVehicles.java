@@ -56,6 +56,7 @@ abstract class TimetableVehicles {
       seenVx[i] = 0f;
       seenVy[i] = 0f;
     }
+    if (predicted != null) predicted.restart(world, seenX, seenY, seenVx, seenVy);
     rest(world);
   }
 

@@ -30,11 +30,18 @@ trait LoopObserver:
 
   /** Under `Predictive`: a reading entered the forecast.
     *
+    * @param atNs now
     * @param validAtNs when it was made
     * @param legs what the vehicle flew through since the reading before, by what is known now; empty at its
     *   first
     */
-  private[skein] def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit = ()
+  private[skein] def entered(
+      vehicle: Int,
+      question: Int,
+      atNs: Long,
+      validAtNs: Long,
+      legs: => Vector[Leg]
+  ): Unit = ()
 
   /** A command was sent: the newest decision for the vehicle. */
   def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speedMps: Double): Unit = ()

@@ -35,6 +35,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
       world.observer.entered(
         vehicle,
         question,
+        world.nowNs,
         reading.validAt.toNanos,
         before.fold(Vector.empty)(_.legsTo(reading.validAt, forecast.delays.get, reading.receivedAt))
       )

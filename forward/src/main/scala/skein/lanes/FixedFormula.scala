@@ -127,7 +127,10 @@ private[skein] object FixedFormula:
 
     /** So many outputs, one after the other, from the first on. */
     def outputs(count: Int, array: Array[Float], from: Int): Unit =
-      for i <- 0 until count do output(i, array, from + i * TimetableVehicles.WORLDS)
+      var i = 0
+      while i < count do
+        output(i, array, from + i * TimetableVehicles.WORLDS)
+        i += 1
 
     /** From now on the first worlds alone count. */
     def use(worlds: Int): Unit = call.use(worlds)

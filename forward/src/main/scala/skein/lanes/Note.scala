@@ -18,6 +18,13 @@ private[lanes] object Note:
     */
   final case class Predict(vehicle: Int, atS: Double, reading: Int, from: Int, way: Propagation) extends Note
 
+  /** A reading enters a forecast that keeps what readings do not tell.
+    *
+    * @param from the one that entered before; 0: none did
+    * @param way there
+    */
+  final case class Enter(vehicle: Int, atS: Double, reading: Int, from: Int, way: Propagation) extends Note
+
   /** A vehicle's controller decides.
     *
     * @param before the number of its decision before; this one's is one more

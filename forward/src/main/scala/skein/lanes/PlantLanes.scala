@@ -27,6 +27,9 @@ private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantF
   /** The next state: of the state's numbers, then the commanded velocity and the time. */
   def step: FixedFormula = form.step.of(plant)
 
+  /** Position and velocity, of the state's numbers. */
+  def read: FixedFormula = form.read.of(plant)
+
   /** Its steps where all are equally long. */
   def steps: PlantSteps = form.steps
 
@@ -44,6 +47,7 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
   def fits(other: Plant[?]): Boolean = stepping.fits(other) && reading.fits(other)
 
   val step: FixedFormula  = FixedFormula(stepping, plant)
+  val read: FixedFormula  = FixedFormula(reading, plant)
   val stages: PlantStages = PlantStages(stepping, reading)
 
   /** Searches, whose worlds share delays, do not wait for these to be compiled. */

@@ -120,6 +120,9 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   /** Position and velocity, of the same. */
   val look: BoundFunction = BoundFunction.of(late.drop(count), rowOf)
 
+  /** The state's numbers, of the same. */
+  lazy val end: BoundFunction = BoundFunction.of(late.take(count), rowOf, areRows = true)
+
   /** The functions' parameters, but for the time. */
   def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
     expressions.parametersOf(plant, speedMps).map(_.toFloat) ++ Array.ofDim[Float](times)

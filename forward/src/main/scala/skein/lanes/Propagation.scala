@@ -25,5 +25,8 @@ private[skein] final class Propagation(
   private[lanes] def bytes: Long = 64 + 4L * (commands.length + numbers.length)
 
 private[skein] object Propagation:
+  /** None: at the reading itself. */
+  val Nothing: Propagation = Propagation(Array.empty, Array.empty)
+
   /** In the place of a command: none yet. */
   val Rest: Int = -1

@@ -33,8 +33,11 @@ private[lanes] final class StagedFlight(
   private val resting                 = bound(stages.begin, state, atRest)
   lanes.rest(state, 0)
 
+  private var worlds = WORLDS
+
   /** From now on the first worlds alone count. */
   def use(worlds: Int): Unit =
+    this.worlds = worlds
     for call <- Vector(beginning, resting) ++ moving.calls ++ other.calls do call.use(worlds)
 
   /** By what is kept of a step in one place; what is kept of the next step goes to another, or to the same.
@@ -44,6 +47,7 @@ private[lanes] final class StagedFlight(
     val look: LaneCall     = bound(stages.look, kept)
     val act: LaneCall      = bound(stages.act, kept, to)
     val goOn: LaneCall     = bound(stages.goOn, kept, to)
+    lazy val end: LaneCall = bound(stages.end, kept)
     def calls              = Vector(position, look, act, goOn)
 
   private def bound(of: BoundFunction, rows: Array[Float], to: Array[Float] = null): LaneCall =
@@ -119,3 +123,13 @@ private[lanes] final class StagedFlight(
       look.output(2, vx, into)
       look.output(3, vy, into)
     look()
+
+  /** The state that they are in, number by number.
+    *
+    * @param at where the first one's begins
+    */
+  def end(into: Array[Float], at: Int): Unit =
+    val end = moving.end
+    end.use(worlds)
+    end.output(0, into, at)
+    end()

@@ -88,7 +88,7 @@ private final class TimetableCompiler(
     model: LaneDynamics
 ):
   import Timetable.Fields
-  import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+  import TimetableKernel.{ACT, DECIDE, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
   /** By time, and events of one time as they were noted. Only commands act later than what was noted after
     * them.
@@ -126,6 +126,7 @@ private final class TimetableCompiler(
       order(i) match
         case note: Note.Look    => look(note)
         case note: Note.Predict => predict(note, i)
+        case note: Note.Enter   => enter(note, i)
         case note: Note.Decide  => decide(note, i)
         case note: Note.Act     => act(note, i)
         case note: Note.Score   => score(note, i)
@@ -152,14 +153,20 @@ private final class TimetableCompiler(
       if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
       // Its effort is counted even where nobody uses it.
       headings(vehicle).usedAt(before + 1, at)
-    case Note.Act(vehicle, _, decision)               => headings(vehicle).usedAt(decision, at)
-    case score: Note.Score                            => usedAt(score.view, at)
-    case image: Note.Expose                           => usedAt(image.view, at)
-    case Note.Predict(vehicle, _, reading, from, way) =>
-      readings(vehicle).usedAt(from, at)
-      decidedUpon(vehicle)(from) = true
-      for command <- way.commands if command > 0 do headings(vehicle).usedAt(command, at)
+    case Note.Act(vehicle, _, decision)         => headings(vehicle).usedAt(decision, at)
+    case score: Note.Score                      => usedAt(score.view, at)
+    case image: Note.Expose                     => usedAt(image.view, at)
+    case Note.Predict(vehicle, _, _, from, way) =>
+      carriedAt(vehicle, from, way, at)
+    case Note.Enter(vehicle, _, reading, from, way) =>
+      carriedAt(vehicle, reading, way, at)
+      if from > 0 then readings(vehicle).usedAt(from, at)
     case _: Note.Look | _: Note.Join => ()
+
+  private def carriedAt(vehicle: Int, reading: Int, way: Propagation, at: Int): Unit =
+    readings(vehicle).usedAt(reading, at)
+    decidedUpon(vehicle)(reading) = true
+    for command <- way.commands if command > 0 do headings(vehicle).usedAt(command, at)
 
   private def usedAt(view: Int, at: Int): Unit =
     val seen = notes.views(view)
@@ -221,11 +228,22 @@ private final class TimetableCompiler(
       readings(vehicle).take(note.reading),
       placed
     )
-    propagations += note.way.placed(headings(vehicle).place)
+    propagates(vehicle, note.way, at)
+    readings(vehicle).release(from, at)
+
+  private def enter(note: Note.Enter, at: Int): Unit =
+    import note.{from, reading, vehicle}
+    val before = if from > 0 then readings(vehicle).place(from) else -1
+    operation(ENTER, vehicle, before, readings(vehicle).place(reading), placed)
+    propagates(vehicle, note.way, at)
+    for each <- Seq(from, reading) if each > 0 do readings(vehicle).release(each, at)
+
+  /** Ends an operation that carries a vehicle on. */
+  private def propagates(vehicle: Int, way: Propagation, at: Int): Unit =
+    propagations += way.placed(headings(vehicle).place)
     placed += 1
     size += 1
-    readings(vehicle).release(from, at)
-    for command <- note.way.commands if command > 0 do headings(vehicle).release(command, at)
+    for command <- way.commands if command > 0 do headings(vehicle).release(command, at)
 
   private def act(note: Note.Act, at: Int): Unit =
     import note.{decision, vehicle}

@@ -46,11 +46,22 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     while seen.size <= question do seen += 0
     seen(question) = look(vehicle, atNs * 1e-9)
 
-  override def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit =
+  override def entered(
+      vehicle: Int,
+      question: Int,
+      atNs: Long,
+      validAtNs: Long,
+      legs: => Vector[Leg]
+  ): Unit =
     for predictor <- model.predictor do
-      val propagator = entered(vehicle).lastOption
-        .fold(predictor.propagator)(_.propagator.next(legs.map(plotted(vehicle, _))))
-      entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, propagator)
+      val reading    = readingOf(vehicle)(question)
+      val before     = entered(vehicle).lastOption
+      val flown      = before.fold(Vector.empty)(_ => legs.map(plotted(vehicle, _)))
+      val propagator = before.fold(predictor.propagator)(_.propagator.next(flown))
+      if predictor.remembers then
+        val way = before.fold(Propagation.Nothing)(_.propagator.predicted(flown))
+        all += Note.Enter(vehicle, atNs * 1e-9, reading, before.fold(0)(_.reading), way)
+      entered(vehicle) += Entered(reading, validAtNs, propagator)
 
   /** The reading that a forecast starts from. */
   private def newest(vehicle: Int, forecast: Forecast): Entered =

@@ -14,6 +14,9 @@ private[skein] trait TimetablePredictor:
   /** The same where every world has delays of its own. */
   def alone(duelist: Duelist): ForecastVehicles
 
+  /** Whether readings do not tell all that is known of a vehicle. */
+  def remembers: Boolean = false
+
   /** From a command's arrival until a vehicle is taken to follow it, s. */
   def deadTimeS: Double
 
@@ -22,9 +25,13 @@ private[skein] object TimetablePredictor:
     */
   def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
     case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
-    case PlantModel(drag: ReducedModel)             => PlantLanes.of(drag).map(PlantPredictor(_))
-    case ConstantVelocity                           => Right(CoastPredictor)
-    case _ => Left("the lanes predict by reduced models and constant velocity")
+    case PlantModel(plant)                          =>
+      for
+        lanes      <- PlantLanes.of(plant)
+        correction <- PlantCorrection.of(plant, lanes.count)
+      yield PlantPredictor(lanes, correction)
+    case ConstantVelocity => Right(CoastPredictor)
+    case _                => Left("the lanes predict by plants and by constant velocity")
 
 /** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
 private[lanes] object CoastPredictor extends TimetablePredictor, Propagator:
@@ -55,12 +62,14 @@ private[lanes] final class LagPredictor(val model: ReducedModel) extends Timetab
       into(at + 1) = (carriedLeft / model.lagS - carriedAfter / model.lagS).toFloat
 
 /** By [[PredictedPlants]]. */
-private[lanes] final class PlantPredictor(val lanes: PlantLanes) extends TimetablePredictor:
+private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction: PlantCorrection)
+    extends TimetablePredictor:
   private val tell = lanes.stages.tell(lanes.plant)
 
+  override def remembers: Boolean                   = !correction.isTold
   def deadTimeS: Double                             = lanes.plant.deadTimeS
-  def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, duelist.speed)
-  def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, duelist.speed)
+  def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, correction, duelist.speed)
+  def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, correction, duelist.speed)
 
   def propagator: Propagator =
     CommandPropagator(lanes.plant.deadTimeS, (flown, _) => propagation(flown))

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.*
+import skein.identify.Tilting
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
@@ -18,6 +19,7 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
   private val models = Seq(
     "lag"       -> PlantResponse(ReducedModel.AirSimLag),
     "drag"      -> PlantResponse(ReducedModel.AirSim),
+    "tilting"   -> PlantResponse(Tilting(0.95, 0.9, 0.2)),
     "quadrotor" -> VelocityResponses.quadrotor()
   )
 

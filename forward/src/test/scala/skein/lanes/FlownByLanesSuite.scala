@@ -2,6 +2,7 @@ package skein.lanes
 
 import java.nio.file.{Files, Path}
 import skein.forward.*
+import skein.identify.Tilting
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
@@ -100,6 +101,18 @@ class FlownByLanesSuite extends munit.FunSuite:
       val said    = table((worlds, nameOf(timing)))(plant)
       val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
       assertEquals(word(engine), if said == "lanes" && isTimed then "lanes" else "scalar", engine)
+
+  for
+    (plant, alone)     <- Seq(Skating(0.4, 1.5) -> "lanes", Tilting(0.95, 0.9, 0.2) -> "scalar")
+    (shared, expected) <- Seq(true -> "lanes", false -> alone)
+  do
+    test(
+      s"predictive by $plant itself, ${if shared then "shared" else "own"} delays: the engine says $expected"
+    ):
+      val model  = PlantResponse(plant)
+      val batch  = DuelBatch(duel, LoopTiming.Predictive(predictor = model.predictor), model, threads = 1)
+      val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+      assertEquals(word(engine), expected, engine)
 
   private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
     val all = new DuelWorlds:

@@ -24,7 +24,8 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     "lag"           -> lag,
     "no lag"        -> VelocityResponses.Ideal,
     "drag"          -> PlantResponse(ReducedModel.AirSim),
-    "drag and turn" -> PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02))
+    "drag and turn" -> PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
+    "skating"       -> PlantResponse(Skating(0.4, 1.5, 0.01))
   )
 
   private val keys     = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))

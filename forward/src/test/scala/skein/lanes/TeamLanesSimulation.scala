@@ -2,6 +2,7 @@ package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
+import skein.identify.Tilting
 import skein.optimise.LatencyBudget
 import skein.policy.*
 import skein.scenario.*
@@ -84,6 +85,13 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     test(s"$name, $model, stream over vpn: every world flies as by the scalar reference, 3 s to 4 mm"):
       agree(draw, LoopTiming.Stream(), DelayTable.vpn, plant, 4e-3, 3, 50)
 
+  for (name, draw) <- scenarios do
+    test(
+      s"$name, predictive by a plant that tilts: every world flies as by the scalar reference, 3 s to 4 mm"
+    ):
+      val tilting = PlantResponse(Tilting(0.95, 0.9, 0.2))
+      agree(draw, LoopTiming.Predictive(predictor = tilting.predictor), DelayTable.vpn, tilting, 4e-3, 3, 50)
+
   private def agree(
       draw: SplitMix64 => Scenario,
       timing: LoopTiming,
@@ -137,7 +145,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     (name, draw)   <- scenarios
     (model, plant) <- Seq(
       "drag"    -> PlantResponse(ReducedModel.AirSim),
-      "bicycle" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
+      "bicycle" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
+      "skating" -> PlantResponse(Skating(0.4, 1.5))
     )
     timing <-
       Seq(LoopTiming.Stream(), LoopTiming.Futures(), LoopTiming.Predictive(predictor = plant.predictor))

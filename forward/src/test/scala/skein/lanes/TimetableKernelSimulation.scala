@@ -11,6 +11,7 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
+import skein.identify.Tilting
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -76,6 +77,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
     ("lag", lag, links),
     ("drag", PlantResponse(ReducedModel.AirSim), links.filter(_._1 == "vpn")),
     ("drag and turn", PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)), links.filter(_._1 == "vpn")),
+    ("a plant of other numbers", PlantResponse(Skating(0.4, 1.5)), links.filter(_._1 == "vpn")),
+    ("a plant that tilts", PlantResponse(Tilting(0.95, 0.9, 0.2)), links),
     ("quadrotor", VelocityResponses.quadrotor(), links.filter(link => link._1 == "none" || link._1 == "vpn"))
   )
 

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.*
+import skein.identify.Tilting
 import skein.policy.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -16,7 +17,9 @@ import skein.vehicle.ReducedModel
     "lag"       -> PlantResponse(ReducedModel.AirSimLag),
     "drag"      -> PlantResponse(ReducedModel.AirSim),
     "quadrotor" -> VelocityResponses.quadrotor(),
-    "bicycle"   -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
+    "bicycle"   -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
+    "skating"   -> PlantResponse(Skating(0.4, 1.5)),
+    "tilting"   -> PlantResponse(Tilting(0.95, 0.9, 0.2))
   )
   val eye = GuideCamera.model
   for
@@ -58,7 +61,7 @@ import skein.vehicle.ReducedModel
       count * 1200.0 / ((os.getProcessCpuTime - from) * 1e-3)
     val slow  = !isFast || name == "quadrotor"
     val count = if slow then 64
-    else if sees || name == "bicycle" then 8192
+    else if sees || !name.endsWith("lag") && name != "drag" then 8192
     else if shared then 163840
     else 40960
     val warm = System.nanoTime() + 4_000_000_000L

@@ -34,10 +34,11 @@ private[lanes] object GpuPrediction:
   def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
     case predictive: LoopTiming.Predictive =>
       TimetablePredictor.of(predictive.predictor).flatMap:
-        case CoastPredictor       => Right(Some(GpuLagPrediction(_, _, 0)))
-        case lag: LagPredictor    => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
-        case drag: PlantPredictor => Right(Some(GpuPlantPrediction(_, _, drag.lanes)))
-        case _                    => Left("the GPU does not know what the loop predicts by")
+        case CoastPredictor    => Right(Some(GpuLagPrediction(_, _, 0)))
+        case lag: LagPredictor => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
+        case plant: PlantPredictor if plant.correction.isReading =>
+          Right(Some(GpuPlantPrediction(_, _, plant.lanes)))
+        case _ => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 
   /** How many numbers one of a propagation's records has at most. */
@@ -84,7 +85,7 @@ private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) 
 
   def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
 
-/** By [[skein.lanes.PredictedPlants]]. */
+/** By [[skein.lanes.PredictedPlants]], where the state is what is read. */
 private final class GpuPlantPrediction(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuPrediction:
   private val zero    = code.constant(0f)
   private val flight  = GpuStages(code, lanes, duelist.speed, zero, zero)
