@@ -125,7 +125,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       bicycle.plant,
       shared = true,
       LoopTiming.Predictive()
-    ).startsWith("scalar: the lanes predict by reduced models and constant velocity"))
+    ).startsWith("scalar: the lanes predict by plants and by constant velocity"))
     val told = engine(Gusty, shared = true)
     assert(told.startsWith("scalar: the vehicle is no formula: ") && told.contains("nanoTime"), told)
     val slow = engine(Bicycle(1.2, 0.3, 4, 0.4, stepS = 1.5), shared = false)
