@@ -3,6 +3,7 @@ package skein.bench
 import com.sun.management.ThreadMXBean
 import java.lang.management.ManagementFactory
 import java.util.concurrent.atomic.AtomicLong
+import skein.flight.FlightAssembler
 import skein.link.BackgroundThread
 import skein.loop.planning.{PlanSearch, ThreadedPlanWorkers}
 import skein.planning.*
@@ -50,7 +51,10 @@ object PlanBench:
   def endlessly(threads: Int): Option[PlanSearch] =
     Option.when(threads > 0):
       val problem = this.problem(behaviours = 1)
-      new ThreadedPlanWorkers(threads, BackgroundThread.factory("skein-plan")).begin(problem, warm(problem))
+      new ThreadedPlanWorkers(
+        threads,
+        FlightAssembler.planThreads("skein-plan")
+      ).begin(problem, warm(problem))
 
   private def run(problem: PlanProblem, threads: Int, seconds: Double): (Double, Double, Double, Float) =
     val (candidates, cpuNanos, bytes) = (AtomicLong(), AtomicLong(), AtomicLong())

@@ -1,6 +1,5 @@
 package skein.flight
 
-import java.util.concurrent.Executors
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.Flow
@@ -10,7 +9,7 @@ import skein.airsim.{Vehicles, WorldSettings}
 import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
-import skein.loop.planning.{CountedPlanWorkers, PlanWorkers, ThreadedPlanWorkers}
+import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
@@ -210,10 +209,10 @@ final class FlightAssembler(
       case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
       case Some(Learning.Beside(explore, begun)) =>
         val on = learnsOn.getOrElse:
-          val thread = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-learn"))
+          val thread = BackgroundExecutor("skein-learn")
           // It may hang in a lesson: nobody waits for that.
-          opened.closing(ExecutionContext.fromExecutorService(thread)): _ =>
-            thread.shutdownNow()
+          opened.closing(ExecutionContext.fromExecutor(thread)): _ =>
+            thread.close()
             Future.successful(Done)
         val lessons = opened.closing(LessonsBeside(begun(plan.seed), on)): lessons =>
           lessons.close()
@@ -282,8 +281,19 @@ final class FlightAssembler(
 object FlightAssembler:
   /** Threads to plan on, no more than there are cores. */
   def threads(planning: PlanSettings): PlanWorkers =
-    val threads = planning.searches.min(Runtime.getRuntime.availableProcessors)
-    new ThreadedPlanWorkers(threads, BackgroundThread.factory("skein-plan"))
+    new ThreadedPlanWorkers(
+      planning.searches.min(Runtime.getRuntime.availableProcessors),
+      planThreads("skein-plan")
+    )
+
+  /** Begins threads that plan and give way to those of control. */
+  private[skein] def planThreads(name: String): (() => Boolean) => PlanThread =
+    val (factory, usual) = (BackgroundThread.factory(name), BackgroundThread.usual(name))
+    slice => asPlanThread(BackgroundThread(factory, usual)(slice))
+
+  private[skein] def asPlanThread(thread: BackgroundThread): PlanThread = new PlanThread:
+    def wake(): Unit  = thread.wake()
+    def close(): Unit = thread.close()
 
   /** The same in virtual time, where slices are counted. */
   def counted(planning: PlanSettings): PlanWorkers = CountedPlanWorkers(planning.searches, planning.slices)

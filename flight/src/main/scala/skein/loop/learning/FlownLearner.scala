@@ -18,7 +18,7 @@ final case class Transition(
   */
 trait FlownLearner:
 
-  /** A lesson.
+  /** A lesson, or a part of a long one.
     *
     * @param transitions in the order in which they were flown
     * @return parameters of the policy from now on, if it is to be another, in the order of its family's axes

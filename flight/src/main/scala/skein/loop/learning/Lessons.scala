@@ -32,7 +32,7 @@ final case class LearnerUpdate(text: String, parameters: Option[Vector[Double]] 
 /** Lessons by a learner that runs beside the flight: it may be slow, hang or fail, and no decision waits for
   * it. Of versions between two decisions the last counts.
   *
-  * @param on what it learns on
+  * @param on what it learns on, slice by slice
   */
 final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using ActorSystem) extends Lessons:
   import LessonsBeside.*
@@ -48,20 +48,25 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
     .queue[Transition](MostWaiting)
     .via(Learn[Transition, (Vector[Double], Long)](MostWaiting, _ => dropped.incrementAndGet(): Unit):
       lesson =>
-        Future {
-          // A class that cannot be loaded would end the thread, and nobody would be told.
-          val made =
-            try learner.learn(lesson)
-            catch case error: LinkageError => throw IllegalStateException(error)
-          val seen = learned.addAndGet(lesson.size)
-          made.map((_, seen))
-        }(using on))
+        lesson.grouped(MostInSlice).foldLeft(Future.successful(Option.empty[(Vector[Double], Long)])):
+          (before, slice) =>
+            before.flatMap(made => Future(learn(slice).orElse(made))(using on))(using
+              ExecutionContext.parasitic
+            ))
     .toMat(Sink.foreach(publish))((queue, ended) => (queue, ended))
     .run()
 
   ended.failed.foreach(error =>
     say(LearnerUpdate(s"learning failed, the policy stays as it is: $error"))
   )(using ExecutionContext.parasitic)
+
+  private def learn(slice: Vector[Transition]): Option[(Vector[Double], Long)] =
+    // A class that cannot be loaded would end the thread, and nobody would be told.
+    val made =
+      try learner.learn(slice)
+      catch case error: LinkageError => throw IllegalStateException(error)
+    val seen = learned.addAndGet(slice.size)
+    made.map((_, seen))
 
   private def publish(parameters: Vector[Double], transitions: Long): Unit =
     version += 1
@@ -96,8 +101,11 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
 
 object LessonsBeside:
   /** Decisions: of a flight of one vehicle, almost two minutes at 10 Hz. */
-  val MostWaiting      = 1024
-  private val MostSaid = 16
+  val MostWaiting = 1024
+
+  /** Few: a thread that gives way and gets no time is replaced between two slices only. */
+  private val MostInSlice = 8
+  private val MostSaid    = 16
 
 /** The same lessons again. One thread at a time.
   *

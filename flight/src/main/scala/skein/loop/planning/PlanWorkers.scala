@@ -1,12 +1,10 @@
 package skein.loop.planning
 
-import java.util.concurrent.{ConcurrentLinkedQueue, ThreadFactory}
-import java.util.concurrent.atomic.{AtomicReference, AtomicReferenceArray}
-import java.util.concurrent.locks.LockSupport
+import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.atomic.AtomicReference
 import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
-import skein.units.Span
 
 /** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so
   * that what each finds depends on the number of its slices alone.
@@ -55,69 +53,44 @@ final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
 
   def close(): Unit = ()
 
+/** A thread that works slice by slice, and sleeps where there is nothing to do until it is woken. */
+trait PlanThread extends AutoCloseable:
+
+  /** Never blocks. */
+  def wake(): Unit
+
 /** Searches on threads of its own until it is asked for the result; several problems take turns, slice by
-  * slice. A thread that gives way hardly runs where other programs keep all processors busy, and the JVM
-  * waits for it whenever it stops all threads. So one that was `patience` over a slice, which takes
-  * milliseconds, is replaced by a usual one.
+  * slice.
   *
   * @param threads and searches per problem
-  * @param factory of threads that give way to those of control
-  * @param usual of threads that do not
+  * @param begun a thread that works on slices; each says whether there was anything to do
   */
-final class ThreadedPlanWorkers(
-    threads: Int,
-    factory: ThreadFactory,
-    usual: ThreadFactory = ThreadedPlanWorkers.usual,
-    patience: Span = ThreadedPlanWorkers.Patience
-) extends PlanWorkers:
+final class ThreadedPlanWorkers(threads: Int, begun: (() => Boolean) => PlanThread) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
 
   // Without a lock, which a worker without the processor could keep the stream's thread waiting for.
-  private val waiting            = ConcurrentLinkedQueue[ThreadedPlanWorkers.Search]()
-  @volatile private var isClosed = false
-  private val workers            = AtomicReferenceArray[Thread](threads)
-  (0 until threads).foreach(employ(_, factory, givesWay = true))
+  private val waiting = ConcurrentLinkedQueue[ThreadedPlanWorkers.Search]()
+  private val workers = Vector.fill(threads):
+    val planner = JointPlanner()
+    begun: () =>
+      val next = Option(waiting.poll())
+      for search <- next if search.improve(planner) do
+        val _ = waiting.add(search)
+      next.isDefined
 
   def begin(problem: PlanProblem, warm: JointPlan): PlanSearch =
     val searches = Vector.tabulate(threads)(ThreadedPlanWorkers.Search(problem, warm, _))
     for search <- searches do
       val _ = waiting.add(search)
-    wake()
+    workers.foreach(_.wake())
     new PlanSearch:
       def found: Vector[JointPlan]    = searches.map(_.found)
       def finish(): Vector[JointPlan] = searches.map(_.finish())
 
   /** Ends the threads; searches under way find nothing more. */
-  def close(): Unit =
-    isClosed = true
-    wake()
-
-  private def wake(): Unit = (0 until threads).foreach(worker => LockSupport.unpark(workers.get(worker)))
-
-  private def employ(worker: Int, factory: ThreadFactory, givesWay: Boolean): Unit =
-    val thread = factory.newThread(() => work(worker, givesWay))
-    workers.set(worker, thread)
-    thread.start()
-
-  private def work(worker: Int, givesWay: Boolean): Unit =
-    val planner    = JointPlanner()
-    var isReplaced = false
-    while !isReplaced && !isClosed do
-      Option(waiting.poll()) match
-        case None         => LockSupport.park(this)
-        case Some(search) =>
-          val begun = System.nanoTime
-          if search.improve(planner) then
-            val _ = waiting.add(search)
-          isReplaced = givesWay && System.nanoTime - begun > patience.toNanos
-    if isReplaced then employ(worker, usual, givesWay = false)
+  def close(): Unit = workers.foreach(_.close())
 
 private object ThreadedPlanWorkers:
-  /** Less than the silence of a simulator that is told. */
-  private val Patience = Span.ofMillis(300)
-
-  private val usual = Thread.ofPlatform().daemon().name("skein-plan-usual-", 1).factory()
-
   /** One search; worked on by one thread at a time. */
   final class Search(problem: PlanProblem, warm: JointPlan, number: Int):
     private val best  = AtomicReference(warm)

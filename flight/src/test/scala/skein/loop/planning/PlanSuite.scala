@@ -3,7 +3,7 @@ package skein.loop.planning
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.duration.*
-import skein.link.BackgroundThread
+import skein.flight.FlightAssembler
 import skein.planning.*
 import skein.testing.Optimised
 import skein.units.*
@@ -90,7 +90,7 @@ class PlanSuite extends munit.FunSuite, Optimised:
     def made(count: Int): Seq[() => PlanWorkers] =
       Seq(
         () => CountedPlanWorkers(count, slices = 1),
-        () => ThreadedPlanWorkers(count, BackgroundThread.factory("skein-plan"))
+        () => ThreadedPlanWorkers(count, FlightAssembler.planThreads("skein-plan"))
       )
     for make <- Seq(1, PlanProblem.MostSearches).flatMap(made) do make().close()
     for make <- Seq(0, PlanProblem.MostSearches + 1).flatMap(made) do

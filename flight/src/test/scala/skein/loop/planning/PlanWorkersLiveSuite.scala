@@ -1,8 +1,10 @@
 package skein.loop.planning
 
-import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.{ConcurrentLinkedQueue, ThreadFactory}
 import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
+import skein.flight.FlightAssembler
+import skein.link.BackgroundThread
 import skein.planning.*
 import skein.testing.Optimised
 import skein.units.Span
@@ -36,11 +38,19 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
 
   private def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
 
-  private val workers =
-    FunFixture[ThreadedPlanWorkers](
-      _ => ThreadedPlanWorkers(2, Thread.ofPlatform().daemon().name("skein-plan").factory()),
-      _.close()
+  private def workersOn(
+      factory: ThreadFactory,
+      usual: ThreadFactory,
+      patience: Span = BackgroundThread.Patience
+  ) =
+    ThreadedPlanWorkers(
+      2,
+      slice => FlightAssembler.asPlanThread(BackgroundThread(factory, usual, patience)(slice))
     )
+
+  private val named = Thread.ofPlatform().daemon().name("skein-plan").factory()
+
+  private val workers = FunFixture[ThreadedPlanWorkers](_ => workersOn(named, named), _.close())
 
   /** Polls until all searches have come so far. */
   private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[JointPlan] =
@@ -80,8 +90,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
     val usual   = Thread.ofPlatform().daemon().name("usual-", 1).factory()
     val made    = AtomicInteger()
     val gaveWay = ConcurrentLinkedQueue[Thread]()
-    val workers = ThreadedPlanWorkers(
-      2,
+    val workers = workersOn(
       work =>
         val thread = Thread(work)
         gaveWay.add(thread)
@@ -91,7 +100,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
         made.incrementAndGet()
         usual.newThread(work)
       ,
-      patience = Span.Zero
+      patience = Span.ofSeconds(-1)
     )
     try
       assert(finished(workers, problem(1)).forall(_.slices > 3))
@@ -103,7 +112,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   test("threads end when they are no longer wanted"):
     def ours    = Thread.getAllStackTraces.keySet.asScala.filter(_.getName.startsWith("skein-plan")).toSet
     val before  = ours
-    val closing = ThreadedPlanWorkers(2, Thread.ofPlatform().daemon().name("skein-plan").factory())
+    val closing = workersOn(named, named)
     val begun   = ours -- before
     assertEquals(begun.size, 2)
     closing.close()
