@@ -1,13 +1,15 @@
 package skein.cli
 
 import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{Future, blocking}
 import skein.cluster.BuildId
 import skein.flight.{FlightResult, Solvers}
 import skein.kafka.{KafkaLink, KafkaTopics}
-import skein.link.TcpTransport
+import skein.link.{Address, TcpTransport, TlsProbe}
 import skein.settings.{FlightPlan, FlySettings, SolverChoice}
 import skein.solver.TcpLink
 import skein.units.Decimals.fixed
+import skein.units.Span
 
 /** What `--solver` means to the commands that fly. */
 private[cli] object SolverOptions:
@@ -36,11 +38,25 @@ private[cli] object SolverOptions:
   private def reachedBy(build: String, secured: SolverSecurity.Checked)(using ActorSystem): Solvers = Solvers(
     build,
     {
-      case SolverChoice.Tcp(at) => Right(TcpLink(TcpTransport(certificates = secured.certificates), at))
+      case SolverChoice.Tcp(at) =>
+        val transport = TcpTransport(certificates = secured.certificates)
+        Right(
+          if secured.certificates.isDefined then TcpLink(transport, at)
+          else TcpLink(transport, at, () => wantsTls(at))
+        )
       case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)(secured.kafka)))
       case SolverChoice.Link(_)               => Left("a link of a profile is for --clock virtual")
     }
   )
+
+  /** Why a solver closes a connection without certificates, where it asks for them. */
+  private[cli] def wantsTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
+    Future(blocking(TlsProbe.answers(at, ProbeWithin)))(using system.dispatcher)
+      .map(Option.when(_)(
+        s"the solver at $at asks for certificates; expected --tls FOLDER with this machine's"
+      ))(using system.dispatcher)
+
+  private val ProbeWithin = Span.ofSeconds(2)
 
   /** A flight's plans in virtual time, with its solver behind a link that is as the way to it was: its
     * median, and its spread by a lognormal distribution.

@@ -110,6 +110,13 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         assert(clue(why).contains(s"no trusted connection to $at, "))
         assert(clue(why).contains(who))
 
+  test("a flight without certificates is told so long before its patience ends"):
+    served(own): at =>
+      val link   = TcpLink(transport(None), at, () => SolverOptions.wantsTls(at))
+      val flight = SolvedFlight(SolverChoice.Tcp(at), link, patience = Span.ofSeconds(600))
+      val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
+      assert(clue(why).contains(s"the solver at $at asks for certificates; expected --tls FOLDER"))
+
   test("a flight is decided by a solver over TLS"):
     served(own): at =>
       val flight = SolvedFlight(SolverChoice.Tcp(at), TcpLink(transport(Some(own)), at))

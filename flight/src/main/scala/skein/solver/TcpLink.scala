@@ -15,8 +15,15 @@ import skein.units.Span
 /** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same
   * over sockets and in virtual time. Where one side does not trust the other, twice and before any message
   * came, it is refused.
+  *
+  * @param whyClosed asked once, when the other side has ended a connection before any message came: why it
+  *   will always do so, if that is known, and then it is refused
   */
-final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem) extends MessageLink:
+final class TcpLink(
+    transport: Transport,
+    to: Address,
+    whyClosed: () => Future[Option[String]] = () => Future.successful(None)
+)(using system: ActorSystem) extends MessageLink:
   import TcpLink.*
   import system.dispatcher
 
@@ -32,6 +39,7 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
 
     @volatile private var isClosing = false
     @volatile private var hasHeard  = false
+    @volatile private var hasAsked  = false
     @volatile private var mistrusts = 0
     @volatile private var whyDown   = s"no connection to $to yet"
 
@@ -59,13 +67,23 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
           case Failure(_: TransportError.NotTrusted) if !hasHeard => mistrusts + 1
           case _                                                  => 0
         if isClosing then closed.trySuccess(Done): Unit
-        else if mistrusts == MostMistrusts then
-          closed.trySuccess(Done): Unit
-          news(LinkNews.Refused(whyDown))
+        else if mistrusts == MostMistrusts then refused(whyDown)
         else
           if wasUp then news(LinkNews.Down(whyDown))
-          after(TryEvery.toDuration, system.scheduler)(Future.unit).foreach: _ =>
-            if isClosing then closed.trySuccess(Done): Unit else connect()
+          val asks = wasUp && !hasHeard && !hasAsked
+          hasAsked ||= asks
+          val known = if asks then whyClosed().recover(_ => None) else Future.successful(None)
+          known.foreach:
+            case Some(why) if !isClosing => refused(why)
+            case _                       => again()
+
+    private def refused(why: String): Unit =
+      closed.trySuccess(Done): Unit
+      news(LinkNews.Refused(why))
+
+    private def again(): Unit =
+      after(TryEvery.toDuration, system.scheduler)(Future.unit).foreach: _ =>
+        if isClosing then closed.trySuccess(Done): Unit else connect()
 
     /** Another thread may have done so. */
     private def completed(out: BoundedSourceQueue[ByteString]): Unit =

@@ -1,0 +1,34 @@
+package skein.link
+
+import java.net.{InetAddress, ServerSocket}
+import java.util.concurrent.FutureTask
+import scala.util.Using
+import skein.units.Span
+
+/** On loopback. */
+class TlsProbeLiveSuite extends munit.FunSuite:
+
+  /** Who reads a little and then answers so. */
+  private def asked(answer: Int*): Boolean =
+    Using.resource(ServerSocket(0, 1, InetAddress.getLoopbackAddress)): server =>
+      val heard = FutureTask: () =>
+        Using.resource(server.accept()): socket =>
+          val first = socket.getInputStream.read()
+          socket.getOutputStream.write(answer.map(_.toByte).toArray)
+          first
+      Thread.ofPlatform().daemon().start(heard): Unit
+      val told = TlsProbe.answers(Address("127.0.0.1", server.getLocalPort), Span.ofSeconds(20))
+      assertEquals(heard.get(), 22, "a handshake is begun")
+      told
+
+  test("who goes on with the handshake speaks TLS, and so does who refuses it"):
+    assert(asked(22, 3, 3, 0, 2, 0, 0))
+    assert(asked(21, 3, 3, 0, 2, 2, 70))
+
+  test("who says nothing, something else, or is not there, does not"):
+    assert(!asked())
+    assert(!asked(22))
+    assert(!asked(0, 0, 0, 4, 1))
+    assert(!asked(22, 9, 9))
+    val free = Using.resource(ServerSocket(0))(_.getLocalPort)
+    assert(!TlsProbe.answers(Address("127.0.0.1", free), Span.ofSeconds(20)))
