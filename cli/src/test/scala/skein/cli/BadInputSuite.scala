@@ -74,6 +74,16 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       Seq("--duration", "0s"),
       "skein fly: --duration: expected two periods (200.0 ms)"
     )
+    assertRefused(
+      FlyCommand(),
+      Seq("--period", "1min"),
+      "skein fly: --period: expected half the duration (30000.0 ms) or less, came 60000.0 ms"
+    )
+    assertRefused(
+      FlyCommand(),
+      Seq("--period", "1min", "--duration", "90s"),
+      "skein fly: --duration: expected two periods (120000.0 ms) or more, came 90000.0 ms"
+    )
     assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
 
   test("what follows multirotors alone refuses a scenario with cars, and says so"):

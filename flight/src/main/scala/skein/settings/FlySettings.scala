@@ -231,10 +231,7 @@ object FlySettings:
       Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
         "links: expected at least one link for any loop but paused, came none"
       ),
-      Option.when(settings.duration < settings.period * 2)(
-        s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
-          s"came ${settings.duration.toMillis} ms"
-      ),
+      Option.when(settings.duration < settings.period * 2)(shortMistake(settings, config)),
       Option.when(
         settings.period < Span.ofMillis(1)
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
@@ -279,14 +276,24 @@ object FlySettings:
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
     Either.cond(all.isEmpty, settings, all.map(placed(_, config)).mkString("\n"))
 
+  /** Of the two, the one is told that an option gave: the other may be the scenario's. */
+  private def shortMistake(settings: FlySettings, config: Config): String =
+    if optionAt("period", config).isDefined && optionAt("duration", config).isEmpty then
+      s"period: expected half the duration (${(settings.duration / 2).toMillis} ms) or less, " +
+        s"came ${settings.period.toMillis} ms"
+    else
+      s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
+        s"came ${settings.duration.toMillis} ms"
+
   /** A mistake about a key whose value is an option's is told by that, others by the key. */
   private def placed(mistake: String, config: Config): String =
     val (key, said) = mistake.span(_ != ':')
-    val path        = s"skein.fly.$key"
-    Option
-      .when(config.hasPath(path))(config.getValue(path).origin)
-      .flatMap(optionOf)
-      .getOrElse(path) + said
+    optionAt(key, config).getOrElse(s"skein.fly.$key") + said
+
+  /** The option by which a key of `skein.fly` has its value, if one did. */
+  private def optionAt(key: String, config: Config): Option[String] =
+    val path = s"skein.fly.$key"
+    Option.when(config.hasPath(path))(config.getValue(path).origin).flatMap(optionOf)
 
   /** `paused` waits with its simulator stopped. */
   def decidedElsewhere(loop: AnyLoop): Boolean = loop != LoopKind.Paused
