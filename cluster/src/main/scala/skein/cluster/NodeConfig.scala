@@ -13,11 +13,13 @@ private[cluster] object NodeConfig:
     * @param joins whom it connects to
     */
   def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
-    for _ <- (listen +: joins.toSeq).find(!_.isLoopback && tls.isEmpty).toLeft(()).left.map(beyond =>
+    for
+      _ <- (listen +: joins.toSeq).find(!_.isLoopback && tls.isEmpty).toLeft(()).left.map(beyond =>
         s"expected certificates of both sides (--tls FOLDER) where ${beyond.host} is " +
           "of another machine, or reached by others; ./skein cluster certificates " +
           "FOLDER makes a lab's, and without them only 127.0.0.1 is used"
       )
+      _ <- tls.fold(Right(()))(_.shows(listen.host))
     yield ConfigFactory
       .defaultOverrides()
       .withFallback(tls.fold(ConfigFactory.parseString(Plain))(_.config))

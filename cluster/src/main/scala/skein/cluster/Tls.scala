@@ -4,8 +4,10 @@ import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
 import java.io.IOException
 import java.net.InetSocketAddress
 import java.nio.file.{Files, Path}
+import java.security.cert.X509Certificate
 import java.security.{GeneralSecurityException, KeyStore}
 import javax.net.ssl.{KeyManagerFactory, SSLContext, SSLException, SSLSocket, TrustManagerFactory}
+import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.link.{Address, TransportError}
 
@@ -38,6 +40,25 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
           s"--tls: cannot read the certificates in ${keyStore.getParent}: " +
             Option(failed.getMessage).getOrElse("a file is damaged or cut off")
         )
+
+  /** Whether the node's own certificate shows this host, since the others verify it.
+    *
+    * @return or the names that it shows, or what is wrong with the files
+    */
+  private[cluster] def shows(host: String): Either[String, Unit] =
+    context.flatMap: _ =>
+      val store = KeyStore.getInstance(keyStore.toFile, password.toCharArray)
+      val own   = store.aliases.asScala
+        .filter(store.isKeyEntry)
+        .map(store.getCertificate)
+        .collect { case certificate: X509Certificate => certificate }
+        .toVector
+      Either.cond(
+        own.exists(ShownHosts.matches(_, host)),
+        (),
+        s"--tls: expected a certificate that shows $host, where this side listens; the one in " +
+          s"${keyStore.getParent} shows ${own.flatMap(ShownHosts.of).mkString(", ")}"
+      )
 
   /** Why there is no trusted connection to who listens there, where that is a matter of certificates. Takes
     * two seconds at most for each way.

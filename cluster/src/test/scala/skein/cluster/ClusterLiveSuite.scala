@@ -269,13 +269,26 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
           (name, tls) => worker(to, name, solvers, tls = tls, patience = 3.seconds)._2
       val (anna, _, _) = worker(to, "anna", solvers, tls = Some(own))
       assertEquals(computed(coordinator.node), answers)
-      for (outcome, why) <- refused.zip(Vector("", s"no trusted connection to $to, ", "")) do
+      val whys = Vector(
+        Vector(s"no coordinator at $to"),
+        Vector(s"no coordinator at $to", s"no trusted connection to $to, "),
+        Vector("expected a certificate that shows 127.0.0.1", "shows *.workers.lab")
+      )
+      for (outcome, why) <- refused.zip(whys) do
         val told = Await.result(outcome, 90.seconds)
-        assert(clue(told).left.exists(reason =>
-          reason.startsWith("no coordinator at") && reason.contains(why)
-        ))
+        assert(clue(told).left.exists(reason => why.forall(reason.contains)))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
       anna.stop()
+
+  test("a node listens where its certificate shows its host alone"):
+    val Vector(own, elsewhere) = lab.map(tls): @unchecked
+    assertEquals(own.shows("127.0.0.1"), Right(()))
+    assertEquals(elsewhere.shows("a.workers.lab"), Right(()))
+    assertEquals(elsewhere.shows("A.Workers.Lab"), Right(()))
+    for host <- Seq("localhost", "127.0.0.2", "1.127.0.0.1") do
+      assert(clue(own.shows(host)).left.exists(_.contains("shows 127.0.0.1")))
+    for host <- Seq("workers.lab", "a.b.workers.lab", "workers.lab.org", "127.0.0.1") do
+      assert(clue(elsewhere.shows(host)).left.exists(_.contains("shows *.workers.lab")))
 
   test("a set's folders are for their owner alone, and a certificate is not made twice"):
     val folder = lab.head.getParent
