@@ -26,12 +26,11 @@ object ClusterCommand
 
   protected def execute(options: ClusterCommandOptions): Either[String, Unit] = options.words.value match
     case Seq("certificates", text) =>
+      val hosts = if options.host.isEmpty then Seq("localhost") else options.host.distinct
       for
+        _      <- Certificates.checked(hosts).left.map("--host: " + _)
         folder <- OutFolder.made("certificates", text)
-        made   <- Certificates.make(
-          folder,
-          if options.host.isEmpty then Seq("localhost") else options.host.distinct
-        )
+        made   <- Certificates.make(folder, hosts)
       yield
         Console.out.println(s"written: ${made.mkString(", ")}")
         Console.out.println(

@@ -7,7 +7,7 @@ import java.nio.file.StandardCopyOption.{COPY_ATTRIBUTES, REPLACE_EXISTING}
 import java.nio.file.{FileSystems, Files, Path}
 import java.security.{GeneralSecurityException, KeyStore, SecureRandom}
 import java.util.HexFormat
-import scala.util.Using
+import scala.util.{Try, Using}
 import scala.util.control.NonFatal
 
 /** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host
@@ -23,17 +23,26 @@ object Certificates:
   def folderOf(host: String): String = host.replace("*", "_")
 
   /** @param hosts names or addresses, as `--listen` and `--join` have them
+    * @return or which of them is neither
+    */
+  def checked(hosts: Seq[String]): Either[String, Unit] =
+    hosts.find(!isHost(_)).toLeft(()).left.map(host => s"expected a host's name or address, came '$host'")
+
+  /** Refused where a host is none, or has a certificate there already; then nothing is made.
+    *
+    * @param hosts names or addresses, as `--listen` and `--join` have them
     * @return each host's folder; or what went wrong
     */
   def make(folder: Path, hosts: Seq[String]): Either[String, Vector[Path]] =
+    val had = hosts.map(host => folder.resolve(folderOf(host))).find(own =>
+      Files.exists(own.resolve(Tls.KeyStore))
+    )
     try
-      Files.createDirectories(folder)
-      val signer = folder.resolve(Signer)
       for
-        _ <- hosts.find(!isHost(_)).toLeft(()).left.map(host =>
-          s"expected a host's name or address, came '$host'"
-        )
-        _    <- if Files.exists(signer) then Right(()) else sign(folder)
+        _ <- checked(hosts)
+        _ <- had.toLeft(()).left.map(own => s"$own holds a certificate already")
+        _ = Files.createDirectories(folder)
+        _    <- if Files.exists(folder.resolve(Signer)) then Right(()) else sign(folder)
         made <- hosts.foldLeft[Either[String, Vector[Path]]](Right(Vector.empty)): (before, host) =>
           before.flatMap(all => node(folder, host).map(all :+ _))
       yield made
@@ -42,7 +51,11 @@ object Certificates:
       case failed: GeneralSecurityException =>
         Left(s"cannot make certificates in $folder: ${failed.getMessage}")
 
-  private def isHost(text: String) = text.matches("""(\*\.)?[A-Za-z0-9][A-Za-z0-9.:-]{0,252}""")
+  private def isHost(text: String) =
+    if text.matches("[0-9.]+|.*:.*") then address(text).isDefined && !text.contains('%')
+    else text.matches("""(\*\.)?[A-Za-z0-9][A-Za-z0-9.-]{0,252}""")
+
+  private def address(text: String): Option[InetAddress] = Try(InetAddress.ofLiteral(text)).toOption
 
   private def sign(folder: Path): Either[String, Unit] =
     val secret = password(folder.resolve("signer.password"))
@@ -66,43 +79,39 @@ object Certificates:
 
   private def node(folder: Path, host: String): Either[String, Path] =
     val own = folder.resolve(folderOf(host))
-    if Files.exists(own.resolve(Tls.KeyStore)) then Left(s"$own holds a certificate already")
-    else
-      Files.createDirectories(own)
-      val secret          = password(own.resolve(Tls.Password))
-      val (keys, trusted) = (own.resolve(Tls.KeyStore), own.resolve(Tls.TrustStore))
-      val isAddress       = host.matches("""[\d.]+|[0-9A-Fa-f:]*:[0-9A-Fa-f:]*""")
-      val names           =
-        if host == "localhost" then "dns:localhost,ip:127.0.0.1"
-        else if isAddress then s"ip:${InetAddress.getByName(host).getHostAddress}"
-        else s"dns:$host"
-      // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is
-      // kept.
-      val signing = Files.readString(folder.resolve("signer.password")).trim
-      val both    =
-        Files.copy(folder.resolve(Signer), own.resolve("both.p12"), COPY_ATTRIBUTES, REPLACE_EXISTING)
-      try
-        keytool(
-          signing,
-          both,
-          Seq("-genkeypair", "-alias", "node", "-signer", "signer", "-dname", s"CN=$host") ++
-            Seq(
-              s"san=$names",
-              "eku=serverAuth,clientAuth",
-              "ku:c=digitalSignature"
-            ).flatMap(Seq("-ext", _)) ++ Key
-        ).map: _ =>
-          val made = KeyStore.getInstance(both.toFile, signing.toCharArray)
-          write(keys, secret)(_.setKeyEntry(
-            "node",
-            made.getKey("node", signing.toCharArray),
-            secret.toCharArray,
-            made.getCertificateChain("node")
-          ))
-          write(trusted, secret)(_.setCertificateEntry("signer", made.getCertificate("signer")))
-          onlyOurs(keys)
-          own
-      finally Files.deleteIfExists(both): Unit
+    Files.createDirectories(own)
+    val secret          = password(own.resolve(Tls.Password))
+    val (keys, trusted) = (own.resolve(Tls.KeyStore), own.resolve(Tls.TrustStore))
+    val names           =
+      if host == "localhost" then "dns:localhost,ip:127.0.0.1"
+      else address(host).fold(s"dns:$host")(address => s"ip:${address.getHostAddress}")
+    // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is
+    // kept.
+    val signing = Files.readString(folder.resolve("signer.password")).trim
+    val both    =
+      Files.copy(folder.resolve(Signer), own.resolve("both.p12"), COPY_ATTRIBUTES, REPLACE_EXISTING)
+    try
+      keytool(
+        signing,
+        both,
+        Seq("-genkeypair", "-alias", "node", "-signer", "signer", "-dname", s"CN=$host") ++
+          Seq(
+            s"san=$names",
+            "eku=serverAuth,clientAuth",
+            "ku:c=digitalSignature"
+          ).flatMap(Seq("-ext", _)) ++ Key
+      ).map: _ =>
+        val made = KeyStore.getInstance(both.toFile, signing.toCharArray)
+        write(keys, secret)(_.setKeyEntry(
+          "node",
+          made.getKey("node", signing.toCharArray),
+          secret.toCharArray,
+          made.getCertificateChain("node")
+        ))
+        write(trusted, secret)(_.setCertificateEntry("signer", made.getCertificate("signer")))
+        onlyOurs(keys)
+        own
+    finally Files.deleteIfExists(both): Unit
 
   private def write(to: Path, password: String)(entry: KeyStore => Unit): Unit =
     val store = KeyStore.getInstance("PKCS12")

@@ -87,7 +87,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private def certificates(hosts: String*): Future[Vector[Path]] = Future(blocking(
     Certificates.make(temporaryFolder(), hosts).fold(fail(_), identity)
   ))
-  private val makingLab    = certificates("127.0.0.1", "*.workers.lab")
+  private val makingLab    = certificates("127.0.0.1", "*.workers.lab", "::1")
   private val makingOthers = certificates("127.0.0.1")
   private lazy val lab     = Await.result(makingLab, 60.seconds)
 
@@ -259,8 +259,8 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     "with certificates of one set nodes work together; without, " +
       "of another set, or of another host, nobody joins"
   ):
-    val Vector(own, elsewhere) = lab.map(tls): @unchecked
-    val strangers              = tls(Await.result(makingOthers, 60.seconds).head)
+    val Vector(own, elsewhere, _) = lab.map(tls): @unchecked
+    val strangers                 = tls(Await.result(makingOthers, 60.seconds).head)
     coordinating(Some(own)): coordinator =>
       val to      = coordinator.node.address
       val solvers = Reversing()
@@ -281,8 +281,10 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       anna.stop()
 
   test("a node listens where its certificate shows its host alone"):
-    val Vector(own, elsewhere) = lab.map(tls): @unchecked
+    val Vector(own, elsewhere, sixth) = lab.map(tls): @unchecked
     assertEquals(own.shows("127.0.0.1"), Right(()))
+    for host <- Seq("::1", "0:0:0:0:0:0:0:1") do assertEquals(sixth.shows(host), Right(()))
+    assert(sixth.shows("::2").isLeft)
     assertEquals(elsewhere.shows("a.workers.lab"), Right(()))
     assertEquals(elsewhere.shows("A.Workers.Lab"), Right(()))
     for host <- Seq("localhost", "127.0.0.2", "1.127.0.0.1") do
@@ -292,10 +294,15 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   test("a set's folders are for their owner alone, and a certificate is not made twice"):
     val folder = lab.head.getParent
-    assertEquals(lab.map(_.getFileName.toString), Vector("127.0.0.1", "_.workers.lab"))
+    assertEquals(lab.map(_.getFileName.toString), Vector("127.0.0.1", "_.workers.lab", "::1"))
     for key <-
         Seq(folder.resolve("signer.p12"), lab.head.resolve(Tls.KeyStore), lab.head.resolve(Tls.Password))
     do
       assertEquals(Files.getPosixFilePermissions(key).size, 2, key.toString)
     assert(clue(Certificates.make(folder, Seq("127.0.0.1")).swap.getOrElse("made")).contains("already"))
-    assert(clue(Certificates.make(folder, Seq("no host")).swap.getOrElse("made")).contains("no host"))
+    assert(clue(Certificates.make(folder, Seq("new.lab", "127.0.0.1"))).isLeft)
+    assert(!Files.exists(folder.resolve("new.lab")), "nothing is made where something is refused")
+    val none = folder.resolve("none")
+    for host <- Seq("no host", "", ":", "1.2.3.4.5", "fe80::1%lo", "1:2", "::1,dns:else") do
+      assert(clue(Certificates.make(none, Seq(host)).swap.getOrElse("made")).contains(s"'$host'"))
+    assert(!Files.exists(none))
