@@ -7,7 +7,7 @@ import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights,
 import skein.link.TcpTransport
 import skein.loop.{AnyLoop, FlightOutcome}
 import skein.record.{ClockKind, DuckDbRecorder}
-import skein.report.{Report, ReportSections}
+import skein.report.{Report, ReportSections, Typed}
 import skein.scenario.Scenarios
 import skein.scene.Scene
 import skein.settings.{FlightPlan, FlySettings, Wire}
@@ -163,7 +163,7 @@ final class FlyCommand(using Scenarios)
 
   /** Whoever ends the command behind the flights is told where they are. */
   private def kept[A](out: Path)(body: => A): A =
-    Edge.tellingIfCut(s"the flights are recorded; ./skein report $out/*.duckdb shows them")(body)
+    Edge.tellingIfCut(s"the flights are recorded; ${FlyCommand.shows(out)}")(body)
 
   /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot
     * be shown or written, all that went wrong is told.
@@ -197,6 +197,8 @@ private[cli] object FlyCommand:
 
   /** Loops that this process has compiled: its next command need not. */
   @volatile private var warm = Set.empty[AnyLoop]
+
+  private def shows(out: Path) = s"./skein report ${Typed.recordings(out)} shows them"
 
   /** A flight in which no vehicle was ever read for a decision is none, unless somebody ended it.
     *

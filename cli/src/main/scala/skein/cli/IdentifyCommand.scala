@@ -7,7 +7,7 @@ import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.{FlownVehicles, RecordedSeeing}
 import skein.record.{Digest, Recording, RecordingReader}
-import skein.report.{Section, TextTable}
+import skein.report.{Section, TextTable, Typed}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{Fit, ModelFile, SensorFile}
 import skein.units.{Expect, Interval, Span}
@@ -170,9 +170,10 @@ final class IdentifyCommand(using scenarios: Scenarios)
 
   /** How to use the file, by this program where it alone knows the structure. */
   private def flyBy(use: Structure, file: Path, flights: Vector[TimeHistory]): String =
+    val named = Typed.path(file)
     if Structure.ours.contains(use) then
-      s"fly by it: ./skein fly --loop predictive --predictor $file${elsewhere(flights)}"
-    else s"fly by it, with this program: fly --loop predictive --predictor $file, search --plant $file"
+      s"fly by it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
+    else s"fly by it, with this program: fly --loop predictive --predictor $named, search --plant $named"
 
   /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
   private def elsewhere(flights: Vector[TimeHistory]): String =

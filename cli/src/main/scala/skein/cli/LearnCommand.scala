@@ -7,7 +7,7 @@ import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, RunningStats}
 import skein.measure.FlightSummary
 import skein.policy.{NeuralShape, Role}
-import skein.report.Section
+import skein.report.{Section, Typed}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.{ClusterEvaluator, Conditions, Effort, Judge, NamedFiles}
 import skein.settings.{PolicyFile, ScenarioSettings}
@@ -124,7 +124,7 @@ final class LearnCommand(program: String)(using Scenarios)
       question <- LearnCommand.question(options)
       _        <- question.setup.flatMap(_.task)
       _        <- Expect.that(!Files.exists(folder.resolve(LearnFile.Name))):
-        s"--out: $folder holds what was learned already; --resume ${OutFolder.typed(folder)} goes on with it"
+        s"--out: $folder holds what was learned already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, LearnState())
 
@@ -161,7 +161,7 @@ final class LearnCommand(program: String)(using Scenarios)
         val steps   = (state.rounds - from.rounds) * setup.stepsOfRound
         shown.say(f"$steps%,d steps in $seconds%.1f s, ${steps / seconds.max(1e-3)}%,.0f a second")
         val isDone = state.rounds == setup.rounds
-        val goOn   = s"stopped; ./skein learn --resume ${OutFolder.typed(folder)} goes on"
+        val goOn   = s"stopped; ./skein learn --resume ${Typed.path(folder)} goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else
           // Before it measures, which may be cut short: nobody waits long for what is stopped.

@@ -5,6 +5,7 @@ import java.nio.file.attribute.PosixFilePermissions
 import java.nio.file.{FileSystems, Files, Path}
 import mainargs.{Leftover, ParserForClass, arg}
 import scala.util.Using
+import skein.report.Typed
 import skein.units.Expect
 
 /** Options of `./skein new`. */
@@ -35,7 +36,7 @@ object NewCommand
         _ <- write(folder, name)
       yield
         Console.out.println(s"written: $folder")
-        Console.out.println(s"fly it: cd ${OutFolder.typed(folder)} && ./skein fly --clock virtual")
+        Console.out.println(s"fly it: cd ${Typed.path(folder)} && ./skein fly --clock virtual")
         Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
     case words => Left(s"expected one name, came ${words.size}: ./skein new NAME")
 

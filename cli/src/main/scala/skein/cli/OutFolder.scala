@@ -37,11 +37,6 @@ private[cli] object OutFolder:
   def dated(parent: String): String =
     s"$parent/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
 
-  /** As a word for a shell, which would take a name with spaces or quotation marks for something else. */
-  def typed(folder: Path): String =
-    val text = folder.toString
-    if text.matches("[\\p{L}\\p{N}._/+@%-]+") then text else s"'${text.replace("'", "'\\''")}'"
-
   /** The folder of a file; of the root, itself. */
   def of(file: Path): String =
     val whole = file.toAbsolutePath

@@ -6,6 +6,7 @@ import skein.gpu.CudaGpu
 import skein.lanes.gpu.GpuAccelerator
 import skein.optimise.{CmaEs, SearchState}
 import skein.policy.PolicyFamily
+import skein.report.Typed
 import skein.scenario.Scenarios
 import skein.search.*
 import skein.settings.PolicyFile
@@ -116,7 +117,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     for
       question <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
       _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
-        s"--out: $folder holds a search already; --resume ${OutFolder.typed(folder)} goes on with it"
+        s"--out: $folder holds a search already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, None)
 

@@ -2,6 +2,7 @@ package skein.cli
 
 import java.nio.file.Path
 import skein.optimise.SearchState
+import skein.report.Typed
 import skein.search.*
 import skein.units.Decimals.significant
 import skein.view.TaskShow
@@ -47,7 +48,7 @@ private[cli] final class SearchJob(
             f"$seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
         candidates.others(ready.engine(ready.space.defaults, Judge.Candidates)).foreach(say)
-        val goOn = s"stopped; ./skein search --resume ${OutFolder.typed(folder)} goes on"
+        val goOn = s"stopped; ./skein search --resume ${Typed.path(folder)} goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else if !state.best.get.tally.mean.isFinite then
           Left(s"${ready.formula}: even the best candidate comes to no number; choose another objective")
@@ -124,7 +125,7 @@ private[cli] final class SearchJob(
     line.end()
     land match
       case None =>
-        say(s"stopped; ./skein search --resume ${OutFolder.typed(folder)} draws the landscape")
+        say(s"stopped; ./skein search --resume ${Typed.path(folder)} draws the landscape")
         Right(Vector.empty)
       case Some(land) =>
         val title = s"${ready.title}, model ${ready.model}"

@@ -41,7 +41,7 @@ object Report:
       s"Report: $page${if isReplaced then ", in the place of the one before" else ""}" +:
         Option.when(others.nonEmpty)(
           s"it does not show ${shown.mkString(", ")}, which are there too: " +
-            s"./skein report ${page.resolveSibling("*.duckdb")}"
+            s"./skein report ${Typed.recordings(page.resolveSibling(""))}"
         ).toVector
 
   private val MostNamed = 4

@@ -51,6 +51,20 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val ticks = texts.filter(_.toDoubleOption.isDefined).groupMapReduce(identity)(_ => 1)(_ + _)
     assert(ticks.nonEmpty && ticks.values.forall(_ % set.flights.size == 0), ticks)
 
+  folder.test("what is to be typed next can be typed, whatever the folder is called"): folder =>
+    val (one, two) = (folder.resolve("it's a.duckdb"), folder.resolve("b.duckdb"))
+    for (file, seed) <- Seq(one -> 1, two -> 2) do
+      val flight = SyntheticFlight("stream", "direct", seed, seconds = 12)
+      assert(MemoryRecorder(flight.heading).writeTo(file).isRight)
+    val out = folder.resolve("it's so")
+    Files.createDirectories(out): Unit
+    Files.copy(two, out.resolve("c.duckdb")): Unit
+    val set  = Report.read(Seq(one)).fold(errors => fail(errors.mkString), identity)
+    val told = Report.write(set, out).fold(fail(_), identity).told.last
+    assert(clue(told).endsWith(s"c, which are there too: ./skein report '$folder/it'\\''s so'/*.duckdb"))
+    assertEquals(Typed.recordings(Path.of("")), "*.duckdb")
+    assertEquals(Typed.recordings(Path.of("a/b")), "a/b/*.duckdb")
+
   folder.test("a file that is named twice is one flight"): folder =>
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val file   = folder.resolve("flight.duckdb")
