@@ -1,6 +1,7 @@
 package skein.cli
 
 import java.nio.file.Path
+import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
@@ -157,9 +158,14 @@ final class FlyCommand(using Scenarios)
       plans: Vector[FlightPlan],
       out: Path
   ): Either[String, Vector[FlightResult]] =
-    VirtualFlights.fly(settings, plans, out)((landed, contents) =>
-      Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
-    )
+    val written  = AtomicInteger()
+    def recorded =
+      val goOn = if written.get == 0 then "" else s"; ${FlyCommand.shows(out)}"
+      s"${written.get} of ${Decimals.counted(plans.size, "flight")} have landed and are recorded$goOn"
+    Edge.tellingIfCut(recorded):
+      VirtualFlights.fly(settings, plans, out): (landed, contents) =>
+        if landed.written.isRight then written.incrementAndGet(): Unit
+        Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
 
   /** Whoever ends the command behind the flights is told where they are. */
   private def kept[A](out: Path)(body: => A): A =
