@@ -133,6 +133,9 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
           "for example ring-m=4..12, came 'ring-m=12..4'"
       )
     )
+    assertEquals(Varied.parse("ring-m=-1e-1..1.2E+1"), Right(Varied("ring-m", -0.1, 12)))
+    for text <- Seq("ring-m=4..1e308", "ring-m=4..1e999", "ring-m=-2000000000..4") do
+      assertEquals(Varied.parse(text), Left(s"expected bounds from -1e9 to 1e9, came '$text'"))
 
 object TeamSearchSimulation:
   import skein.forward.{Engagement, LoopObserver, Rollout}
