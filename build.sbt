@@ -249,6 +249,7 @@ lazy val cli = project
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
     // The vector module costs no measurable time at the start.
     bashScriptExtraDefines ++= Seq(
+      IO.read((ThisBuild / baseDirectory).value / "project" / "java-version").trim,
       s"""addJava "-javaagent:$$lib_dir/${organization.value}.${(vtimeAgent / Compile / packageBin).value.getName}"""",
       IO.read((ThisBuild / baseDirectory).value / "project" / "class-archive").trim,
       """addJava "--add-modules=jdk.incubator.vector"""",

@@ -95,6 +95,34 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
       assert(!isKeptWith(Array.emptyByteArray))
 
+  test("an older Java, and none at all, is told in one line"):
+    val folder = temporaryFolder()
+    Files.copy(checkout.toPath.resolve("project/java-version"), folder.resolve("java-version"))
+    script(
+      folder.resolve("launcher"),
+      """. ./java-version
+        |java_cmd=$1
+        |java_version_check
+        |echo started""".stripMargin
+    )
+    def started(version: String) =
+      script(
+        folder.resolve("java"),
+        s"echo 'Picked up JAVA_TOOL_OPTIONS: -Dversion=1' >&2; echo '$version' >&2"
+      )
+      run(folder, Map.empty, "./launcher", "./java")
+    for (version, major) <- Seq("1.8.0_402" -> 8, "17.0.15" -> 17, "24-ea" -> 24) do
+      assertEquals(
+        started(s"""openjdk version "$version" 2025-04-15"""),
+        (1, s"skein: Skein needs Java 25, this is $major (./java); set JAVA_HOME\n")
+      )
+    for version <- Seq("25", "25.0.3", "26-ea") do
+      assertEquals(started(s"""openjdk version "$version" 2026-04-21"""), (0, "started\n"))
+    assertEquals(
+      run(folder, Map.empty, "./launcher", "./none"),
+      (1, "skein: Skein needs Java 25, and there is none as ./none; set JAVA_HOME\n")
+    )
+
   test("the last words to standard error are heard where all of a process group is ended"):
     val folder = temporaryFolder()
     Files.copy(checkout.toPath.resolve("project/quiet-vectors"), folder.resolve("quiet-vectors"))
