@@ -19,8 +19,8 @@ final case class Outbox[A] private (
 ):
   def isEmpty: Boolean = notices.isEmpty && waiting.isEmpty
 
-  /** A newer notice takes the place of an older one with its key. */
-  def noticed(key: String, message: A): Outbox[A] = copy(notices = notices.updated(key, message))
+  /** Of notices with one key the newest alone is sent, behind those that came before it. */
+  def noticed(key: String, message: A): Outbox[A] = copy(notices = (notices - key).updated(key, message))
 
   /** @param most of this subscription that may wait
     */

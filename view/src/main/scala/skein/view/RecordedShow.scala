@@ -33,7 +33,7 @@ final class RecordedShow(
   private var next     = 0
   private var told     = Option.empty[Protocol.Status]
 
-  rewind()
+  begin()
   showUntil(start)
 
   def recorded: Option[(Instant, Instant)] = Some((playback.start, playback.end))
@@ -50,16 +50,17 @@ final class RecordedShow(
     playback = playback.controlled(wanted.playing, wanted.speed, wanted.seek, now)
     val position = playback.position(now)
     val seeked   = position != before
-    if position < before then rewind()
+    // Whoever shows it has to know of the jump before the rows that follow.
+    if position < before then forget()
     tell(now, seeked, wanted.request)
+    if position < before then begin()
     showUntil(position)
     Right(())
 
   protected def greet(viewer: Viewer): Unit =
     viewer.notice("playback", ServerBytes(Protocol.playbackState(state(playback.since, seeked = false, ""))))
 
-  private def rewind(): Unit =
-    forget()
+  private def begin(): Unit =
     topics = begun
     next = 0
     topics.opening.foreach(publish)
@@ -84,7 +85,9 @@ final class RecordedShow(
 
   private def tell(now: Instant, seeked: Boolean, request: String): Unit =
     told = Some(statusAt(now))
-    notice("playback", ServerBytes(Protocol.playbackState(state(now, seeked, request))))
+    // What comes after a jump must not take its place: the jump is told once.
+    val key = if seeked then "jump" else "playback"
+    notice(key, ServerBytes(Protocol.playbackState(state(now, seeked, request))))
 
 object RecordedShow:
   private def topics(vehicles: Vector[String], rows: Vector[(Long, Record)]) =

@@ -30,13 +30,13 @@ class OutboxSuite extends munit.FunSuite:
     )
     assertEquals((drained(outbox), outbox.lost), (Vector("row", "image 4"), 3L))
 
-  test("a notice goes first, and a newer one takes its place"):
+  test("a notice goes first, and a newer one instead of it, but before none that it came after"):
     val outbox =
       Outbox.empty[String](limits).offered(1, "row", 1).noticed(
         "time",
         "5"
       ).noticed("info", "i").noticed("time", "6")
-    assertEquals(drained(outbox), Vector("6", "i", "row"))
+    assertEquals(drained(outbox), Vector("i", "6", "row"))
 
   test("nothing of a subscription that has ended is sent, and it is not counted as lost"):
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).unsubscribed(1)

@@ -185,6 +185,31 @@ class ShowSuite extends munit.FunSuite:
     val expected = Protocol.Playing(Protocol.Status.Paused, a + Span.ofMillis(150), 1, seeked = true, "me")
     assertEquals(viewer.take(), Some(ServerBytes(Protocol.playbackState(expected))))
 
+  test("a viewer that was slow is told of a jump, before what came after it"):
+    val show         = replay
+    val Some((a, _)) = show.recorded: @unchecked
+    val to           = a + Span.ofMillis(150)
+    val viewer       = watching(show, "/skein/reading")
+    seen(show, viewer): Unit
+    show.control(ClientMessage.Playback(playing = true, 1, Some(a + Span.ofMillis(300)), "on"), at(1)): Unit
+    Vector.unfold(())(_ => viewer.take().map((_, ()))): Unit
+    show.turn(at(1))
+    show.control(ClientMessage.Playback(playing = false, 1, Some(to), "back"), at(1)): Unit
+    show.control(ClientMessage.Playback(playing = true, 1, None, "play"), at(1)): Unit
+    show.turn(at(1))
+    def playing(status: Protocol.Status, seeked: Boolean, request: String) =
+      Protocol.playbackState(Protocol.Playing(status, to, 1, seeked, request))
+    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case ServerBytes(bytes) => bytes }
+    assertEquals(
+      told.take(3),
+      Vector(
+        playing(Protocol.Status.Paused, seeked = true, "back"),
+        playing(Protocol.Status.Playing, seeked = false, "play"),
+        Protocol.timeIs(to)
+      )
+    )
+    assertEquals(told.size, 5, "and two readings")
+
   test("a viewer that takes nothing loses what is oldest, and is told how much when it looks again"):
     val feed   = Feed()
     val show   = LiveShow(heading, feed, limits = ViewerLimits(waiting = 10))
