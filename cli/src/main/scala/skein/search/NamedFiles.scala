@@ -31,7 +31,12 @@ object NamedFiles:
     * @return or which of the files do not let it be gone on with
     */
   def unchanged(before: Map[String, String], began: String): Either[String, Unit] =
-    val changes = changed(before)
-    Expect.that(changes.isEmpty):
-      s"--resume: ${changes.mkString(", ")} no longer holds what it held when $began began: expected " +
-        "the same, or to begin anew"
+    val (others, gone) = changed(before).partition(isFile)
+    for
+      _ <- gone.headOption.toLeft(()).left.map: missing =>
+        val where = if Path.of(missing).isAbsolute then "" else ", from the folder in which it began"
+        s"--resume: there is no file $missing, which $began read: expected to go on with it$where"
+      _ <- Expect.that(others.isEmpty):
+        s"--resume: ${others.mkString(", ")} no longer holds what it held when $began began: expected " +
+          "the same, or to begin anew"
+    yield ()

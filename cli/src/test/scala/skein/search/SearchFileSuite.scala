@@ -53,8 +53,23 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     assertEquals(NamedFiles.changed(before), Vector.empty)
     Files.writeString(file, "150\n200\n")
     assertEquals(NamedFiles.changed(before), Vector(file.toString))
+    assert(clue(NamedFiles.unchanged(
+      before,
+      "it"
+    )).left.exists(_.startsWith(s"--resume: $file no longer holds")))
     Files.delete(file)
     assertEquals(NamedFiles.changed(before), Vector(file.toString))
+    assertEquals(
+      NamedFiles.unchanged(before, "the search"),
+      Left(s"--resume: there is no file $file, which the search read: expected to go on with it")
+    )
+    assertEquals(
+      NamedFiles.unchanged(Map("no/link.txt" -> "00"), "the search"),
+      Left(
+        "--resume: there is no file no/link.txt, which the search read: expected to go on with it, " +
+          "from the folder in which it began"
+      )
+    )
     Files.delete(folder)
 
   folder.test("what is written for people can be read back, whatever files the question names"): folder =>
