@@ -10,6 +10,7 @@ import javax.net.ssl.{KeyManagerFactory, SSLContext, SSLException, SSLSocket, Tr
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.link.{Address, TransportError}
+import skein.units.Span
 
 /** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are
   * verified.
@@ -69,8 +70,8 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
         val parameters = socket.getSSLParameters
         parameters.setEndpointIdentificationAlgorithm("HTTPS")
         socket.setSSLParameters(parameters)
-        socket.connect(InetSocketAddress(at.host, at.port), Tls.ProbeMillis)
-        socket.setSoTimeout(Tls.ProbeMillis)
+        socket.connect(InetSocketAddress(at.host, at.port), Tls.ProbeWithin.toMillis.toInt)
+        socket.setSoTimeout(Tls.ProbeWithin.toMillis.toInt)
         socket.startHandshake()
         // In TLS 1.3 the other side judges after the handshake has ended here.
         socket.getInputStream.read()
@@ -102,7 +103,8 @@ object Tls:
   val TrustStore = "trust.p12"
   val Password   = "password"
 
-  private val ProbeMillis = 2_000
+  /** Twice. */
+  private[cluster] val ProbeWithin = Span.ofSeconds(2)
 
   /** Reads a folder with `node.p12`, `trust.p12` and `password`.
     *

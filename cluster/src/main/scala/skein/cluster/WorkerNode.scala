@@ -23,6 +23,7 @@ import scala.util.Try
 import scala.util.control.NonFatal
 import skein.cluster.WorkerBehavior.End
 import skein.cluster.jars.{Acceptance, Fetched, NotFetched, Sha256}
+import skein.link.TlsProbe
 
 /** A process that computes blocks.
   *
@@ -83,7 +84,7 @@ final class WorkerNode(
             case End.Refused(reason)            => Some(Left(reason))
             case program: Fetched               => Some(Right(Some(program)))
             case _ if waited > patience.toNanos =>
-              val why = tls.flatMap(_.refusal(coordinator)).fold("")("; " + _)
+              val why = refusal.fold("")("; " + _)
               Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s$why"))
             case _ =>
               val left = (patience.toNanos - waited) / 1_000_000_000
@@ -92,6 +93,13 @@ final class WorkerNode(
         outcome.get
       catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${failed.getMessage}")
       finally pool.shutdownNow(): Unit
+
+  /** Why nobody lets it join, where that is a matter of certificates. */
+  private def refusal: Option[String] = tls match
+    case Some(own) => own.refusal(coordinator)
+    case None      =>
+      Option.when(TlsProbe.answers(skein.link.Address(coordinator.host, coordinator.port), Tls.ProbeWithin)):
+        "who listens there asks for certificates: expected --tls FOLDER with this machine's"
 
   /** From joining to the end, once. */
   private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End | Fetched =

@@ -270,7 +270,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       val (anna, _, _) = worker(to, "anna", solvers, tls = Some(own))
       assertEquals(computed(coordinator.node), answers)
       val whys = Vector(
-        Vector(s"no coordinator at $to"),
+        Vector(s"no coordinator at $to", "asks for certificates: expected --tls FOLDER"),
         Vector(s"no coordinator at $to", s"no trusted connection to $to, "),
         Vector("expected a certificate that shows 127.0.0.1", "shows *.workers.lab")
       )
@@ -279,6 +279,11 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         assert(clue(told).left.exists(reason => why.forall(reason.contains)))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
       anna.stop()
+    coordinating: coordinator =>
+      val to              = coordinator.node.address
+      val (_, outcome, _) = worker(to, "secured", Reversing(), tls = Some(own), patience = 3.seconds)
+      val told            = Await.result(outcome, 90.seconds)
+      assert(clue(told).left.exists(_.contains(s"to $to, which does not answer as TLS does")))
 
   test("a node listens where its certificate shows its host alone"):
     val Vector(own, elsewhere, sixth) = lab.map(tls): @unchecked

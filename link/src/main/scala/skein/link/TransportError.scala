@@ -49,5 +49,8 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
 object TransportError:
   /** By how the JDK's TLS words it. */
   private def whoRefuses(reason: Throwable): String =
-    if s"${reason.getMessage}".contains("Received fatal alert") then "which refuses what this side shows"
+    def says(words: String) = s"${reason.getMessage}".contains(words)
+    if says("Received fatal alert") then "which refuses what this side shows"
+    else if says("terminated the handshake") || says("unrecognized SSL message") then
+      "which does not answer as TLS does"
     else "whose side is refused here"
