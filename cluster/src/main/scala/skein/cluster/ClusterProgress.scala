@@ -41,6 +41,10 @@ enum WorkerEvent(val text: String):
   case Lost(worker: String, blocks: Int)
       extends WorkerEvent(s"$worker is gone; $blocks blocks that it had wait again")
   case Refused(worker: String, reason: String) extends WorkerEvent(s"refused $worker: $reason")
+  case NotTrusted(reason: String)
+      extends WorkerEvent(
+        s"somebody is not trusted here, or does not trust this side: $reason"
+      )
   case Fetching(worker: String) extends WorkerEvent(s"$worker fetches this program, for its own is another")
   case Unread(worker: String, reason: String)
       extends WorkerEvent(s"$worker cannot have this program: $reason")

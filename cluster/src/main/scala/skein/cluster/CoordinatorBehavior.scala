@@ -86,7 +86,8 @@ private[cluster] final class CoordinatorBehavior private (
         state = state.at(System.nanoTime())
         feed()
         save()
-      case Farewell =>
+      case NotTrusted(reason) => once(WorkerEvent.NotTrusted(reason))
+      case Farewell           =>
         // Stays until the node ends: there are some who ask only now.
         isDone = true
         addresses.values.foreach(say(_, Message.Goodbye))
@@ -250,7 +251,10 @@ private[cluster] object CoordinatorBehavior:
   /** A worker's process has ended. */
   final case class Ended(worker: String) extends Local
   case object Farewell                   extends Local
-  private case object Tick               extends Local
+
+  /** A connection by TLS came to nothing. */
+  final case class NotTrusted(reason: String) extends Local
+  private case object Tick                    extends Local
 
   type Command = ToCoordinator | Local
 

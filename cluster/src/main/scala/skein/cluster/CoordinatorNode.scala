@@ -113,6 +113,7 @@ object CoordinatorNode:
       val manager = Cluster(system.toTyped).manager
       val actor   =
         system.spawn(CoordinatorBehavior(job, ledger, tell, latest.set, manager ! Down(_)), Name)
+      val _ = system.eventStream.subscribe(actor.toClassic, classOf[CoordinatorBehavior.NotTrusted])
       val _ = system.spawn(watching(actor), "members")
       manager ! Join(addressOf(system))
       CoordinatorNode(system, actor, latest)

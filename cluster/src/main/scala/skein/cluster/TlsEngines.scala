@@ -1,6 +1,6 @@
 package skein.cluster
 
-import javax.net.ssl.SSLEngine
+import javax.net.ssl.{SSLEngine, SSLException}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.remote.artery.tcp.ConfigSSLEngineProvider
 import skein.link.TlsEngine
@@ -8,6 +8,9 @@ import skein.link.TlsEngine
 /** Engines by Pekko's own settings for certificates. */
 private[cluster] final class TlsEngines(system: ActorSystem) extends ConfigSSLEngineProvider(system):
   override def createServerSSLEngine(hostname: String, port: Int): SSLEngine =
-    TlsEngine(super.createServerSSLEngine(hostname, port))
+    TlsEngine(super.createServerSSLEngine(hostname, port), told)
   override def createClientSSLEngine(hostname: String, port: Int): SSLEngine =
-    TlsEngine(super.createClientSSLEngine(hostname, port))
+    TlsEngine(super.createClientSSLEngine(hostname, port), told)
+
+  private def told(error: SSLException): Unit =
+    system.eventStream.publish(CoordinatorBehavior.NotTrusted(s"${error.getMessage}"))

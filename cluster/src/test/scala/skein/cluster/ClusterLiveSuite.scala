@@ -278,6 +278,10 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         val told = Await.result(outcome, 90.seconds)
         assert(clue(told).left.exists(reason => why.forall(reason.contains)))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
+      // It hears of those that tried: in an alert, and where somebody speaks no TLS.
+      val told = coordinator.news.asScala.collect { case WorkerEvent.NotTrusted(reason) => reason }.toSet
+      assert(clue(told).exists(_.contains("Received fatal alert")))
+      assert(told.exists(_.contains("SSL message")))
       anna.stop()
     coordinating: coordinator =>
       val to              = coordinator.node.address

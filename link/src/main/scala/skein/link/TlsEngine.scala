@@ -1,20 +1,33 @@
 package skein.link
 
 import java.nio.ByteBuffer
-import javax.net.ssl.{SSLEngine, SSLEngineResult, SSLParameters, SSLSession}
+import javax.net.ssl.{SSLEngine, SSLEngineResult, SSLException, SSLParameters, SSLSession}
 
 /** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the
   * whole of a record, however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for
   * 18, and so tries for ever.
+  *
+  * @param failed told why a connection is not trusted
   */
-private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
+private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Unit = _ => ())
+    extends SSLEngine:
   import TlsEngine.*
 
   /** @param source begins with a record, since a call takes whole ones
     */
   def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
     // What is no record it refuses by itself, once, and is closed then.
-    own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count)
+    telling(own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count))
+
+  def wrap(sources: Array[ByteBuffer], from: Int, count: Int, into: ByteBuffer): SSLEngineResult =
+    telling(own.wrap(sources, from, count, into))
+
+  private def telling(step: => SSLEngineResult): SSLEngineResult =
+    try step
+    catch
+      case error: SSLException =>
+        failed(error)
+        throw error
 
   private def isRecord(source: ByteBuffer): Boolean =
     def u8(index: Int) = source.get(source.position() + index) & 0xff
@@ -30,7 +43,6 @@ private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
   override def getHandshakeSession: SSLSession                   = own.getHandshakeSession
 
   export own.{
-    wrap,
     getDelegatedTask,
     closeInbound,
     isInboundDone,
