@@ -41,7 +41,7 @@ private[cli] object SolverOptions:
       case SolverChoice.Tcp(at) =>
         val transport = TcpTransport(certificates = secured.certificates)
         Right(
-          if secured.certificates.isDefined then TcpLink(transport, at)
+          if secured.certificates.isDefined then TcpLink(transport, at, perhaps = HasTls)
           else TcpLink(transport, at, () => wantsTls(at))
         )
       case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)(secured.kafka)))
@@ -57,6 +57,8 @@ private[cli] object SolverOptions:
       ))(using system.dispatcher)
 
   private val ProbeWithin = Span.ofSeconds(2)
+
+  private[cli] val HasTls = "; has ./skein decide there --tls, too?"
 
   /** A flight's plans in virtual time, with its solver behind a link that is as the way to it was: its
     * median, and its spread by a lognormal distribution.

@@ -117,6 +117,16 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
       assert(clue(why).contains(s"the solver at $at asks for certificates; expected --tls FOLDER"))
 
+  test("a flight with certificates is told what its solver may lack"):
+    val server = Await.result(SolverServer.start(loopback, transport(None), SolvedFlight.desk()), 20.seconds)
+    try
+      val at     = server.address
+      val link   = TcpLink(transport(Some(own)), at, perhaps = SolverOptions.HasTls)
+      val flight = SolvedFlight(SolverChoice.Tcp(at), link, patience = Span.ofSeconds(3))
+      val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
+      assert(clue(why).endsWith("; has ./skein decide there --tls, too?"))
+    finally Await.result(server.close(), 20.seconds): Unit
+
   test("a flight is decided by a solver over TLS"):
     served(own): at =>
       val flight = SolvedFlight(SolverChoice.Tcp(at), TcpLink(transport(Some(own)), at))

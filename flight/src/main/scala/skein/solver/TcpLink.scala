@@ -18,11 +18,13 @@ import skein.units.Span
   *
   * @param whyClosed asked once, when the other side has ended a connection before any message came: why it
   *   will always do so, if that is known, and then it is refused
+  * @param perhaps said beside what ended such a connection, where it is not known
   */
 final class TcpLink(
     transport: Transport,
     to: Address,
-    whyClosed: () => Future[Option[String]] = () => Future.successful(None)
+    whyClosed: () => Future[Option[String]] = () => Future.successful(None),
+    perhaps: String = ""
 )(using system: ActorSystem) extends MessageLink:
   import TcpLink.*
   import system.dispatcher
@@ -59,9 +61,10 @@ final class TcpLink(
       ended.onComplete: result =>
         val wasUp = queue.getAndSet(None).isDefined
         completed(out)
-        whyDown = result match
+        val ending = result match
           case Failure(error) => error.getMessage
           case Success(_)     => s"the solver at $to closed the connection"
+        whyDown = if wasUp && !hasHeard then ending + perhaps else ending
         // A solver that goes away in the middle of a handshake looks like this, too; but not twice.
         mistrusts = result match
           case Failure(_: TransportError.NotTrusted) if !hasHeard => mistrusts + 1
