@@ -16,7 +16,7 @@ private[lanes] final class PlantCorrection private (formula: FixedFormula, count
 
   /** Whether the state is the reading itself, number for number. */
   val isReading: Boolean =
-    isTold && bound.inputs.toVector == Vector.range(count, count + Timetable.Read) &&
+    isTold && bound.inputs.toVector == Vector.range(count, count + LaneObservation.READ) &&
       bound.nodes.zipWithIndex.forall((node, i) => node.op == Op.Input && node.index == i)
 
   def call: FixedFormula.Call = formula.call
