@@ -28,7 +28,7 @@ object NewCommand
     case Seq(name) =>
       for
         _ <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
-          s"expected a name of small letters, digits and dashes that begins with a letter, came '$name'"
+          s"expected words of small letters and digits, joined by dashes, each begun by a letter, came '$name'"
         _ <- taken(name).toLeft(())
         folder = Path.of(options.out.getOrElse(name))
         _ <-

@@ -1,6 +1,9 @@
 package skein.cli
 
+import java.nio.file.StandardOpenOption.APPEND
+import java.nio.file.attribute.FileTime
 import java.nio.file.{Files, Path}
+import java.time.Instant
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.testing.TemporaryFolders
@@ -29,6 +32,42 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
       val (status, told) = run("ridge-watch", "--out", s"$folder/$name")
       assertEquals(status, 0, told)
       assert(clue(told).contains(s"fly it: cd $typed && ./skein"))
+
+  folder.test(
+    "a project is built again after a change, after a move, and for other libraries, and only then"
+  ): folder =>
+    val (first, moved) = (folder.resolve("ridge"), folder.resolve("moved here"))
+    assertEquals(run("ridge-watch", "--out", first.toString)._1, 0)
+    // In sbt's place: counts, and names a library that no JVM takes, so that nothing flies.
+    val agent = Files.createFile(folder.resolve("agent.jar"))
+    val _     = Files.writeString(
+      first.resolve("sbtw"),
+      s"""#!/bin/sh
+         |echo built >>target/builds
+         |printf '"-javaagent:$agent"' >target/launch
+         |""".stripMargin
+    )
+    def builds(project: Path): Int =
+      val log = folder.resolve("log").toFile
+      val _   =
+        ProcessBuilder(s"$project/skein").redirectErrorStream(true).redirectOutput(log).start().waitFor()
+      Files.readAllLines(project.resolve("target/builds")).size
+    def age(file: Path): Unit =
+      val _ = Files.setLastModifiedTime(file, FileTime.from(Instant.now.minusSeconds(60)))
+    def save(file: Path): Unit =
+      age(moved.resolve("target/launch"))
+      val _ = Files.writeString(file, "\n", APPEND)
+    assertEquals(builds(first), 1)
+    assertEquals(builds(first), 1)
+    val _ = Files.move(first, moved)
+    assertEquals(builds(moved), 2)
+    assertEquals(builds(moved), 2)
+    save(moved.resolve("src/main/scala/ridgewatch/RidgeWatch.scala"))
+    assertEquals(builds(moved), 3)
+    save(agent)
+    // An installed library keeps the time at which it was built.
+    age(agent)
+    assertEquals(builds(moved), 4)
 
   folder.test("a folder that is there is left alone"): folder =>
     val (status, told) = run("ridge-watch", "--out", folder.toString)
