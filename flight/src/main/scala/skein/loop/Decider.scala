@@ -23,6 +23,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
 
   /** Decides from a complete view.
     *
+    * @throws PolicyFailure if the policy throws, or answers with nothing that a vehicle could be told
     * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
@@ -30,11 +31,14 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
     // A memory comes from this policy alone: from its start, or from its last decision.
     policy match
       case planar: PlanarPolicy =>
-        val (chosen, held)   = planar.planar(seen, memory.held.asInstanceOf[planar.Memory])
+        val (chosen, held) =
+          PolicyFailure.told(agent)(planar.planar(seen, memory.held.asInstanceOf[planar.Memory]))
         val (next, decision) = decided(memory, view, now, chosen.heading.value, chosen.speed)
         (next.copy(held = held), decision)
       case _ =>
-        val (action, held)   = policy.choose(seen, memory.held.asInstanceOf[policy.Memory])
+        val (action, held) =
+          PolicyFailure.told(agent)(policy.choose(seen, memory.held.asInstanceOf[policy.Memory]))
+        PolicyFailure.expectAction(agent, action)
         val (next, decision) =
           decided(
             memory,
@@ -100,7 +104,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
   /** The decision for a course that was chosen, however that was done.
     *
     * @param speed absent where the vehicle commands its own
-    * @throws ArithmeticException if the heading is no finite number: no vehicle is told such a thing
+    * @throws ArithmeticException if heading or speed is no finite number: no vehicle is told such a thing
     */
   def decided(
       memory: Memory,
@@ -109,9 +113,12 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
       heading: Double,
       speed: Option[MetresPerSecond]
   ): (Memory, Decision) =
-    if !heading.isFinite then
+    for
+      (what, number) <- speed.map(mps => ("speed", mps.value)) ++ Some(("heading", heading))
+      if !number.isFinite
+    do
       throw ArithmeticException(
-        s"the policy of ${agent.name} decided for a heading that is no finite number: $heading"
+        s"the policy of ${agent.name} decided for a $what that is no finite number: $number"
       )
     val decision = Decision(
       vehicle = self,

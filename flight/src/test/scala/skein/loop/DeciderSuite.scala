@@ -1,5 +1,6 @@
 package skein.loop
 
+import skein.policy.{Action, AgentPolicy, Observation, Yaw}
 import skein.scenario.PaperDuel
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -49,6 +50,37 @@ class DeciderSuite extends munit.FunSuite:
     assert(
       told.getMessage.contains("the policy of Pursuer decided for a heading that is no finite number: NaN")
     )
+
+  private def failureOf(action: => Action): String =
+    object Broken extends AgentPolicy:
+      type Memory = Unit
+      def start: Unit                                             = ()
+      def choose(seen: Observation, memory: Unit): (Action, Unit) = (action, ())
+    val decider = Decider(scenario, 1, Broken)
+    intercept[PolicyFailure](decider.decide(decider.start, view, millis(200))).getMessage
+
+  test("no vehicle is told an action with a number that is not finite"):
+    val actions = Seq(
+      Action.Velocity(Vector3(Double.PositiveInfinity, 0, 0)),
+      Action.VelocityAt(1, 2, Metres(Double.NaN)),
+      Action.Position(Vector3(0, Double.NaN, 0), MetresPerSecond(1)),
+      Action.Turn(Yaw.Turning(Double.NegativeInfinity))
+    )
+    for action <- actions do
+      assertEquals(failureOf(action), s"the policy of Pursuer decided for what no vehicle can do: $action")
+    assertEquals(failureOf(null), "the policy of Pursuer decided for what no vehicle can do: null")
+
+  test("what a policy throws is told with its vehicle and its line"):
+    def endless(n: Int): Int = 1 + endless(n + 1)
+    val mistakes             = Seq[(() => Action, String)](
+      (() => Vector(Action.Hover)(7), "java.lang.IndexOutOfBoundsException: 7 is out of bounds"),
+      (() => if endless(0) > 0 then Action.Hover else Action.Land, "java.lang.StackOverflowError"),
+      (() => throw NoClassDefFoundError("other/Thing"), "java.lang.NoClassDefFoundError: other/Thing")
+    )
+    for (mistake, told) <- mistakes do
+      val failure = failureOf(mistake())
+      assert(clue(failure).startsWith(s"the policy of Pursuer failed: $told"))
+      assert(clue(failure).matches(".* \\(DeciderSuite.scala:\\d+\\)"))
 
   test("both deciders see the evader in the pursuer's frame"):
     val heading  = math.Pi / 2
