@@ -81,6 +81,26 @@ object Scenario:
   private[scenario] def worded(name: String): String =
     name.replaceAll("(?<=.)([A-Z])", "-$1").toLowerCase(Locale.ROOT)
 
+  /** Vehicles that no simulator can have, and no recording could hold. */
+  private[scenario] def mistakeOfAgents(scenario: Scenario): Option[String] =
+    val agents = scenario.agents
+    val names  = agents.map(_.name)
+    val same   =
+      names.diff(names.distinct).headOption.map(name => s"a name of its own for each, came '$name' twice")
+    same
+      .orElse(agents.flatMap(agent => unflyable(agent).map(_ + s", of ${agent.name}")).headOption)
+      .map("agents: expected " + _)
+
+  private def unflyable(agent: Agent): Option[String] =
+    val place = agent.startPositionNed
+    val speed = agent.speed.value
+    if !(speed >= 0 && speed.isFinite) then Some(s"a speed of 0 or more, came $speed m/s")
+    else if !Seq(place.x, place.y, place.z).forall(_.isFinite) then
+      Some(s"finite numbers as a start, came ${place.x}, ${place.y}, ${place.z}")
+    else if !agent.startHeading.value.isFinite then
+      Some(s"a finite number as the start's heading, came ${agent.startHeading.value}")
+    else None
+
   /** The mistake of a number that is not in its bounds, if it is none. */
   def outside(name: String, value: Int, fewest: Int, most: Int): Option[String] =
     Option.when(value < fewest || value > most)(s"$name: expected $fewest to $most, came $value")

@@ -38,7 +38,9 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
     if unknown.nonEmpty || wrong.nonEmpty then Left(unknown ++ wrong)
     else
       val scenario = mirror.fromProduct(Tuple.fromArray(right.toArray))
-      Either.cond(scenario.mistakes.isEmpty, scenario, scenario.mistakes)
+      val mistakes =
+        if scenario.mistakes.isEmpty then Scenario.mistakeOfAgents(scenario).toSeq else scenario.mistakes
+      Either.cond(mistakes.isEmpty, scenario, mistakes)
 
   /** @param parameters of a recording, by name. A setting that it does not have was added since, and takes its
     *   default

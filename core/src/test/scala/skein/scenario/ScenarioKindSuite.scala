@@ -1,6 +1,7 @@
 package skein.scenario
 
-import skein.policy.Agent
+import skein.policy.{Agent, Role}
+import skein.units.*
 
 class ScenarioKindSuite extends munit.FunSuite:
 
@@ -53,6 +54,31 @@ class ScenarioKindSuite extends munit.FunSuite:
         Map("pairs" -> "2", "asPublished" -> "false")
       ),
       Right(PaperDuel(pairs = 2))
+    )
+
+  test("vehicles that nothing can fly are told with their name"):
+    final case class Pair(second: String = "B", speedMps: Double = 1, north: String = "0") extends Scenario:
+      def agents: Vector[Agent] =
+        for (name, north) <- Vector("A" -> 0.0, second -> this.north.toDouble)
+        yield Agent(
+          name,
+          Role("Scout"),
+          MetresPerSecond(speedMps),
+          Vector3(north, 0, -10),
+          Radians(0),
+          PaperDuel().agents.head.policy
+        )
+    val pair                                    = ScenarioKind(Pair())
+    def mistake(setting: String, value: String) = pair.read(Map(setting -> value)).left.map(_.mkString)
+    assertEquals(pair.read(Map.empty), Right(Pair()))
+    assertEquals(mistake("second", "A"), Left("agents: expected a name of its own for each, came 'A' twice"))
+    assertEquals(
+      mistake("speedMps", "-1"),
+      Left("agents: expected a speed of 0 or more, came -1.0 m/s, of A")
+    )
+    assertEquals(
+      mistake("north", "NaN"),
+      Left("agents: expected finite numbers as a start, came NaN, 0.0, -10.0, of B")
     )
 
   test("what cannot be flown is named by its setting"):

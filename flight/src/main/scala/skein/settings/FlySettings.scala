@@ -10,6 +10,7 @@ import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
 import skein.record.ImagingSensor
 import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
+import skein.scene.SceneFile
 import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vehicle.VehicleKind
@@ -235,6 +236,13 @@ object FlySettings:
       Option.when(
         settings.period < Span.ofMillis(1)
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
+      Option.when(settings.fleet.agents.isEmpty)(
+        s"${settings.scenario.name}.agents: expected one or more, came none"
+      ),
+      Option.when(settings.scene.isEmpty && NamedScene.shipped(settings.scenario.scene).isEmpty)(
+        s"${settings.scenario.name}.scene: expected ${SceneFile.Names.mkString(", ")}, " +
+          s"came '${settings.scenario.scene}'"
+      ),
       settings.multirotors.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
         s"${settings.scenario.name}: expected starts above 0 and up to " +
           s"$MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
