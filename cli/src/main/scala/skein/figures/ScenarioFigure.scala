@@ -104,19 +104,25 @@ object ScenarioFigure:
     def drawn(flight: ScenarioFlights.Flown): (Series, Curve) = flight.result.curves(index)
     val series                                                = drawn(flights.head)._1
     val bound                                                 = series.bound
-    val curves                                                = flights.map(drawn(_)._2.points)
-    val highest = (curves.map(highestShown) ++ bound.map(_.value)).max
+    // What is no number at some instants has gaps there.
+    val curves  = flights.map(drawn(_)._2.stretches.flatten).filter(_.nonEmpty)
+    val highest = (curves.map(highestShown) ++ bound.map(_.value)).maxOption.getOrElse(0.0)
     val panel   = Panel(
-      PlotAxis.around("time, s", 0, curves.map(_.last._1).max, 8),
+      PlotAxis.around("time, s", 0, flights.map(drawn(_)._2.points.last._1).max, 8),
       PlotAxis.around(series.title, (0.0 +: curves.map(_.map(_._2).min)).min, highest),
       left = 52,
       top = 34,
       plotWidth,
       plotHeight
     )
-    val lines = flights.map(flight =>
-      panel.curve(drawn(flight)._2.points.dropWhile(_._2 > panel.y.to), FlightTheme.of(flight.summary))
-    )
+    val lines = flights.flatMap: flight =>
+      val stroke    = FlightTheme.of(flight.summary)
+      val stretches = drawn(flight)._2.stretches
+      (stretches.headOption.map(_.dropWhile(_._2 > panel.y.to)) ++ stretches.drop(1))
+        .filter(_.nonEmpty)
+        .map:
+          case Vector((x, y)) => Mark.Disc(panel.at(x, y), 1.2, None, Some(stroke.colour))
+          case several        => panel.curve(several, stroke)
     val held  = bound.map(bound => panel.level(bound.value, boundLine))
     val items =
       FlightTheme.names(flights.map(_.summary)) ++ bound.map(bound => Legend.line(bound.name, boundLine))

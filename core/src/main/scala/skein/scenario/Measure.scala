@@ -4,7 +4,6 @@ package skein.scenario
   *
   * @param unit may be empty
   * @param isCount of events: over several flights it is added up
-  * @param of the value; absent where the flight has none, for example a time of arrival if it never arrived
   * @param over the part of the flight that it is of; of a flight that has no such part there is no value
   * @param reduced the quantity that it reduces, if it does: then searches can judge by it
   */
@@ -14,8 +13,13 @@ final class Measure private (
     val isCount: Boolean,
     val over: Window,
     val reduced: Option[OverFlight],
-    val of: Tracks => Option[Double]
+    value: Tracks => Option[Double]
 ):
+  /** The value; absent where the flight has none, for example a time of arrival if it never arrived, or none
+    * that is a finite number.
+    */
+  def of(tracks: Tracks): Option[Double] = value(tracks).filter(_.isFinite)
+
   /** With the unit, as tables have it. */
   def title: String = s"$name $unit".trim
 
@@ -125,7 +129,13 @@ object Series:
 final case class Bound(name: String, value: Double)
 
 /** A quantity at equal instants: seconds since all vehicles were first seen, and its values. */
-final case class Curve(points: Vector[(Double, Double)])
+final case class Curve(points: Vector[(Double, Double)]):
+
+  /** Where its values are finite numbers, each stretch without a gap. */
+  def stretches: Vector[Vector[(Double, Double)]] =
+    Vector.unfold(points): left =>
+      val (stretch, rest) = left.dropWhile(!_._2.isFinite).span(_._2.isFinite)
+      Option.when(stretch.nonEmpty)((stretch, rest))
 
 object Curve:
   def apply(tracks: Tracks, value: Int => Double): Curve =

@@ -128,6 +128,17 @@ class TracksSuite extends munit.FunSuite:
     val arrived = Measure.count("arrived")(_.vehicles.size)
     assertEquals((arrived.title, arrived.isCount, arrived.of(flight)), ("arrived", true, Some(2.0)))
 
+  test("where a series is no number it has gaps, and what is measured of that has no value"):
+    val flight = tracks(flying("One", 0, 10, 1))
+    val above3 = Series("log", ""): tracks =>
+      instant => StrictMath.log(tracks.northM(0)(instant) - 3).min(tracks.timeS(instant) - 5)
+    val gone  = Set(150, 300)
+    val holes = Series("holes", "")(_ => instant => if gone(instant) then 1 / 0.0 else 2)
+    assertEquals((above3.mean("mean").of(flight), holes.most("most").of(flight)), (None, None))
+    assertEquals(above3.mean("mean", Window.Last(5)).of(flight).map(_ > 0), Some(true))
+    assertEquals(above3.curve(flight).stretches.map(_.head._1), Vector(3.02))
+    assertEquals(holes.curve(flight).stretches.map(_.size), Vector(150, 149, 200))
+
   test("a result finds its measures by name, and lists violations in the order of their times"):
     final case class Near() extends Scenario:
       def agents            = Vector.empty
