@@ -42,13 +42,16 @@ object DistanceFigure:
       case ((summary, curve), index) =>
         val x = stripsLeft + (index + 0.5) * slotWidth
         curve.lastTenSeconds.toVector.flatMap(strip(panel, x, summary, _))
-    val above   = Point(stripsLeft, panel.top - 10)
-    val heading = Mark.Text(above, "last 10 s: ours ●, paper ◆", Theme.tickSize)
-    val title   = panel.title(FlightTheme.link(link))
+    val above = Point(stripsLeft, panel.top - 10)
+    val drawn = Seq(curves.flatMap(_._2.lastTenSeconds) -> "ours ●", published -> "paper ◆")
+      .collect { case (values, sign) if values.nonEmpty => sign }
+    val heading =
+      Option.when(drawn.nonEmpty)(Mark.Text(above, drawn.mkString("last 10 s: ", ", ", ""), Theme.tickSize))
+    val title = panel.title(FlightTheme.link(link))
     Drawing(
       stripsLeft + stripsWidth + 50,
       plotHeight + 84,
-      (title +: heading +: panel.axes) ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++
+      (title +: panel.axes) ++ heading ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++
         lines ++ strips ++ legend(panel, flights)
     )
 

@@ -114,7 +114,8 @@ object ScenarioTables:
   private def spreadText(values: Vector[Double]): String =
     def two(value: Double) = value.fixed(2)
     Distribution.of(values).fold("")(all =>
-      s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
+      if all.count == 1 then two(all.mean)
+      else s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
     )
 
   /** What happened in no part of the flight. */

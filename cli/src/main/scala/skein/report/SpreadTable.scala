@@ -46,7 +46,7 @@ object SpreadTable:
           group._2,
           mean.fold(groups(group).size)(_.count).toString,
           metres(mean, _.mean),
-          metres(mean, _.sd),
+          metres(mean.filter(_.count > 1), _.sd),
           metres(mean, _.least),
           metres(mean, _.most),
           metres(within, _.mean),

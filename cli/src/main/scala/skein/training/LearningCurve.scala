@@ -31,7 +31,10 @@ object LearningCurve:
       val outline = curve.map(point(_, 1)) ++ curve.reverse.map(point(_, -1))
       Mark.Path(outline, None, Some(colour.faded(0.2)), closed = true)
     val curves = scores.map: (_, colour, curve) =>
-      panel.curve(curve.map(score => (score.steps / 1e3, score.mean)), Stroke(colour, 2))
+      curve match
+        // A line would have no length.
+        case Vector(one) => Mark.Disc(point(one, 0), 4, None, Some(colour))
+        case several => panel.curve(several.map(score => (score.steps / 1e3, score.mean)), Stroke(colour, 2))
     def dashed(colour: Colour) = Stroke(colour, 1.6, Vector(5, 3))
     val lines                  = levels.map: (_, colour, level) =>
       Mark.line(Point(panel.left, panel.atY(level)), Point(panel.right, panel.atY(level)), dashed(colour))

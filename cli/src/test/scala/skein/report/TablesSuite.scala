@@ -44,6 +44,7 @@ class TablesSuite extends munit.FunSuite:
     val percent = 100 * (mean / means.head - 1)
     assertEquals(stream("vs paused"), (if percent < 0 then "" else "+") + percent.fixed(1) + " %")
     assertEquals(row(table, "paused")("vs paused"), "+0.0 %")
+    assertEquals(row(table, "paused")("sd"), "")
 
   test("without a paused flight nothing is said of the truth, and captures are counted"):
     val stream = row(SpreadTable.of(set.flights.tail), "stream")
