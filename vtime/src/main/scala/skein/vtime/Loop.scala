@@ -84,7 +84,13 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
   def governing[A](body: => A): A =
     Redirect.setEnvironment(this)
     val watchdog =
-      Watchdog(thread, () => begun, limits.standstill, fail(Problem.Stuck(limits.standstill), _): Unit)
+      Watchdog(
+        thread,
+        () => begun,
+        limits.standstill,
+        fail(Problem.Stuck(limits.standstill), _): Unit,
+        tellEndless
+      )
     try BlockContext.withBlockContext(this)(body)
     catch case _: Throwable if failure != null => throw failure.nn // it explains whatever followed from it
     finally
@@ -92,6 +98,13 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
       if failure != null then
         Thread.interrupted(): Unit // the watchdog's; whatever runs next here is not meant
       Redirect.setEnvironment(null)
+
+  private def tellEndless(stack: Array[StackTraceElement]): Unit =
+    val at = stack.find(frame => !Loop.libraries.exists(frame.getClassName.startsWith))
+    System.err.println(
+      s"virtual time: one task has computed for ${limits.standstill} and has not ended" +
+        at.fold("")(frame => s"; it is at $frame")
+    )
 
   /** How many tasks have begun; may be read, late, by other threads. */
   def begun: Long = tasks
@@ -152,6 +165,8 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
       throw VirtualTimeException(Problem.Livelock(elapsed, tasksThisTime, running))
 
 private object Loop:
+  private val libraries = Seq("java.", "jdk.", "scala.")
+
   /** 2000-01-01T00:00:00Z, so that equal seeds give equal stamps. */
   val epochNanos: Long = 946_684_800_000_000_000L
 

@@ -5,15 +5,18 @@ import java.lang.management.ManagementFactory
 import scala.concurrent.duration.*
 
 /** Ends a run whose thread stands still, waiting in one task for a lock, a latch or an answer that nobody on
-  * the loop can give. Looks every half of `patience` (real time).
+  * the loop can give. One that computes in one task cannot be ended by another thread; that is told once.
+  * Looks every half of `patience` (real time).
   *
   * @param begun how many tasks the thread has begun so far
+  * @param onEndless where a task is that does not end
   */
 private final class Watchdog(
     thread: Thread,
     begun: () => Long,
     patience: FiniteDuration,
-    onStandstill: Culprit => Unit
+    onStandstill: Culprit => Unit,
+    onEndless: Array[StackTraceElement] => Unit
 ):
   import Watchdog.*
 
@@ -28,10 +31,14 @@ private final class Watchdog(
   private def watch(): Unit =
     try
       var looks = Vector.empty[Look]
+      var told  = false
       while true do
         Thread.sleep((patience / 2).toMillis)
         looks = (looks :+ look()).takeRight(LooksNeeded)
         if standsStill(looks) then end()
+        else if !told && isEndless(looks, patience) then
+          told = true
+          onEndless(thread.getStackTrace)
     catch case _: InterruptedException => ()
 
   private def look() = Look(waiting.contains(thread.getState), begun(), processorNanos(thread))
@@ -60,6 +67,11 @@ private object Watchdog:
     */
   def standsStill(looks: Seq[Look]): Boolean =
     looks.size >= LooksNeeded && looks.forall(look => look.waits && look == looks.head)
+
+  /** Most of the time that the looks lie apart was spent in one task, with the processor. */
+  def isEndless(looks: Seq[Look], patience: FiniteDuration): Boolean =
+    looks.size >= LooksNeeded && looks.forall(_.begun == looks.head.begun) &&
+      looks.last.processorNanos - looks.head.processorNanos > patience.toNanos / 2
 
   private val waiting = Set(State.BLOCKED, State.WAITING, State.TIMED_WAITING)
 
