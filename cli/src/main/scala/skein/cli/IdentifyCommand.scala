@@ -123,7 +123,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       if Structure.ours.contains(use) then flights.map(HorizonErrors.reflown(_)) else Vector.empty
     Expect
       .each(structures.zipWithIndex): (structure, index) =>
-        Identification.of(flights, structure, horizonS) match
+        identified(flights, structure, horizonS) match
           case Right(found) =>
             val unsettled =
               if found.isConverged then "" else ", not converged: its parameters are where the fit stopped"
@@ -138,6 +138,19 @@ final class IdentifyCommand(using scenarios: Scenarios)
             Right(None)
           case Left(reason) => Left(reason)
       .map(_.flatten)
+
+  /** What a plant of the program's own throws is a reason of its own structure alone. */
+  private def identified(
+      flights: Vector[TimeHistory],
+      structure: Structure,
+      horizonS: Double
+  ): Either[String, Identification] =
+    try Identification.of(flights, structure, horizonS)
+    catch
+      case failed: RuntimeException if !Structure.ours.contains(structure) =>
+        Left(
+          s"its plant failed: $failed, at ${failed.getStackTrace.headOption.getOrElse("an unknown place")}"
+        )
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =

@@ -9,11 +9,16 @@ import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
 /** A program with a structure of its own, as a user writes it. */
 object Leaners extends SkeinApp(Scenarios.ours.kinds*):
-  override def structures: Seq[Structure] = Seq(Structure(
-    "leaning",
-    SearchSpace(Vector(Axis("gain", 0.1, 2, 1), Axis("lag-s", 0.2, 10, 2), Axis("lean-lag-s", 0.02, 1, 0.1))),
-    values => Tilting(values(0), values(1), values(2))
-  ))
+  override def structures: Seq[Structure] = Seq(
+    Structure(
+      "leaning",
+      SearchSpace(
+        Vector(Axis("gain", 0.1, 2, 1), Axis("lag-s", 0.2, 10, 2), Axis("lean-lag-s", 0.02, 1, 0.1))
+      ),
+      values => Tilting(values(0), values(1), values(2))
+    ),
+    Structure("broken", SearchSpace(Vector(Axis("lag-s", 0.2, 10, 2))), _ => sys.error("no such vehicle"))
+  )
 
 class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private def run(program: SkeinApp, words: String): (Int, String) =
@@ -35,6 +40,10 @@ class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opti
     done(s"$flight 40s --loop stream --out $folder/flown"): Unit
     val fitted = done(s"identify ${recording(folder.resolve("flown"))} --structure leaning --out $folder")
     assert(fitted.contains("lean-lag-s") && !fitted.contains("Off the full quadrotor"), fitted)
+    // What another throws ends nothing.
+    assert(
+      clue(fitted).contains("broken is not fitted: its plant failed: java.lang.RuntimeException: no such")
+    )
     val model = folder.resolve("model.conf")
     assert(Files.readString(model).contains("use = leaning"))
 
