@@ -68,7 +68,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
           Console.err.println(s"skein $name: --help tells the options")
           2
         case Result.Success(options) =>
-          execute(options) match
+          OutFolder.unlessRefused(execute(options)) match
             case Right(())    => 0
             case Left(reason) =>
               Console.err.println(s"skein $name: ${TextTable.printable(reason)}")

@@ -13,6 +13,20 @@ import skein.plot.{Drawing, Png, Svg}
 /** Folders that commands write into. */
 private[cli] object OutFolder:
 
+  /** Those that the calling thread's command has made, the inner ones first. */
+  private val fresh = ThreadLocal.withInitial[Vector[Path]](() => Vector.empty)
+
+  /** What a command does that tells why it cannot be done; then a folder that it made, and wrote nothing
+    * into, is gone.
+    */
+  def unlessRefused[A](command: => Either[String, A]): Either[String, A] =
+    fresh.remove()
+    val done = command
+    if done.isLeft then
+      try fresh.get.foreach(Files.delete)
+      catch case _: IOException => () // there is something in it
+    done
+
   /** Makes the folder if need be and sees whether files can be written there, so that a command of minutes
     * does not fail at its end.
     *
@@ -24,7 +38,10 @@ private[cli] object OutFolder:
     else
       val folder = Path.of(text)
       try
+        val missing =
+          Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(Files.notExists(_)).toVector
         Files.createDirectories(folder)
+        fresh.set(missing ++ fresh.get)
         Files.delete(Files.createTempFile(folder, ".skein", ""))
         Right(folder)
       catch

@@ -1,6 +1,7 @@
 package skein.cli
 
 import java.io.{ByteArrayOutputStream, IOException, OutputStream, PrintStream}
+import java.nio.file.{Files, Path}
 import skein.testing.TemporaryFolders
 
 class OutputSuite extends munit.FunSuite, TemporaryFolders:
@@ -25,6 +26,20 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     val both   = OutFolder.alone(folder)(Right(OutFolder.alone(folder)(Right(1))))
     assert(clue(both).exists(_.left.exists(_.contains("another command is at work"))))
     assertEquals(OutFolder.alone(folder)(Right(2)), Right(2))
+
+  test("a command that cannot be done leaves no folder that it made and wrote nothing into"):
+    val folder                                                           = temporaryFolder()
+    def refused(name: String)(write: Path => Unit): Either[String, Unit] = OutFolder.unlessRefused:
+      OutFolder.made("--out", s"$folder/$name").flatMap: made =>
+        write(made)
+        Left("nobody answers")
+    Files.createDirectory(folder.resolve("there")): Unit
+    assertEquals(refused("there")(_ => ()), Left("nobody answers"))
+    assertEquals(refused("new/dated")(_ => ()), Left("nobody answers"))
+    assertEquals(refused("used")(made => Files.createFile(made.resolve("log")): Unit), Left("nobody answers"))
+    assertEquals(folder.toFile.list.toSet, Set("there", "used"))
+    assertEquals(OutFolder.unlessRefused(OutFolder.made("--out", s"$folder/kept")).map(_ => ()), Right(()))
+    assert(Files.exists(folder.resolve("kept")))
 
   test("a flight without a decision is a mistake, unless somebody ended it before"):
     val decisions = Seq("stream-vpn" -> 0, "futures-vpn" -> 12, "predictive-vpn" -> 0)
