@@ -4,7 +4,7 @@ import mainargs.{ParserForClass, arg}
 import skein.policy.Role
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
-import skein.settings.PolicyFile
+import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.{Expect, Span}
 
 /** How forward simulation flies, for the commands that do nothing else. */
@@ -33,7 +33,7 @@ final case class ForwardOptions(
     eye: Option[String],
     @arg(doc = "the opponent's policy: a policy file or the name of a family (default: the paper's)")
     opponent: Option[String],
-    @arg(doc = "length of an episode (default: 60s)")
+    @arg(doc = "length of an episode (default: the scenario's own, of duels 60s)")
     duration: Option[String],
     @arg(doc = "seed of every random choice (default: 1)")
     seed: Option[Long],
@@ -62,6 +62,13 @@ final case class ForwardOptions(
     opponent.fold(Right(PolicyFile.paperOf(other)))(ForwardOptions.policy("--opponent", _, other))
 
 object ForwardOptions:
+  /** Of the scenario's flights, and so of its episodes; what is wrong with its settings is told elsewhere. */
+  def durationOf(scenario: String, settings: Map[String, String])(using scenarios: Scenarios): Span =
+    scenarios
+      .kind(scenario)
+      .flatMap(ScenarioSettings.ofKeys(_, settings))
+      .fold(_ => Span.ofSeconds(60), _.duration)
+
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
 
   /** As many as there are cores, unless told. */

@@ -275,7 +275,7 @@ object LearnCommand:
       role       <- PolicyFile.role(options.side.getOrElse("pursuer")).left.map("--side: " + _)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       lesson     <- Span.parse(options.lesson.getOrElse("20s")).left.map("--lesson: " + _)
-      plain      <- forward.conditions(period)
+      plain      <- forward.conditions(period, ForwardOptions.durationOf(scenario, set))
       conditions <- if isGame then Right(plain) else ofTeam(scenario, set, forward, plain)
       opponent   <- forward.opponentOf(role)
       shape      <- NeuralShape.parse(options.network.getOrElse("32x32")).left.map("--network: " + _)

@@ -129,8 +129,8 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         "--objective: expected with a scenario: a sum of its measures, for example off-ring"
       )
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
-      conditions <- forward.conditions(period)
       set        <- Arguments.settings(options.set)
+      conditions <- forward.conditions(period, ForwardOptions.durationOf(scenario, set.toMap))
       vary       <- Expect.all(options.vary)(Varied.parse(_).left.map("--vary: " + _))
       candidates = options.candidates.getOrElse(1000)
       question   = TeamQuestion(
