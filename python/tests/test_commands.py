@@ -50,6 +50,17 @@ def test_what_a_command_refuses_is_an_exception_with_its_words():
         skein.spread(bogus=1)
 
 
+def test_an_option_that_has_another_name_here_is_told_by_it():
+    for function, options, name in [
+        (skein.fly, {"duration": "5s"}, "duration_s"),
+        (skein.fly, {"deadline": "20ms"}, "deadline_ms"),
+        (skein.spread, {"duration": "5s"}, "duration_s"),
+        (skein.search, {"set": "ring-m=8"}, "settings"),
+    ]:
+        with pytest.raises(TypeError, match=f"takes {name}, not {next(iter(options))}"):
+            function(**options)
+
+
 def test_a_file_that_is_no_recording_is_told(tmp_path):
     with pytest.raises(skein.SkeinError, match="which is no file"):
         skein.load(tmp_path / "nothing.duckdb")

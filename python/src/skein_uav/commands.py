@@ -134,6 +134,7 @@ def fly(
     SkeinError
         With what the command said, if it failed.
     """
+    _told_here("fly", options, duration="duration_s", deadline="deadline_ms", set="settings")
     folder = _folder(out)
     with ExitStack() as served:
         given = [(role, one) for role, one in (("pursuer", pursuer), ("evader", evader)) if one is not None]
@@ -185,6 +186,7 @@ def spread(
     dict of str to DataFrame
         Mean and spread over the seeds, by title; units stand in the columns' names.
     """
+    _told_here("spread", options, duration="duration_s", set="settings")
     return run(
         "spread",
         loop=loop,
@@ -216,7 +218,7 @@ def search(
     Parameters
     ----------
     family : str, optional
-        Of the policies to choose from: ``paper-pursuer`` unless named, ``lead-pursuit``, ``neural-pursuer:8x8``, …
+        Of the policies to choose from: ``paper-pursuer`` unless named, ``lead-pursuit``, ``neural:8x8``, …
     link : str
         A latency profile.
     candidates : int
@@ -240,6 +242,7 @@ def search(
     -------
     Found
     """
+    _told_here("search", options, set="settings")
     folder = _folder(out)
     tables = run(
         "search",
@@ -261,6 +264,13 @@ def search(
         pd.read_csv(landscape) if landscape.exists() else None,
         folder,
     )
+
+
+def _told_here(function: str, options: Mapping[str, Any], **names: str) -> None:
+    """Options of the command that the function has under another name."""
+    for option, name in names.items():
+        if option in options:
+            raise TypeError(f"{function}() takes {name}, not {option}")
 
 
 def to_onnx(policy: str | os.PathLike[str], file: str | os.PathLike[str]) -> Path:
