@@ -21,7 +21,9 @@ private object PolicyFailure:
           throw PolicyFailure(agent, s"failed: $mistake${line(mistake).fold("")(" (" + _ + ")")}", mistake)
     came.getOrElse(throw PolicyFailure(agent, "answered null", null))
 
-  /** @throws PolicyFailure if there is no action, or a number in it is not finite */
+  /** @param action or a place
+    * @throws PolicyFailure if there is none, or a number in it is not finite
+    */
   def expectAction(agent: Agent, action: Any): Unit =
     if !isFinite(action) then throw PolicyFailure(agent, s"decided for what no vehicle can do: $action", null)
 

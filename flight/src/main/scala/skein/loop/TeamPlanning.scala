@@ -39,7 +39,7 @@ private final class TeamPlanning(
 
   def pose(memory: Memory, view: TeamView, now: Instant): Part =
     val request = decider.request(memory, view, now)
-    val wanted  = Vector.tabulate(planner.steps)(step => policy.wanted(request, (step + 1) * planner.dtS))
+    val wanted  = Vector.tabulate(planner.steps)(step => placeWanted(request, (step + 1) * planner.dtS))
     val others  =
       if minimumM == 0 then Vector.empty
       else
@@ -61,6 +61,11 @@ private final class TeamPlanning(
       alone.copy(suggested = suggested(request, alone, limits)),
       Planning.stream(seed, self, memory)
     )
+
+  private def placeWanted(request: TeamObservation, aheadS: Double): (Double, Double) =
+    val place = PolicyFailure.told(agent)(policy.wanted(request, aheadS))
+    PolicyFailure.expectAction(agent, place)
+    place
 
   /** After a longer pause the first turn is no sharper. */
   private def turningAtOnce(sinceDecisionS: Double): CommandLimits =

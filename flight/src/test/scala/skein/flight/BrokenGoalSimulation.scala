@@ -1,0 +1,34 @@
+package skein.flight
+
+import skein.loop.LoopKind
+import skein.policy.*
+import skein.scenario.Scenario
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** What becomes of a plan whose goal a policy cannot tell. */
+class BrokenGoalSimulation extends munit.FunSuite:
+
+  private final case class Wanting(place: () => (Double, Double)) extends GoalPolicy:
+    def course(seen: TeamObservation): Course                           = Course(0, 1)
+    def mostMps: Double                                                 = 5
+    def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) = place()
+
+  private final case class Errand(place: () => (Double, Double)) extends Scenario:
+    def agents: Vector[Agent] = Vector(
+      Agent("Lone", Role("Scout"), MetresPerSecond(5), Vector3(0, 0, -10), Radians(0), Wanting(place))
+    )
+
+  private def reason(place: => (Double, Double)): String =
+    VirtualFlights
+      .result(Errand(() => place), LoopKind.Plan, LatencyProfile.none, seed = 1, duration = Span.ofSeconds(1))
+      .fold(identity, _ => fail("it was flown"))
+
+  test("a goal that is no place ends the flight, by the vehicle's name"):
+    assert(clue(reason((
+      Double.NaN,
+      0
+    ))).contains("the policy of Lone decided for what no vehicle can do: (NaN,0.0)"))
+    assert(clue(
+      reason(sys.error("no idea"))
+    ).contains("the policy of Lone failed: java.lang.RuntimeException: no idea"))
