@@ -1,12 +1,11 @@
 package skein.lanes
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.formula.{Angles, Evaluation, Formula, Fused, Node, Trace, Untraceable}
+import skein.formula.{Angles, Evaluation, Formula, Fused, Trace, Untraceable}
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
   *
   * @param alike so many of the method's last inputs are the same in all worlds too
-  * @param extra inputs behind the method's own
   * @param bound what is computed of the inputs and of [[parameters]]
   * @param evaluation how the object's own numbers make those
   */
@@ -14,7 +13,6 @@ private[skein] final class FixedFormula private (
     formula: Formula,
     of: AnyRef,
     val alike: Int,
-    extra: Int,
     private[lanes] val bound: BoundFunction,
     evaluation: Evaluation
 ):
@@ -28,7 +26,7 @@ private[skein] final class FixedFormula private (
 
   /** That of another object that [[fits]]. */
   def of(other: AnyRef): FixedFormula =
-    if other eq of then this else new FixedFormula(formula, other, alike, extra, bound, evaluation)
+    if other eq of then this else new FixedFormula(formula, other, alike, bound, evaluation)
 
   /** Behind the inputs that are alike: what an object that [[fits]] is computed with. */
   private[lanes] def parametersOf(other: AnyRef): Array[Double] =
@@ -44,20 +42,17 @@ private[skein] final class FixedFormula private (
 
   /** For another that [[fits]]. */
   def call(other: AnyRef): FixedFormula.Call =
-    FixedFormula.Call(this, parametersOf(other).map(_.toFloat), own, own + extra)
+    FixedFormula.Call(this, parametersOf(other).map(_.toFloat), own)
 
 private[skein] object FixedFormula:
   private val known = ConcurrentHashMap[(Class[?], String, Int), Forms[AnyRef, FixedFormula]]()
 
-  /** @param changed what is computed in the place of the method's outputs
-    * @param rows so many of the first inputs stand in one array, row by row, and all outputs in another
+  /** @param rows so many of the first inputs stand in one array, row by row, and all outputs in another
     */
   def apply(
       formula: Formula,
       of: AnyRef,
       alike: Int = 0,
-      extra: Int = 0,
-      changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs,
       rows: Int = 0
   ): FixedFormula =
     val own    = formula.inputs.size - alike
@@ -69,10 +64,10 @@ private[skein] object FixedFormula:
       _ => None,
       number => trace.param(alike + number)
     )
-    val fused   = Fused(formula.trace, formula.outputs.map(_._2)).nodes
-    val outputs = changed(trace, fused.map(angles.convert))
-    val bound   = BoundFunction.of(outputs, { case input if input < rows => input }, areRows = rows > 0)
-    new FixedFormula(formula, of, alike, extra, bound, Evaluation(angles.derived))
+    val fused = Fused(formula.trace, formula.outputs.map(_._2)).nodes
+    val bound =
+      BoundFunction.of(fused.map(angles.convert), { case input if input < rows => input }, areRows = rows > 0)
+    new FixedFormula(formula, of, alike, bound, Evaluation(angles.derived))
 
   /** An object's method, which is compiled once for all objects of a form.
     *
@@ -89,9 +84,9 @@ private[skein] object FixedFormula:
       .map(_.of(target))
 
   /** Mutable. */
-  final class Call(formula: FixedFormula, parameters: Array[Float], own: Int, inputs: Int):
+  final class Call(formula: FixedFormula, parameters: Array[Float], own: Int):
     private val call   = LaneCall(formula.bound, parameters)
-    private val places = Array.fill(inputs)(-1)
+    private val places = Array.fill(own)(-1)
     for (input, place) <- formula.bound.inputs.zipWithIndex do places(input) = place
 
     /** From now on for another object, which [[FixedFormula.fits]]. */
