@@ -132,6 +132,12 @@ client.simSetVehiclePose(airsim.Pose(airsim.Vector3r(4, 2, -2), airsim.Quaternio
 here = client.simGetVehiclePose().position
 check("is put elsewhere", near(here.x_val, 4, 0.01) and near(here.y_val, 2, 0.01) and near(here.z_val, -2, 0.01), place(here))
 client.simPause(False)
+# One that still rises would be taken for landed: AirSim looks only whether it sinks.
+client.hoverAsync().join()
+comes_to(
+    "hangs still",
+    lambda: client.getMultirotorState().kinematics_estimated.linear_velocity.get_length() < 0.02,
+)
 check("lands", client.landAsync().get() is True)
 touch = client.simGetCollisionInfo()
 check("touched the ground", touch.has_collided is True and touch.object_name == "Ground")
