@@ -42,7 +42,7 @@ final case class ForwardOptions(
 ):
   /** @param otherwise how long an episode is, unless it is told
     */
-  def conditions(period: Span, otherwise: Span = Span.ofSeconds(60)): Either[String, Conditions] =
+  def conditions(period: Span, otherwise: Span = ForwardOptions.DuelDuration): Either[String, Conditions] =
     for duration <- duration.fold(Right(otherwise))(Span.parse).left.map("--duration: " + _)
     yield Conditions(
       loop.getOrElse("stream"),
@@ -62,12 +62,14 @@ final case class ForwardOptions(
     opponent.fold(Right(PolicyFile.paperOf(other)))(ForwardOptions.policy("--opponent", _, other))
 
 object ForwardOptions:
+  private val DuelDuration = Span.ofSeconds(60)
+
   /** Of the scenario's flights, and so of its episodes; what is wrong with its settings is told elsewhere. */
   def durationOf(scenario: String, settings: Map[String, String])(using scenarios: Scenarios): Span =
     scenarios
       .kind(scenario)
       .flatMap(ScenarioSettings.ofKeys(_, settings))
-      .fold(_ => Span.ofSeconds(60), _.duration)
+      .fold(_ => DuelDuration, _.duration)
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
 

@@ -9,7 +9,6 @@ import skein.link.{Address, TcpTransport, TlsProbe}
 import skein.settings.{FlightPlan, FlySettings, SolverChoice}
 import skein.solver.TcpLink
 import skein.units.Decimals.fixed
-import skein.units.Span
 
 /** What `--solver` means to the commands that fly. */
 private[cli] object SolverOptions:
@@ -51,12 +50,10 @@ private[cli] object SolverOptions:
 
   /** Why a solver closes a connection without certificates, where it asks for them. */
   private[cli] def wantsTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
-    Future(blocking(TlsProbe.answers(at, ProbeWithin)))(using system.dispatcher)
+    Future(blocking(TlsProbe.answers(at)))(using system.dispatcher)
       .map(Option.when(_)(
         s"the solver at $at asks for certificates; expected --tls FOLDER with this machine's"
       ))(using system.dispatcher)
-
-  private val ProbeWithin = Span.ofSeconds(2)
 
   private[cli] val HasTls = "; has ./skein decide there --tls, too?"
 

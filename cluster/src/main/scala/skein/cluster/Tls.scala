@@ -9,8 +9,7 @@ import java.security.{GeneralSecurityException, KeyStore}
 import javax.net.ssl.{KeyManagerFactory, SSLContext, SSLException, SSLSocket, TrustManagerFactory}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
-import skein.link.{Address, TransportError}
-import skein.units.Span
+import skein.link.{Address, TlsProbe, TransportError}
 
 /** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are
   * verified.
@@ -70,8 +69,8 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
         val parameters = socket.getSSLParameters
         parameters.setEndpointIdentificationAlgorithm("HTTPS")
         socket.setSSLParameters(parameters)
-        socket.connect(InetSocketAddress(at.host, at.port), Tls.ProbeWithin.toMillis.toInt)
-        socket.setSoTimeout(Tls.ProbeWithin.toMillis.toInt)
+        socket.connect(InetSocketAddress(at.host, at.port), TlsProbe.Within.toMillis.toInt)
+        socket.setSoTimeout(TlsProbe.Within.toMillis.toInt)
         socket.startHandshake()
         // In TLS 1.3 the other side judges after the handshake has ended here.
         socket.getInputStream.read()
@@ -102,9 +101,6 @@ object Tls:
   val KeyStore   = "node.p12"
   val TrustStore = "trust.p12"
   val Password   = "password"
-
-  /** Twice. */
-  private[cluster] val ProbeWithin = Span.ofSeconds(2)
 
   /** Reads a folder with `node.p12`, `trust.p12` and `password`.
     *

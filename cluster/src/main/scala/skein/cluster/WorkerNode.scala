@@ -98,7 +98,7 @@ final class WorkerNode(
   private def refusal: Option[String] = tls match
     case Some(own) => own.refusal(coordinator)
     case None      =>
-      Option.when(TlsProbe.answers(skein.link.Address(coordinator.host, coordinator.port), Tls.ProbeWithin)):
+      Option.when(TlsProbe.answers(skein.link.Address(coordinator.host, coordinator.port))):
         "who listens there asks for certificates: expected --tls FOLDER with this machine's"
 
   /** From joining to the end, once. */

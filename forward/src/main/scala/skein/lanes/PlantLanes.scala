@@ -46,11 +46,11 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
 
   def fits(other: Plant[?]): Boolean = stepping.fits(other) && reading.fits(other)
 
-  val step: FixedFormula  = FixedFormula(stepping, plant)
-  val read: FixedFormula  = FixedFormula(reading, plant)
   val stages: PlantStages = PlantStages(stepping, reading)
 
   /** Searches, whose worlds share delays, do not wait for these to be compiled. */
+  lazy val step: FixedFormula  = FixedFormula(stepping, plant)
+  lazy val read: FixedFormula  = FixedFormula(reading, plant)
   lazy val steps: PlantSteps   = PlantSteps(stepping, reading, stages.places)
   lazy val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
 

@@ -58,10 +58,10 @@ private[planning] final class VehicleLanes(steps: Int):
 
   private def flightOf(plant: Plant[?], dtS: Double): Flight =
     val pieces = PredictedVehicle.pieces(plant, dtS)
-    plant match
-      case model: ReducedModel if pieces == 1 && ShortLagSteps.fits(model, dtS) =>
-        Flight(ShortLagSteps(model), pieces, dtS)
-      case _ => Flight(plant, pieces, dtS / pieces)
+    val flown  = plant match
+      case model: ReducedModel if pieces == 1 && ShortLagSteps.fits(model, dtS) => ShortLagSteps(model)
+      case _                                                                    => plant
+    Flight(flown, pieces, dtS / pieces)
 
   /** How a plant is flown step by step. */
   private final class Flight(plant: Plant[?], pieces: Int, pieceS: Double):

@@ -14,10 +14,13 @@ private[skein] object TlsProbe:
   private val Handshake = 22
   private val Version   = 3
 
+  /** To connect, and so long again for an answer, where a person waits for what is wrong. */
+  val Within: Span = Span.ofSeconds(2)
+
   /** Greets by TLS, and sees whether the answer is TLS too, whatever it says. Blocks for `within` to connect,
     * and so long again for the answer.
     */
-  def answers(at: Address, within: Span): Boolean =
+  def answers(at: Address, within: Span = Within): Boolean =
     try
       Using.resource(Socket()): socket =>
         val millis = within.toMillis.toInt
