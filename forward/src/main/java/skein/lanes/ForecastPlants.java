@@ -1,26 +1,35 @@
 package skein.lanes;
 
 import static jdk.incubator.vector.VectorOperators.GT;
+import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 
 /**
- * By a plant whose whole state a reading tells: its steps begin at the reading, where a command arrives, with
- * each turn, and after {@code stepS}. {@link PredictedPlants} is the same where the times are those of all
- * worlds. {@code skein.vehicle.PlantModel} begins a step more where a command that acts is told again.
+ * By a plant: its steps begin at a reading, where a command arrives, with each turn, and after {@code stepS}.
+ * What readings do not tell of its state is flown on from reading to reading. {@link PredictedPlants} is the
+ * same where the times are those of all worlds. {@code skein.vehicle.PlantModel} begins a step more where a
+ * command that acts is told again.
  */
 final class ForecastPlants implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 
   private final float speedMps, stepS;
+  private final PlantLanes lanes;
   private final FixedFormula.Call correct, step, look;
 
   /** How many numbers a state is. */
   private final int count;
+
+  private final boolean remembers;
+
+  /** The state at the newest reading, if readings do not tell it. */
+  private final float[] held;
 
   /** The state where a step begins, and where it ends. */
   private final float[] from, to;
@@ -34,13 +43,16 @@ final class ForecastPlants implements ForecastVehicles {
   private final float[] goes = new float[WORLDS];
 
   ForecastPlants(PlantLanes lanes, PlantCorrection correction, double speedMps) {
+    this.lanes = lanes;
     this.speedMps = (float) speedMps;
     stepS = (float) lanes.plant().stepS();
     count = lanes.count();
     from = new float[count * WORLDS];
     to = new float[count * WORLDS];
+    remembers = !correction.isTold();
+    held = new float[from.length];
     correct = correction.call();
-    correct.outputs(count, from, 0);
+    correct.inputs(0, count, from, 0);
     step = lanes.step().call();
     step.inputs(0, count, from, 0);
     step.input(count, north, 0);
@@ -52,10 +64,46 @@ final class ForecastPlants implements ForecastVehicles {
   }
 
   @Override
-  public void predict(
-      LaneVectors vectors, ForecastTrack way, float[] read, float[] into) {
+  public boolean remembers() {
+    return remembers;
+  }
+
+  @Override
+  public void start() {
+    lanes.rest(held, 0);
+  }
+
+  @Override
+  public void enter(LaneVectors vectors, ForecastTrack way, int[] enters, float[] read) {
+    System.arraycopy(held, 0, from, 0, held.length);
+    fly(vectors, way);
+    correct(read, to);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> does = IntVector.fromArray(INTS, enters, i).compare(GT, 0).cast(SPECIES);
+      for (int number = i; number < held.length; number += WORLDS)
+        FloatVector.fromArray(SPECIES, to, number).intoArray(held, number, does);
+    }
+  }
+
+  @Override
+  public void predict(LaneVectors vectors, ForecastTrack way, float[] read, float[] into) {
+    if (remembers) System.arraycopy(held, 0, from, 0, held.length);
+    else correct(read, from);
+    fly(vectors, way);
+    look.outputs(LaneObservation.READ, into, 0);
+    look.apply();
+  }
+
+  /** The state at a reading, of that before it. */
+  private void correct(float[] read, float[] into) {
     correct.inputs(count, LaneObservation.READ, read, LaneVehicles.SEEN_X);
+    correct.outputs(count, into, 0);
     correct.apply();
+  }
+
+  /** From the begin of the way to its end. */
+  private void fly(LaneVectors vectors, ForecastTrack way) {
     Arrays.fill(flownS, 0f);
     Arrays.fill(forS, stepS);
     for (int turn = 0; turn < way.turns; turn++) {
@@ -65,8 +113,6 @@ final class ForecastPlants implements ForecastVehicles {
         take(vectors);
       }
     }
-    look.outputs(LaneObservation.READ, into, 0);
-    look.apply();
   }
 
   /** The command from a turn on, and until when it stands. */

@@ -23,8 +23,8 @@ import skein.forecast.VehicleForecast;
 /**
  * What is known of one vehicle in many worlds: when it was read last, the commands sent since, and which of
  * them it takes the vehicle to fly under. The scalar reference is {@link VehicleForecast} with a {@link
- * skein.vehicle.PlantModel} whose whole state a reading tells: of its past only the commands count that wait
- * out the dead time.
+ * skein.vehicle.PlantModel}: of its past the commands count that wait out the dead time, and what {@link
+ * ForecastVehicles} remember.
  *
  * <p>{@link #lay} lays the way from the reading to a moment: turns, one after the other, at which the vehicle
  * begins to follow another direction. The first {@link #held} turns were found at readings and stand; what
@@ -263,13 +263,23 @@ final class ForecastTrack {
     }
   }
 
-  /** Lets stand what is taken to have acted before each reading that entered, by what was known then. */
-  void conclude(int row) {
+  /**
+   * Lets stand what is taken to have acted before each reading that entered, by what was known then.
+   *
+   * @param by to which each of them is told, if it remembers
+   * @param read of what they are readings
+   */
+  void conclude(int row, ForecastVehicles by, LaneVehicles read) {
     int n = 0;
     while (findEntering(n)) {
       Readings nth = readings.get(n++);
       lay(row, entering, nth.receivedAt, nth.receivedAt, nth.toS, nth.fromS);
-      settle(row, nth.madeAt);
+      aimAt(row, nth.madeAt);
+      if (by.remembers()) {
+        read.read(row, entering, enters, nth.madeAt, enters, true);
+        by.enter(entering, this, enters, read.state);
+      }
+      settle(row);
       renew(row, nth.madeAt);
     }
     Arrays.fill(entered, 0);
@@ -280,10 +290,8 @@ final class ForecastTrack {
     entering.count = 0;
     for (int i = 0; i < WORLDS; i += LANES) {
       VectorMask<Integer> more = IntVector.fromArray(INTS, entered, i).compare(GT, n);
-      if (more.anyTrue()) {
-        entering.first[entering.count++] = i;
-        IntVector.broadcast(INTS, 0).blend(1, more).intoArray(enters, i);
-      }
+      if (more.anyTrue()) entering.first[entering.count++] = i;
+      IntVector.broadcast(INTS, 0).blend(1, more).intoArray(enters, i);
     }
     return entering.count > 0;
   }
@@ -302,24 +310,15 @@ final class ForecastTrack {
     }
   }
 
-  /** Of the way laid, lets the turns stand whose commands are taken to have acted until readings. */
-  private void settle(int row, int[] made) {
-    float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
-    float[] beforeX = before.cos, beforeY = before.sin, priorX = prior.cos, priorY = prior.sin;
-    int mask = slots - 1, last = (held - 1) * WORLDS, first = (held + 1) * WORLDS;
-    IntVector here = IntVector.broadcast(INTS, row), none = IntVector.broadcast(INTS, NONE);
+  /** The way is as long as from the reading before until this one, if there was one before. */
+  private void aimAt(int row, int[] made) {
+    IntVector here = IntVector.broadcast(INTS, row);
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         rowS = FloatVector.broadcast(SPECIES, periodS),
-        longAgo = FloatVector.broadcast(SPECIES, LONG_AGO_S),
-        zero = FloatVector.broadcast(SPECIES, 0f),
-        dead = FloatVector.broadcast(SPECIES, deadS);
-    boolean isFull = false;
+        zero = FloatVector.broadcast(SPECIES, 0f);
     for (int k = 0; k < entering.count; k++) {
       int i = entering.first[k];
       IntVector rows = IntVector.fromArray(INTS, knownRow, i);
-      VectorMask<Float> flies =
-          rows.compare(GE, 0).and(IntVector.fromArray(INTS, enters, i).compare(GT, 0)).cast(SPECIES);
-      if (!flies.anyTrue()) continue;
       FloatVector span =
           ((FloatVector)
                   IntVector.fromArray(INTS, made, i)
@@ -327,6 +326,33 @@ final class ForecastTrack {
                       .convertShape(I2F, SPECIES, 0))
               .mul(grainS)
               .add(((FloatVector) here.sub(rows).convertShape(I2F, SPECIES, 0)).mul(rowS));
+      zero.blend(span, flies(i)).intoArray(endS, i);
+    }
+  }
+
+  /** Where a reading enters that is not the first. */
+  private VectorMask<Float> flies(int i) {
+    return IntVector.fromArray(INTS, knownRow, i)
+        .compare(GE, 0)
+        .and(IntVector.fromArray(INTS, enters, i).compare(GT, 0))
+        .cast(SPECIES);
+  }
+
+  /** Of the way laid, lets the turns stand whose commands are taken to have acted until readings. */
+  private void settle(int row) {
+    float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
+    float[] beforeX = before.cos, beforeY = before.sin, priorX = prior.cos, priorY = prior.sin;
+    int mask = slots - 1, last = (held - 1) * WORLDS, first = (held + 1) * WORLDS;
+    IntVector none = IntVector.broadcast(INTS, NONE);
+    FloatVector longAgo = FloatVector.broadcast(SPECIES, LONG_AGO_S),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        dead = FloatVector.broadcast(SPECIES, deadS);
+    boolean isFull = false;
+    for (int k = 0; k < entering.count; k++) {
+      int i = entering.first[k];
+      VectorMask<Float> flies = flies(i);
+      if (!flies.anyTrue()) continue;
+      FloatVector span = FloatVector.fromArray(SPECIES, endS, i);
       FloatVector until = span.add(dead);
       int laidFrom = firstOf[i / LANES], turns = turnsOf[i / LANES], since = heldFrom[i / LANES];
       for (int from = held * WORLDS + i; from < turns * WORLDS; from += WORLDS) {

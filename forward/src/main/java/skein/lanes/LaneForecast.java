@@ -13,9 +13,9 @@ final class LaneForecast {
   private final MeanDelays delays = new MeanDelays();
   private final ForecastTrack[] tracks;
 
-  // By vehicle: by what it is carried forward, and where its newest reading is, at LaneVehicles.SEEN_X.
+  // By vehicle: by what it is carried forward, and what is read of it.
   private final ForecastVehicles[] vehicles;
-  private final float[][] read;
+  private final LaneVehicles[] read;
 
   /** By vehicle, for the decider asked for last: as {@link ForecastVehicles#predict} puts it. */
   private final float[][] predicted;
@@ -40,14 +40,14 @@ final class LaneForecast {
     tracks = new ForecastTrack[count];
     for (int v = 0; v < count; v++) tracks[v] = new ForecastTrack(periodS, deadTimeS);
     vehicles = new ForecastVehicles[count];
-    read = new float[count][];
+    read = new LaneVehicles[count];
     predicted = new float[count][LaneObservation.READ * WORLDS];
   }
 
-  /** By what a vehicle is carried forward, and where its newest reading stands. */
+  /** By what a vehicle is carried forward, and what is read of it. */
   void follow(int vehicle, ForecastVehicles by, LaneVehicles read) {
     vehicles[vehicle] = by;
-    this.read[vehicle] = read.state;
+    this.read[vehicle] = read;
   }
 
   ForecastTrack track(int vehicle) {
@@ -58,6 +58,7 @@ final class LaneForecast {
     delays.start();
     laidRow = -1;
     for (ForecastTrack track : tracks) track.start();
+    for (ForecastVehicles each : vehicles) each.start();
   }
 
   /** To a period; they are taken in turn. */
@@ -86,7 +87,7 @@ final class LaneForecast {
   void tell(int[] joinedAt, int[][] madeAt) {
     Arrays.fill(joinedAt, dueGrains);
     for (int v = 0; v < tracks.length; v++) {
-      tracks[v].conclude(row);
+      tracks[v].conclude(row, vehicles[v], read[v]);
       tracks[v].tell(joinedAt, madeAt[v]);
     }
   }
@@ -103,7 +104,7 @@ final class LaneForecast {
     System.arraycopy(when, 0, predictedFor, 0, WORLDS);
     for (int v = 0; v < tracks.length; v++) {
       tracks[v].lay(row, vectors, due, when, delays, isFirst);
-      vehicles[v].predict(vectors, tracks[v], read[v], predicted[v]);
+      vehicles[v].predict(vectors, tracks[v], read[v].state, predicted[v]);
     }
   }
 

@@ -8,7 +8,8 @@ import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 /** A vehicle that has to tilt before it accelerates: readings do not tell its tilt. */
 final case class Tilted(seen: PlaneReading, northMps2: Double, eastMps2: Double)
 
-final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double) extends ObservedPlant[Tilted]:
+final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double, override val deadTimeS: Double = 0)
+    extends ObservedPlant[Tilted]:
   def initial: Tilted                                      = Tilted(PlaneReading(0, 0, 0, 0), 0, 0)
   def stepS: Double                                        = 0.02
   def read(state: Tilted): PlaneReading                    = state.seen

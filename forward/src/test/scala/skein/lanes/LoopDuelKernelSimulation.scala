@@ -12,6 +12,7 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
+import skein.identify.Tilting
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
@@ -25,7 +26,8 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     "no lag"        -> VelocityResponses.Ideal,
     "drag"          -> PlantResponse(ReducedModel.AirSim),
     "drag and turn" -> PlantResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
-    "skating"       -> PlantResponse(Skating(0.4, 1.5, 0.01))
+    "skating"       -> PlantResponse(Skating(0.4, 1.5, 0.01)),
+    "tilting"       -> PlantResponse(Tilting(0.95, 0.9, 0.2, 0.05))
   )
 
   private val keys     = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))
