@@ -2,6 +2,7 @@ package skein.lanes
 
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Fused, Trace, Untraceable}
+import skein.simd.LaneFunction
 
 /** A method of one object, compiled with the object's own numbers, the same in all worlds.
   *
@@ -105,7 +106,7 @@ private[skein] object FixedFormula:
     def inputs(first: Int, count: Int, array: Array[Float], from: Int): Unit =
       var i = 0
       while i < count do
-        input(first + i, array, from + i * TimetableVehicles.WORLDS)
+        input(first + i, array, from + i * LaneFunction.COUNT)
         i += 1
 
     def output(number: Int, array: Array[Float], from: Int): Unit = call.output(number, array, from)
@@ -124,7 +125,7 @@ private[skein] object FixedFormula:
     def outputs(count: Int, array: Array[Float], from: Int): Unit =
       var i = 0
       while i < count do
-        output(i, array, from + i * TimetableVehicles.WORLDS)
+        output(i, array, from + i * LaneFunction.COUNT)
         i += 1
 
     /** From now on the first worlds alone count. */

@@ -15,22 +15,7 @@ import skein.vehicle.ReducedModel
 /** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
   * delays of its own.
   */
-private[skein] trait LaneDynamics:
-  /** From a command's arrival until the vehicle follows it, s. */
-  def deadTimeS: Double
-
-  /** [[VelocityResponse.handoverS]]. */
-  def handoverS: Double
-
-  /** Of one vehicle in one episode. */
-  def clock(): EventClock
-
-  /** All worlds' vehicles of one number; what differs between worlds is told to them.
-    *
-    * @param duelist its speed is that of a direction of length 1
-    */
-  def vehicles(duelist: Duelist): TimetableVehicles
-
+private[skein] trait LaneDynamics extends TimetableDynamics:
   /** How long one of its steps lasts at most, s. */
   def stepS: Double
 
@@ -39,9 +24,6 @@ private[skein] trait LaneDynamics:
 
   /** All worlds' vehicles of one role, whose commands act at times of their own. */
   private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles
-
-  /** What carries their readings forward, in loops that predict. */
-  def predictor: Option[TimetablePredictor] = None
 
 private[skein] object LaneDynamics:
   /** @return or why this model does not fly by lanes
@@ -79,7 +61,7 @@ private[skein] object LaneDynamics:
     of(model, vehicles).flatMap: vehicles =>
       timing match
         case predictive: LoopTiming.Predictive =>
-          TimetablePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
+          LanePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)
 
   /** AirSim's quadrotor loses height while it turns. */

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.SteppedVehicles
+import skein.simd.LaneFunction
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Quadrotor
 
@@ -99,7 +100,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
 private[skein] object LaneQuadrotors:
   /** Vehicles flown together. */
-  val VEHICLES: Int = TimetableVehicles.WORLDS
+  val VEHICLES: Int = LaneFunction.COUNT
 
   /** @return or why such quadrotors do not fly by lanes */
   def of(quadrotor: Quadrotor): Either[String, LaneQuadrotors] =

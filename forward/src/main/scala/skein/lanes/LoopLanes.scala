@@ -21,8 +21,8 @@ private[lanes] final class LoopLanes(
     shortCut: Boolean = true
 ):
   /** How the vehicles' readings are carried forward, if they are. */
-  private val predictor: Option[TimetablePredictor] = timing match
-    case predictive: LoopTiming.Predictive => TimetablePredictor.of(predictive.predictor).toOption
+  private val predictor: Option[LanePredictor] = timing match
+    case predictive: LoopTiming.Predictive => LanePredictor.of(predictive.predictor).toOption
     case _                                 => None
 
   /** Null where decisions go by the readings themselves. */

@@ -40,7 +40,7 @@ private[lanes] object LoopSupport:
       case predictive: LoopTiming.Predictive =>
         for
           _ <- asksAtOnce(predictive.asking)
-          _ <- TimetablePredictor.of(predictive.predictor)
+          _ <- LanePredictor.of(predictive.predictor)
         // It is due in the middle between two questions.
         yield Vector(predictive.periodS / 2)
       case _: LoopTiming.Paused => Left("worlds that stand still while it is decided meet no delays")

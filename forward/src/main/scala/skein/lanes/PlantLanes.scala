@@ -3,6 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
+import skein.simd.LaneFunction
 import skein.vehicle.{PlaneReading, Plant, PlantState}
 
 /** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
@@ -20,7 +21,7 @@ private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantF
 
   /** Fills in the numbers of a state at rest, of all worlds. */
   def rest(array: Array[Float], from: Int): Unit =
-    val worlds = TimetableVehicles.WORLDS
+    val worlds = LaneFunction.COUNT
     for i <- 0 until count do
       Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
 

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.formula.{Formula, Untraceable}
+import skein.simd.LaneFunction
 import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
@@ -39,7 +40,7 @@ private[lanes] final class QuadrotorLanes private (
     val call = LaneCall(formula.bound, formula.parameters.map(_.toFloat))
     for (input, place) <- formula.bound.inputs.zipWithIndex do
       if input < rows.size then call.input(place, from, 0)
-      else call.input(place, goal, (input - rows.size) * TimetableVehicles.WORLDS)
+      else call.input(place, goal, (input - rows.size) * LaneFunction.COUNT)
     call.output(0, to, 0)
     call
 

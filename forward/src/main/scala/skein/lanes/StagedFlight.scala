@@ -1,5 +1,7 @@
 package skein.lanes
 
+import skein.simd.LaneFunction.COUNT as WORLDS
+
 /** Flights by the [[PlantStages]] of one plant, in many worlds whose steps begin and end together. Mutable.
   *
   * @param speedMps of a command of length 1
@@ -12,7 +14,6 @@ private[lanes] final class StagedFlight(
     startY: Array[Float]
 ):
   import PlantStages.{East, North, StartX, StartY}
-  import TimetableVehicles.WORLDS
   private val stages               = lanes.stages
   private val parameters           = stages.parametersOf(lanes.plant, speedMps)
   private val (times, firstOfTime) = (stages.times, stages.firstOfTime)

@@ -203,5 +203,5 @@ private[lanes] object LoopTeamAgents:
   ): Array[LoopTeamAgents] =
     val all = Array.tabulate(team.size)(self => LoopTeamAgents(self, team(self), loop, model, views))
     for vehicle <- all; call <- views.call +: all.map(_.decisions.call) do
-      call.show(vehicle)
+      call.show(vehicle.self, vehicle.seen, vehicle.seenFrom)
     all

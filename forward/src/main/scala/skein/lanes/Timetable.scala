@@ -62,7 +62,7 @@ private[skein] object Timetable:
       timing: LoopTiming,
       link: Delays,
       key: Int,
-      model: LaneDynamics,
+      model: TimetableDynamics,
       eyes: Map[Int, SensorModel] = Map.empty
   ): Timetable =
     val notes = TimetableNotes(vehicles, model, eyes)
@@ -85,7 +85,7 @@ private[skein] object Timetable:
 private final class TimetableCompiler(
     notes: TimetableNotes,
     vehicles: Int,
-    model: LaneDynamics
+    model: TimetableDynamics
 ):
   import Timetable.Fields
   import TimetableKernel.{ACT, DECIDE, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}

@@ -9,7 +9,7 @@ import skein.units.Instant
 
 /** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle.
   */
-private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, eyes: Map[Int, SensorModel])
+private[lanes] final class TimetableNotes(vehicles: Int, model: TimetableDynamics, eyes: Map[Int, SensorModel])
     extends LoopObserver:
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 

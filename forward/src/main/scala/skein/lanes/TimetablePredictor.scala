@@ -1,7 +1,6 @@
 package skein.lanes
 
 import skein.forward.Duelist
-import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
 
 /** A kind of model that carries readings forward by [[Timetable]]s. */
 private[skein] trait TimetablePredictor:
@@ -11,69 +10,8 @@ private[skein] trait TimetablePredictor:
   /** All worlds' predictions of one vehicle. */
   def vehicles(duelist: Duelist): PredictedVehicles
 
-  /** The same where every world has delays of its own. */
-  def alone(duelist: Duelist): ForecastVehicles
-
   /** Whether readings do not tell all that is known of a vehicle. */
   def remembers: Boolean = false
 
   /** From a command's arrival until a vehicle is taken to follow it, s. */
   def deadTimeS: Double
-
-private[skein] object TimetablePredictor:
-  /** @return or why this model does not predict by lanes
-    */
-  def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
-    case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
-    case PlantModel(plant)                          =>
-      for
-        lanes      <- PlantLanes.of(plant)
-        correction <- PlantCorrection.of(plant, lanes.count)
-      yield PlantPredictor(lanes, correction)
-    case ConstantVelocity => Right(CoastPredictor)
-    case _                => Left("the lanes predict by plants and by constant velocity")
-
-/** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
-private[lanes] object CoastPredictor extends TimetablePredictor, Propagator:
-  def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
-  def alone(duelist: Duelist): ForecastVehicles            = ForecastCoasting()
-  def deadTimeS: Double                                    = 0
-  def propagator: Propagator                               = this
-  def next(legs: Vector[Propagator.Leg]): Propagator       = this
-  def predicted(legs: Vector[Propagator.Leg]): Propagation =
-    Propagation(Array.empty, Array.empty, legs.iterator.map(_.span.toSeconds).sum.toFloat, 1)
-
-/** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of
-  * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
-  */
-private[lanes] final class LagPredictor(val model: ReducedModel) extends TimetablePredictor:
-  def deadTimeS: Double                             = model.deadTimeS
-  def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
-  def alone(duelist: Duelist): ForecastVehicles = ForecastLagVehicles(duelist.speed * model.gain, model.lagS)
-
-  def propagator: Propagator = CommandPropagator(model.deadTimeS, propagation)
-
-  private def propagation(flown: Vector[CommandPropagator.Flown], totalS: Double): Propagation =
-    val lag = FirstOrderLag(model.lagS)
-    CommandPropagator.told(flown, perPart = 2, lag.carriesS(totalS), lag.remains(totalS)): (part, into, at) =>
-      val (left, after)               = (totalS - part.fromS, totalS - part.untilS)
-      val (carriedLeft, carriedAfter) = (lag.carriesS(left), lag.carriesS(after))
-      into(at) = ((left - carriedLeft) - (after - carriedAfter)).toFloat
-      into(at + 1) = (carriedLeft / model.lagS - carriedAfter / model.lagS).toFloat
-
-/** By [[PredictedPlants]]. */
-private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction: PlantCorrection)
-    extends TimetablePredictor:
-  private val tell = lanes.stages.tell(lanes.plant)
-
-  override def remembers: Boolean                   = !correction.isTold
-  def deadTimeS: Double                             = lanes.plant.deadTimeS
-  def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, correction, duelist.speed)
-  def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, correction, duelist.speed)
-
-  def propagator: Propagator =
-    CommandPropagator(lanes.plant.deadTimeS, (flown, _) => propagation(flown))
-
-  private def propagation(flown: Vector[CommandPropagator.Flown]): Propagation =
-    CommandPropagator.told(flown, StepClock.numbers(lanes)): (part, into, at) =>
-      StepClock(lanes, tell, part.fromS).tell(part.untilS, acts = false, into, at)

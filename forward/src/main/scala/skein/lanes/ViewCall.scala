@@ -24,10 +24,10 @@ private[lanes] final class ViewCall(
     for i <- places.indices if vehicles(i) == vehicle && fields(i) == field do
       call.input(places(i), array, from)
 
-  /** The same of all that decisions go by of a vehicle. */
-  def show(of: LaneAgents): Unit =
+  /** The same of all fields, one behind the other. */
+  def show(vehicle: Int, array: Array[Float], from: Int): Unit =
     for field <- 0 until LaneObservation.READ do
-      show(of.self, field, of.seen, of.seenFrom + field * LaneFunction.COUNT)
+      show(vehicle, field, array, from + field * LaneFunction.COUNT)
 
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
     var i = 0

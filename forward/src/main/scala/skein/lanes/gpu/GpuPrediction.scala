@@ -2,7 +2,7 @@ package skein.lanes.gpu
 
 import skein.forward.{Duelist, LoopTiming}
 import skein.gpu.{Ptx, Variables}
-import skein.lanes.{CoastPredictor, PlantPredictor, LagPredictor, PlantLanes, Propagation, TimetablePredictor}
+import skein.lanes.{CoastPredictor, PlantPredictor, LagPredictor, PlantLanes, Propagation, LanePredictor}
 
 /** Carries readings of one vehicle forward in the world of each thread, command by command; see
   * [[skein.lanes.PredictedVehicles]]. Position and velocity stand in variables meanwhile.
@@ -33,7 +33,7 @@ private[lanes] object GpuPrediction:
     */
   def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
     case predictive: LoopTiming.Predictive =>
-      TimetablePredictor.of(predictive.predictor).flatMap:
+      LanePredictor.of(predictive.predictor).flatMap:
         case CoastPredictor    => Right(Some(GpuLagPrediction(_, _, 0)))
         case lag: LagPredictor => Right(Some(GpuLagPrediction(_, _, lag.model.gain)))
         case plant: PlantPredictor if plant.correction.isReading =>
