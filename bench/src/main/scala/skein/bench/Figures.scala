@@ -1,7 +1,8 @@
 package skein.bench
 
 import skein.forward.{DelayTable, LoopTiming}
-import skein.lanes.{DuelNumber, DuelWorlds, LaneQuadrotors}
+import skein.lanes.{DuelNumber, DuelWorlds}
+import skein.lanes.plant.LaneQuadrotors
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 

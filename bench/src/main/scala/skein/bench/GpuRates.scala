@@ -4,6 +4,7 @@ import skein.forward.*
 import skein.gpu.{CudaGpu, Gpu}
 import skein.lanes.*
 import skein.lanes.gpu.{GpuAccelerator, GpuQuadrotors}
+import skein.lanes.plant.LaneQuadrotors
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3

@@ -2,8 +2,8 @@ package skein.bench
 
 import java.lang.management.ManagementFactory
 import skein.forward.{DelayTable, Delays, Engagement, LoopTiming}
-import skein.lanes.{Judged, ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
-
+import skein.lanes.{ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.score.Judged
 import skein.scenario.*
 import skein.simd.WorldRandom
 

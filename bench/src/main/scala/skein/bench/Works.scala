@@ -1,7 +1,8 @@
 package skein.bench
 
 import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse, Rollout, VelocityResponses}
-import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds, LaneQuadrotors}
+import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
+import skein.lanes.plant.LaneQuadrotors
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3

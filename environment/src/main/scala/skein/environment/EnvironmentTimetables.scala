@@ -1,7 +1,7 @@
 package skein.environment
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.lanes.Timetable
+import skein.lanes.timetable.Timetable
 import skein.simd.WorldRandom
 
 /** What befalls the messages of a run, drawn from a fixed number of flights over the link. Each is told once.

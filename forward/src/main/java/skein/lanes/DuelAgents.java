@@ -2,6 +2,12 @@ package skein.lanes;
 
 import java.util.Arrays;
 import skein.forward.Duelist;
+import skein.lanes.policy.LaneObservation;
+import skein.lanes.policy.LanePolicy;
+import skein.lanes.timetable.Timetable;
+import skein.lanes.timetable.TimetableAgents;
+import skein.lanes.timetable.TimetableEye;
+import skein.lanes.timetable.TimetableVehicles;
 
 /** One side of a duel in many worlds: decides by the difference of the two vehicles' readings. */
 final class DuelAgents extends TimetableAgents {
@@ -43,7 +49,7 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  void start(Timetable timetable, int worlds) {
+  public void start(Timetable timetable, int worlds) {
     super.start(timetable, worlds);
     // The timetable keeps the first heading at place 0.
     headings.fill(0, WORLDS, startHeading);
@@ -64,7 +70,7 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  boolean needsVelocity() {
+  public boolean needsVelocity() {
     return isTold || policy.needsVelocity();
   }
 
@@ -73,7 +79,7 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  void decide(
+  public void decide(
       TimetableAgents[] all,
       int[] views,
       int view,
@@ -125,7 +131,7 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  void expose(TimetableAgents[] all, int[] views, int view, int image, float[] times, int number) {
+  public void expose(TimetableAgents[] all, int[] views, int view, int image, float[] times, int number) {
     eye.expose(
         image,
         vehicles,
@@ -137,7 +143,7 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  void join(int image, boolean isOlder, int last) {
+  public void join(int image, boolean isOlder, int last) {
     eye.join(image, isOlder, last);
   }
 }

@@ -6,6 +6,15 @@ import static skein.simd.LaneMath.SPECIES;
 import java.util.Optional;
 import jdk.incubator.vector.FloatVector;
 import skein.forward.Duel;
+import skein.lanes.policy.Directions;
+import skein.lanes.policy.LaneObservation;
+import skein.lanes.policy.LanePolicy;
+import skein.lanes.policy.PolicyLanes;
+import skein.lanes.score.Scoreboard;
+import skein.lanes.timetable.Timetable;
+import skein.lanes.timetable.TimetableAgents;
+import skein.lanes.timetable.TimetableKernel;
+import skein.lanes.timetable.TimetableScores;
 import skein.policy.Policy;
 
 /**

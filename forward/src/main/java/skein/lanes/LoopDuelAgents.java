@@ -11,6 +11,15 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
 import skein.forward.Duelist;
+import skein.lanes.loop.LaneAgents;
+import skein.lanes.loop.LaneOffers;
+import skein.lanes.loop.LaneVectors;
+import skein.lanes.loop.LaneViews;
+import skein.lanes.loop.LoopEye;
+import skein.lanes.loop.LoopLanes;
+import skein.lanes.policy.Directions;
+import skein.lanes.policy.LaneObservation;
+import skein.lanes.policy.LanePolicy;
 
 /** One side of a duel in many worlds with delays of their own: 0 is the evader, 1 the pursuer. */
 final class LoopDuelAgents extends LaneAgents {
@@ -46,18 +55,18 @@ final class LoopDuelAgents extends LaneAgents {
   }
 
   @Override
-  boolean sees() {
+  public boolean sees() {
     return eye != null;
   }
 
   @Override
-  void startRow(int row) {
+  public void startRow(int row) {
     super.startRow(row);
     if (eye != null) eye.startRow(row);
   }
 
   @Override
-  void start() {
+  public void start() {
     super.start();
     Arrays.fill(effort, 0f);
     for (Directions each : new Directions[] {sent, sentBefore, decided}) each.fill(0, WORLDS, startHeading);
@@ -65,17 +74,17 @@ final class LoopDuelAgents extends LaneAgents {
   }
 
   @Override
-  boolean needsVelocity() {
+  public boolean needsVelocity() {
     return policy.needsVelocity();
   }
 
   @Override
-  boolean needsAges() {
+  public boolean needsAges() {
     return policy.needsAges();
   }
 
   @Override
-  void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
+  public void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     if (policy.needsAges()) age(self, readAt, observation.ownAge);
     if (eye != null) believe(vectors);
     else see(all[1 - self], offers, vectors, readAt);
@@ -147,7 +156,7 @@ final class LoopDuelAgents extends LaneAgents {
   }
 
   @Override
-  void remember(LaneVectors vectors, int endGrains) {
+  public void remember(LaneVectors vectors, int endGrains) {
     policy.rememberBefore(decides, 0, LaneOffers.NONE);
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE), end = IntVector.broadcast(INTS, endGrains);
     for (int k = 0; k < vectors.count; k++) {

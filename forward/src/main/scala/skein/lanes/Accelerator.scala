@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.{Delays, LoopTiming, VelocityResponse}
+import skein.lanes.timetable.Timetable
 
 /** Flies candidates through shared episodes in place of this machine's processors, as a GPU does. Outcomes
   * are the same, to the bit.

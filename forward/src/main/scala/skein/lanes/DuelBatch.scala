@@ -8,6 +8,8 @@ import skein.forward.{
   QuadrotorResponse,
   VelocityResponse
 }
+import skein.lanes.policy.PolicyLanes
+import skein.lanes.timetable.Timetables
 import skein.policy.Policy
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -16,10 +18,11 @@ import skein.units.Expect
   * and maps.
   *
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
-  * [[TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar
-  * loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the
-  * table. Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do not
-  * depend on threads, on a call's other worlds or on their order. One call at a time.
+  * [[skein.lanes.timetable.TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by
+  * lanes under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]).
+  * ARCHITECTURE.md has the table. Which engine flies a world depends on the world and on `shareEpisodes`
+  * alone, so results do not depend on threads, on a call's other worlds or on their order. One call at a
+  * time.
   *
   * @param duel start, speeds and duration; the policies come from the worlds
   * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] whose policies are formulas, where it

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.{Delays, Duel, LoopTiming}
+import skein.lanes.timetable.Timetable
 
 /** The episodes of duels that fly by timetables.
   *

@@ -2,6 +2,7 @@ package skein.lanes
 
 import skein.forward.Duel
 import skein.fusion.SensorModel
+import skein.lanes.policy.CameraTrackerLanes
 
 /** By which alone the two of a duel know of one another, where they are not told. */
 private[lanes] final case class DuelEyes(

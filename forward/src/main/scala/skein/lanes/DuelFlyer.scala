@@ -2,6 +2,9 @@ package skein.lanes
 
 import skein.formula.Untraceable
 import skein.forward.{Delays, Duel, LoopTiming, Rollout, TabledDelays, VelocityResponse}
+import skein.lanes.loop.{BySlowest, LoopLanes}
+import skein.lanes.policy.{LanePolicy, PolicyLanes}
+import skein.lanes.timetable.{Timetable, TimetableEye, Timetables}
 import skein.policy.Policy
 
 /** Flies a batch of worlds on one thread. Mutable. */
@@ -164,7 +167,9 @@ private final class LoopFlyer(
 
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 
-/** By [[TimetableKernel]]. All worlds of a batch have one key and one link, or meet no delays. */
+/** By [[skein.lanes.timetable.TimetableKernel]]. All worlds of a batch have one key and one link, or meet no
+  * delays.
+  */
 private final class TimetableFlyer(episodes: DuelEpisodes, timetables: Timetables, other: DuelFlyer)
     extends LaneFlyer(other):
   import episodes.{duel, eyes}

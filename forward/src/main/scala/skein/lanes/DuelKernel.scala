@@ -1,6 +1,8 @@
 package skein.lanes
 
 import skein.forward.Rollout
+import skein.lanes.policy.LanePolicy
+import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.scenario.Reduction
 
 /** What kernels that fly duels tell of the worlds flown last. Mutable.

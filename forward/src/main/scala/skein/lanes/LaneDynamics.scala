@@ -9,11 +9,22 @@ import skein.forward.{
   QuadrotorResponse,
   VelocityResponse
 }
+import skein.lanes.loop.{LagVehicles, LanePredictor, LaneVehicles, LoopLanes, PlantFlights}
+import skein.lanes.plant.{LaneQuadrotors, PlantLanes, QuadrotorLanes}
+import skein.lanes.timetable.{
+  EventClock,
+  StepClock,
+  TimetableDynamics,
+  TimetablePlants,
+  TimetablePredictor,
+  TimetableQuadrotors,
+  TimetableVehicles
+}
 import skein.units.Expect
 import skein.vehicle.ReducedModel
 
-/** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has
-  * delays of its own.
+/** How a kind of vehicle flies by lanes: by [[skein.lanes.timetable.Timetable]]s and, if it [[fliesAlone]],
+  * where every world has delays of its own.
   */
 private[skein] trait LaneDynamics extends TimetableDynamics:
   /** How long one of its steps lasts at most, s. */

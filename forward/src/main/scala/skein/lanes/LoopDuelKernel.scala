@@ -1,6 +1,8 @@
 package skein.lanes
 
 import skein.forward.{Duel, Duelist, TabledDelays}
+import skein.lanes.loop.{LaneAgents, LoopEye, LoopKernel, LoopLanes}
+import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
 
 /** Duels by [[LoopKernel]].
   *

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.{Asking, Delays, LoopTiming, TabledDelays}
+import skein.lanes.loop.{LaneFlights, LanePredictor, LaneViews, LoopLanes}
 import skein.port.Moves
 import skein.units.Expect
 

@@ -1,6 +1,8 @@
 package skein.lanes
 
 import skein.forward.Duelist
+import skein.lanes.policy.TeamLanes
+import skein.lanes.score.ScoreLanes
 import skein.policy.TeamPolicy
 
 /** What teams have in common that fly side by side.

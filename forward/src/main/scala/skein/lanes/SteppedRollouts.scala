@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.*
+import skein.lanes.plant.LaneQuadrotors
 import skein.simd.LaneMath
 import skein.units.{Quaternion, Vector3}
 

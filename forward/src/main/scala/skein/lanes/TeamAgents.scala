@@ -2,6 +2,9 @@ package skein.lanes
 
 import java.util.Arrays
 import skein.forward.Duelist
+import skein.lanes.loop.{LaneAgents, LaneOffers, LaneVectors, LoopLanes}
+import skein.lanes.policy.{Directions, TeamLanes}
+import skein.lanes.timetable.{Timetable, TimetableAgents, ViewCall}
 
 /** What several vehicles of a team compute of one view, in many worlds. Mutable. */
 private[lanes] final class TeamViews(val lanes: TeamLanes):
@@ -202,6 +205,6 @@ private[lanes] object LoopTeamAgents:
       views: TeamViews
   ): Array[LoopTeamAgents] =
     val all = Array.tabulate(team.size)(self => LoopTeamAgents(self, team(self), loop, model, views))
-    for vehicle <- all; call <- views.call +: all.map(_.decisions.call) do
-      call.show(vehicle.self, vehicle.seen, vehicle.seenFrom)
+    for (vehicle, self) <- all.zipWithIndex; call <- views.call +: all.map(_.decisions.call) do
+      call.show(self, vehicle.seen, vehicle.seenFrom)
     all

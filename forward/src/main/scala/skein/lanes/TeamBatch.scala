@@ -3,6 +3,10 @@ package skein.lanes
 import java.util.IdentityHashMap
 import scala.collection.mutable
 import skein.forward.{Delays, LoopTiming, TabledDelays, VelocityResponse}
+import skein.lanes.loop.{BySlowest, LaneAgents, LoopKernel, LoopLanes}
+import skein.lanes.policy.TeamLanes
+import skein.lanes.score.{ScoreLanes, Scoreboard}
+import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, Timetables}
 import skein.policy.TeamPolicy
 import skein.simd.{LaneFunction, LaneMath}
 import skein.units.Expect

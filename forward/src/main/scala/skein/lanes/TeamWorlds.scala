@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.Engagement
+import skein.lanes.score.Judged
 
 /** The worlds of one call of [[TeamBatch]]. */
 trait TeamWorlds extends Worlds:

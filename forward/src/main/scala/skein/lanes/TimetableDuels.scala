@@ -1,6 +1,8 @@
 package skein.lanes
 
 import skein.forward.{Duel, LoopTiming}
+import skein.lanes.policy.{LaneObservation, LanePolicy}
+import skein.lanes.timetable.{Timetable, TimetableEye, TimetableKernel}
 
 /** Duels by [[TimetableKernel]]: the evader is vehicle 0. Mutable.
   *

@@ -11,7 +11,7 @@ trait Worlds:
   def size: Int
 
   /** Whether several worlds have the same key and the same link, as candidates that meet the same episodes
-    * do. Then they fly together through one [[Timetable]], several times as fast.
+    * do. Then they fly together through one [[skein.lanes.timetable.Timetable]], several times as fast.
     */
   def shareEpisodes: Boolean = false
 

@@ -1,7 +1,7 @@
 package skein.optimise
 
 import scala.collection.immutable.ListMap
-import skein.lanes.Judged
+import skein.lanes.score.Judged
 import skein.policy.Role
 import skein.scenario.{Measure, Scenario, Window}
 

@@ -1,7 +1,7 @@
 package skein.planning
 
 import java.util.Arrays
-import skein.lanes.PolicyLanes
+import skein.lanes.policy.PolicyLanes
 import skein.vehicle.PlaneReading
 
 /** A [[Target.Opponent]] against each of a block's candidates: it decides at every step by its policy,

@@ -1,7 +1,7 @@
 package skein.planning
 
 import java.util.Arrays
-import skein.lanes.FixedFormula
+import skein.simd.FixedFormula
 
 /** Flies many candidate manoeuvres of one vehicle at once and says what each costs, by the same formulas as
   * [[ManoeuvreRollout]], its scalar reference, compiled; `PlanKernelSuite` holds the two together. The

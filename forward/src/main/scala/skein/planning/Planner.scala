@@ -1,6 +1,7 @@
 package skein.planning
 
-import skein.lanes.{PlantLanes, PolicyLanes}
+import skein.lanes.plant.PlantLanes
+import skein.lanes.policy.PolicyLanes
 import skein.policy.Policy
 import skein.simd.WorldRandom
 import skein.vehicle.Plant

@@ -2,7 +2,7 @@ package skein.planning
 
 import java.util.Arrays
 import scala.collection.mutable
-import skein.lanes.PlantLanes
+import skein.lanes.plant.PlantLanes
 import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 
 /** One vehicle in each candidate's world: north, east, m, and velocity north and east, m/s, a row of each at

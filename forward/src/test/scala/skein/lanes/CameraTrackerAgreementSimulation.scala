@@ -3,6 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.ErrorBound
 import skein.forward.*
+import skein.lanes.loop.{LaneAgents, LoopEye, LoopLanes}
+import skein.lanes.policy.CameraTrackerLanes
+import skein.lanes.timetable.{Timetable, TimetableEye, TimetableVehicles}
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom

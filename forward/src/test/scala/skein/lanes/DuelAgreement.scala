@@ -3,6 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.fusion.Exposure
+import skein.lanes.loop.{LoopEye, LoopLanes}
+import skein.lanes.policy.{LaneObservation, PolicyLanes}
+import skein.lanes.timetable.Timetable
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
 
 /** Duels flown by lanes, beside the scalar engine: decision by decision, by [[Agreement]]. All but the
@@ -189,7 +192,7 @@ private[skein] object DuelAgreement:
 
   private def must(holds: Boolean, clue: => String): Unit = if !holds then throw AssertionError(clue)
 
-  /** Candidates that meet one episode, by [[TimetableKernel]]. */
+  /** Candidates that meet one episode, by [[skein.lanes.timetable.TimetableKernel]]. */
   def shared(
       duel: Duel,
       timing: LoopTiming,

@@ -2,6 +2,8 @@ package skein.lanes
 
 import skein.forward.*
 import skein.identify.Tilting
+import skein.lanes.score.Judged
+import skein.lanes.timetable.TimetableKernel
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom

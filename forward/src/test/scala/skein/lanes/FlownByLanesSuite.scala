@@ -3,6 +3,7 @@ package skein.lanes
 import java.nio.file.{Files, Path}
 import skein.forward.*
 import skein.identify.Tilting
+import skein.lanes.score.Judged
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom

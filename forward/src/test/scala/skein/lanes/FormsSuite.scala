@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.formula.Untraceable
+import skein.simd.Forms
 
 class FormsSuite extends munit.FunSuite:
   private def counted(mostRefused: Int, accepts: Int => Boolean) =

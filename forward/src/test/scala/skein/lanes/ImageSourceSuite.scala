@@ -3,6 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.fusion.{Exposure, SensorModel}
+import skein.lanes.timetable.ImageSource
 import skein.optimise.LatencyBudget
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom

@@ -2,11 +2,15 @@ package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{DelayTable, Duel, DuelOutcome, LoopTiming, Rollout, VelocityResponse, VelocityResponses}
+import skein.lanes.loop.LoopLanes
+import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 
-/** [[LoopDuelKernel]] under `stream` with a lag, for which it has a way of its own ([[LagVehicles]]). */
+/** [[LoopDuelKernel]] under `stream` with a lag, for which it has a way of its own
+  * ([[skein.lanes.loop.LagVehicles]]).
+  */
 class LagDuelsSuite extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

@@ -3,6 +3,7 @@ package skein.lanes
 import java.util.zip.CRC32
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
+import skein.lanes.score.Judged
 import skein.planning.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{Formation, OffRing, Reduction, Scenario, Surround}

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.{DelayTable, Duel, LoopTiming, VelocityResponses}
+import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
 import skein.policy.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom

@@ -1,5 +1,6 @@
 package skein.lanes
 
+import skein.lanes.plant.LaneQuadrotors
 import skein.units.Vector3
 import skein.vehicle.{Airframe, CascadeGains, ControllerGains, Quadrotor, Setpoint}
 

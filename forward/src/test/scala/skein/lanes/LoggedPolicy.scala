@@ -2,6 +2,7 @@ package skein.lanes
 
 import java.util.Arrays
 import scala.collection.mutable.ArrayBuffer
+import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
 import skein.policy.Policy
 
 /** Notes what many worlds' decisions are made from, and what they come to. */

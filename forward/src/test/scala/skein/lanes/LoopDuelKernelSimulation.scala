@@ -13,6 +13,8 @@ import skein.forward.{
   VelocityResponses
 }
 import skein.identify.Tilting
+import skein.lanes.loop.LoopLanes
+import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom

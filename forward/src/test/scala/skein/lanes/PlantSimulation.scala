@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.*
+import skein.lanes.plant.{PlantLanes, PlantStages}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.testing.Unhurried

@@ -2,6 +2,7 @@ package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{AlternatingDelays, DelayTable, LoopTiming, TabledDelays}
+import skein.lanes.loop.{LaneDelays, LaneOffers, LaneViews, StreamOffers}
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 

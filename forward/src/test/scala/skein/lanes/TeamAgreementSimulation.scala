@@ -11,10 +11,12 @@ import skein.forward.{
   Rollout,
   VelocityResponses
 }
+import skein.lanes.policy.TeamLanes
+import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, TimetableVehicles}
 import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
-import skein.simd.WorldRandom
+import skein.simd.{BoundFunction, WorldRandom}
 import skein.testing.Unhurried
 
 /** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a

@@ -3,6 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.identify.Tilting
+import skein.lanes.policy.TeamLanes
+import skein.lanes.score.{Judged, OfMoment}
+import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores}
 import skein.optimise.LatencyBudget
 import skein.policy.*
 import skein.scenario.*

@@ -12,6 +12,8 @@ import skein.forward.{
   VelocityResponses
 }
 import skein.identify.Tilting
+import skein.lanes.policy.LanePolicy
+import skein.lanes.timetable.Timetable
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel

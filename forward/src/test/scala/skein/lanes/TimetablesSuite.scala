@@ -1,5 +1,7 @@
 package skein.lanes
 
+import skein.lanes.timetable.{Timetable, Timetables}
+
 class TimetablesSuite extends munit.FunSuite:
   private def made(numbers: Int): Timetable =
     Timetable(1, Array.empty, 1, Array.ofDim(numbers), Array.empty, Array.empty, 0, 0)

@@ -1,6 +1,8 @@
 package skein.lanes
 
 import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, VelocityResponses}
+import skein.lanes.policy.{LanePolicy, PolicyLanes}
+import skein.lanes.timetable.Timetable
 import skein.policy.PolicyFamily
 import skein.signal.SplitMix64
 

@@ -1,7 +1,8 @@
 package skein.planning
 
 import skein.formula.ErrorBound
-import skein.lanes.{Bicycle, DuelAgreement, PolicyLanes, Rolling, UnseenPolicySuite}
+import skein.lanes.{Bicycle, DuelAgreement, Rolling, UnseenPolicySuite}
+import skein.lanes.policy.PolicyLanes
 import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
 import skein.signal.SplitMix64

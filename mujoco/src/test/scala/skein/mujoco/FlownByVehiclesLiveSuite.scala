@@ -2,6 +2,7 @@ package skein.mujoco
 
 import skein.forward.*
 import skein.lanes.*
+import skein.lanes.score.Judged
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom

@@ -2,7 +2,8 @@ package skein.lanes.gpu
 
 import skein.forward.{Delays, LoopTiming, VelocityResponse}
 import skein.gpu.Gpu
-import skein.lanes.{AcceleratedDuels, AcceleratedTeams, Accelerator, DuelEpisodes, TeamForm, Timetable}
+import skein.lanes.{AcceleratedDuels, AcceleratedTeams, Accelerator, DuelEpisodes, TeamForm}
+import skein.lanes.timetable.Timetable
 import skein.units.Expect
 
 /** A GPU as an [[skein.lanes.Accelerator]]: each thread flies one candidate through one episode. */

@@ -2,7 +2,10 @@ package skein.lanes.gpu
 
 import skein.forward.Duel
 import skein.gpu.{Gpu, Ptx, PtxExpressions, Variables}
-import skein.lanes.{DuelKernel, DuelNumber, PolicyLanes, ScoreLanes, Timetable}
+import skein.lanes.{DuelKernel, DuelNumber}
+import skein.lanes.policy.PolicyLanes
+import skein.lanes.score.ScoreLanes
+import skein.lanes.timetable.Timetable
 import skein.policy.Policy
 
 /** Duels on a GPU: the evader is vehicle 0, and the first side.

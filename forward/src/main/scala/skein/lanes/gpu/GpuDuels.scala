@@ -3,15 +3,8 @@ package skein.lanes.gpu
 import java.util.IdentityHashMap
 import scala.collection.mutable
 import skein.gpu.Gpu
-import skein.lanes.{
-  Accelerated,
-  AcceleratedDuels,
-  DuelEpisodes,
-  DuelNumber,
-  DuelOutcomes,
-  DuelWorlds,
-  PolicyLanes
-}
+import skein.lanes.{Accelerated, AcceleratedDuels, DuelEpisodes, DuelNumber, DuelOutcomes, DuelWorlds}
+import skein.lanes.policy.PolicyLanes
 import skein.policy.Policy
 
 /** Flies duels' candidates on a GPU, each through the same episodes, by [[GpuDuelKernel]]. Mutable; one call

@@ -1,7 +1,8 @@
 package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuBuffer}
-import skein.lanes.{LaneThreads, Timetable, WorldBatches, Worlds}
+import skein.lanes.{LaneThreads, WorldBatches, Worlds}
+import skein.lanes.timetable.Timetable
 
 /** Episodes of so many vehicles, on a GPU. Mutable.
   *

@@ -1,11 +1,13 @@
 package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuBuffer, GpuKernel, Ptx, PtxExpressions, Variables}
-import skein.lanes.{ScoreLanes, Timetable}
+import skein.lanes.score.ScoreLanes
+import skein.lanes.timetable.Timetable
 
-/** [[skein.lanes.TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and the
-  * threads of a block fly candidates of the same. So no two threads of a block part ways. What is computed
-  * are the same expressions by the same single operations as on the CPU, and so the outcomes, to the bit.
+/** [[skein.lanes.timetable.TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and
+  * the threads of a block fly candidates of the same. So no two threads of a block part ways. What is
+  * computed are the same expressions by the same single operations as on the CPU, and so the outcomes, to the
+  * bit.
   *
   * @param sides how many numbers tell who flies, of each side
   * @param scores what the flights are judged by

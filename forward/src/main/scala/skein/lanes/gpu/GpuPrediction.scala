@@ -2,10 +2,12 @@ package skein.lanes.gpu
 
 import skein.forward.{Duelist, LoopTiming}
 import skein.gpu.{Ptx, Variables}
-import skein.lanes.{CoastPredictor, PlantPredictor, LagPredictor, PlantLanes, Propagation, LanePredictor}
+import skein.lanes.loop.{CoastPredictor, LagPredictor, LanePredictor, PlantPredictor}
+import skein.lanes.plant.PlantLanes
+import skein.lanes.timetable.Propagation
 
 /** Carries readings of one vehicle forward in the world of each thread, command by command; see
-  * [[skein.lanes.PredictedVehicles]]. Position and velocity stand in variables meanwhile.
+  * [[skein.lanes.timetable.PredictedVehicles]]. Position and velocity stand in variables meanwhile.
   */
 private[lanes] trait GpuPrediction:
   /** From a reading.
@@ -63,7 +65,7 @@ private[lanes] object GpuPrediction:
   private def tellTime(of: Propagation, part: Int, from: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 1 until of.perPart do tell(from + i - 1, of.numbers(part * of.perPart + i))
 
-/** By [[skein.lanes.PredictedLagVehicles]]. */
+/** By [[skein.lanes.timetable.PredictedLagVehicles]]. */
 private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) extends GpuPrediction:
   private val predicted = Variables(code, Seq.fill(4)(0f))
   private val speed     = code.constant((duelist.speed * gain).toFloat)
@@ -85,7 +87,7 @@ private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) 
 
   def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
 
-/** By [[skein.lanes.PredictedPlants]], where the state is what is read. */
+/** By [[skein.lanes.timetable.PredictedPlants]], where the state is what is read. */
 private final class GpuPlantPrediction(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuPrediction:
   private val zero    = code.constant(0f)
   private val flight  = GpuStages(code, lanes, duelist.speed, zero, zero)

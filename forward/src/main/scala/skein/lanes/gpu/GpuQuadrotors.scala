@@ -1,12 +1,12 @@
 package skein.lanes.gpu
 
 import skein.gpu.{Gpu, GpuKernel, Ptx, Variables}
-import skein.lanes.QuadrotorLanes
+import skein.lanes.plant.QuadrotorLanes
 import skein.units.Vector3
 import skein.vehicle.Quadrotor
 
-/** [[skein.lanes.LaneQuadrotors]] on a GPU: each thread flies one quadrotor with its flight controller under
-  * `moveByVelocityZ`, and ends with the same bits.
+/** [[skein.lanes.plant.LaneQuadrotors]] on a GPU: each thread flies one quadrotor with its flight controller
+  * under `moveByVelocityZ`, and ends with the same bits.
   */
 private[skein] final class GpuQuadrotors private (gpu: Gpu, lanes: QuadrotorLanes):
   private lazy val kernel: GpuKernel = gpu.kernel(GpuQuadrotors.text(lanes), GpuQuadrotors.Name)

@@ -1,7 +1,7 @@
 package skein.lanes.gpu
 
 import skein.gpu.Ptx
-import skein.lanes.Timetable
+import skein.lanes.timetable.Timetable
 
 /** What a [[GpuTimetable]] tells of the present operation, in a kernel: words that are the same for all
   * threads of a block.

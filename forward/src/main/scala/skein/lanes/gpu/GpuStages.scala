@@ -1,10 +1,11 @@
 package skein.lanes.gpu
 
 import skein.gpu.{Ptx, PtxExpressions, Variables}
-import skein.lanes.{BoundFunction, PlantLanes, PlantStages}
+import skein.lanes.plant.{PlantLanes, PlantStages}
+import skein.simd.BoundFunction
 
 /** A flight by the [[PlantStages]] of one plant in the world of each thread; see
-  * [[skein.lanes.StagedFlight]].
+  * [[skein.lanes.plant.StagedFlight]].
   *
   * @param speedMps of a command of length 1
   * @param startX the registers of where it begins, north and east, m

@@ -2,7 +2,9 @@ package skein.lanes.gpu
 
 import skein.forward.Duelist
 import skein.gpu.{Gpu, Ptx, PtxExpressions}
-import skein.lanes.{BoundFunction, OfMoment, ScoreLanes, TeamLanes}
+import skein.lanes.policy.TeamLanes
+import skein.lanes.score.{OfMoment, ScoreLanes}
+import skein.simd.BoundFunction
 
 /** Teams on a GPU. One side: of each vehicle where it starts and the direction in which it heads, and what
   * its policy flies by; then of each quantity what it differs by.

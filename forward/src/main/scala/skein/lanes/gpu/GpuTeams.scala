@@ -3,15 +3,8 @@ package skein.lanes.gpu
 import scala.collection.mutable
 import skein.forward.Delays
 import skein.gpu.Gpu
-import skein.lanes.{
-  Accelerated,
-  AcceleratedTeams,
-  PreparedTeam,
-  TeamForm,
-  TeamOutcomes,
-  TeamWorlds,
-  Timetable
-}
+import skein.lanes.{Accelerated, AcceleratedTeams, PreparedTeam, TeamForm, TeamOutcomes, TeamWorlds}
+import skein.lanes.timetable.Timetable
 
 /** Flies teams' candidates on a GPU, each through the same episodes, by [[GpuTeamKernel]]. Mutable; one call
   * at a time.

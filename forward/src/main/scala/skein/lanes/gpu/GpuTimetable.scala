@@ -1,6 +1,6 @@
 package skein.lanes.gpu
 
-import skein.lanes.{OperationKind, Propagation, Timetable}
+import skein.lanes.timetable.{OperationKind, Propagation, Timetable}
 
 /** Where a thread of a GPU keeps what its vehicles' readings and commands are: bytes of its own memory.
   *

@@ -7,7 +7,9 @@ import skein.forward.{
   VelocityResponse
 }
 import skein.gpu.{Ptx, PtxExpressions, Variables}
-import skein.lanes.{BoundFunction, PlantLanes, QuadrotorLanes, TimetableQuadrotors}
+import skein.lanes.plant.{PlantLanes, QuadrotorLanes}
+import skein.lanes.timetable.TimetableQuadrotors
+import skein.simd.BoundFunction
 
 /** One vehicle of a team in the world of each thread. Its state stands in variables. */
 private[lanes] trait GpuVehicle:

@@ -1,7 +1,7 @@
 package skein.lanes.gpu
 
 import skein.gpu.{Ptx, PtxExpressions, Variables}
-import skein.lanes.QuadrotorLanes
+import skein.lanes.plant.QuadrotorLanes
 
 /** A quadrotor's step in a kernel, as [[QuadrotorLanes]] has it compiled. */
 private[gpu] object QuadrotorExpressions:

@@ -3,6 +3,7 @@ package skein.lanes.gpu
 import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
+import skein.lanes.timetable.Timetable
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 

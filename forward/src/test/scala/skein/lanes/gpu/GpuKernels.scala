@@ -4,6 +4,8 @@ import java.nio.file.{Files, Path}
 import skein.forward.{Duel, LoopTiming, PlantResponse, VelocityResponse, VelocityResponses}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
+import skein.lanes.plant.QuadrotorLanes
+import skein.lanes.policy.PolicyLanes
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.vehicle.{Quadrotor, ReducedModel}
 

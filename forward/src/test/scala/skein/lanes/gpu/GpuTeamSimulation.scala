@@ -3,6 +3,7 @@ package skein.lanes.gpu
 import skein.forward.*
 import skein.gpu.{Gpu, TestGpus}
 import skein.lanes.*
+import skein.lanes.score.{Judged, OfMoment}
 import skein.policy.TeamPolicy
 import skein.scenario.*
 import skein.simd.WorldRandom

@@ -1,7 +1,7 @@
 package skein.bench.jmh
 
 import org.openjdk.jmh.annotations.*
-import skein.lanes.LaneQuadrotors
+import skein.lanes.plant.LaneQuadrotors
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 

@@ -1,0 +1,174 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.lanes.plant.PlantCorrection;
+import skein.lanes.plant.PlantLanes;
+import skein.lanes.policy.LaneObservation;
+import skein.lanes.policy.LanePolicy;
+import skein.simd.FixedFormula;
+
+/**
+ * By a plant: its steps begin at a reading, where a command arrives, with each turn, and after {@code stepS}.
+ * What readings do not tell of its state is flown on from reading to reading. {@code PredictedPlants} is the
+ * same where the times are those of all worlds. {@code skein.vehicle.PlantModel} begins a step more where a
+ * command that acts is told again.
+ */
+final class ForecastPlants implements ForecastVehicles {
+  private static final int WORLDS = LanePolicy.WORLDS;
+
+  private final float speedMps, stepS;
+  private final PlantLanes lanes;
+  private final FixedFormula.Call correct, step, look;
+
+  /** How many numbers a state is. */
+  private final int count;
+
+  private final boolean remembers;
+
+  /** The state at the newest reading, if readings do not tell it. */
+  private final float[] held;
+
+  /** The state where a step begins, and where it ends. */
+  private final float[] from, to;
+
+  private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
+
+  /** How far the ways are flown, until when the commands stand, when the next step begins at the latest. */
+  private final float[] flownS = new float[WORLDS], untilS = new float[WORLDS], stopS = new float[WORLDS];
+
+  /** Where it is flown on. */
+  private final float[] goes = new float[WORLDS];
+
+  ForecastPlants(PlantLanes lanes, PlantCorrection correction, double speedMps) {
+    this.lanes = lanes;
+    this.speedMps = (float) speedMps;
+    stepS = (float) lanes.plant().stepS();
+    count = lanes.count();
+    from = new float[count * WORLDS];
+    to = new float[count * WORLDS];
+    remembers = !correction.isTold();
+    held = new float[from.length];
+    correct = correction.call();
+    correct.inputs(0, count, from, 0);
+    step = lanes.step().call();
+    step.inputs(0, count, from, 0);
+    step.input(count, north, 0);
+    step.input(count + 1, east, 0);
+    step.input(count + 2, forS, 0);
+    step.outputs(count, to, 0);
+    look = lanes.read().call();
+    look.inputs(0, count, from, 0);
+  }
+
+  @Override
+  public boolean remembers() {
+    return remembers;
+  }
+
+  @Override
+  public void start() {
+    lanes.rest(held, 0);
+  }
+
+  @Override
+  public void enter(LaneVectors vectors, ForecastTrack way, int[] enters, float[] read) {
+    System.arraycopy(held, 0, from, 0, held.length);
+    fly(vectors, way);
+    correct(read, to);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> does = IntVector.fromArray(INTS, enters, i).compare(GT, 0).cast(SPECIES);
+      for (int number = i; number < held.length; number += WORLDS)
+        FloatVector.fromArray(SPECIES, to, number).intoArray(held, number, does);
+    }
+  }
+
+  @Override
+  public void predict(LaneVectors vectors, ForecastTrack way, float[] read, float[] into) {
+    if (remembers) System.arraycopy(held, 0, from, 0, held.length);
+    else correct(read, from);
+    fly(vectors, way);
+    look.outputs(LaneObservation.READ, into, 0);
+    look.apply();
+  }
+
+  /** The state at a reading, of that before it. */
+  private void correct(float[] read, float[] into) {
+    correct.inputs(count, LaneObservation.READ, read, LaneVehicles.SEEN_X);
+    correct.outputs(count, into, 0);
+    correct.apply();
+  }
+
+  /** From the begin of the way to its end. */
+  private void fly(LaneVectors vectors, ForecastTrack way) {
+    Arrays.fill(flownS, 0f);
+    Arrays.fill(forS, stepS);
+    for (int turn = 0; turn < way.turns; turn++) {
+      follow(vectors, way, turn);
+      while (goesOn(vectors, way)) {
+        step.apply();
+        take(vectors);
+      }
+    }
+  }
+
+  /** The command from a turn on, and until when it stands. */
+  private void follow(LaneVectors vectors, ForecastTrack way, int turn) {
+    float[] turnS = way.turnS, turnX = way.turn.cos, turnY = way.turn.sin;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k], place = turn * WORLDS + i;
+      boolean isLast = turn + 1 >= way.turnsOf[i / LANES], counts = turn >= way.heldFrom[i / LANES];
+      FloatVector.fromArray(SPECIES, turnX, place).mul(speedMps).intoArray(north, i);
+      FloatVector.fromArray(SPECIES, turnY, place).mul(speedMps).intoArray(east, i);
+      FloatVector end = FloatVector.fromArray(SPECIES, way.endS, i);
+      if (!counts) end = end.mul(0f);
+      else if (!isLast) end = end.min(FloatVector.fromArray(SPECIES, turnS, place + WORLDS));
+      end.intoArray(untilS, i);
+    }
+  }
+
+  /** Whether some way goes on under the command, and for how long in one step. */
+  private boolean goesOn(LaneVectors vectors, ForecastTrack way) {
+    float[] turnS = way.turnS;
+    boolean any = false;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
+          until = FloatVector.fromArray(SPECIES, untilS, i);
+      for (int turn = way.held; turn < way.turnsOf[i / LANES]; turn++) {
+        FloatVector told = FloatVector.fromArray(SPECIES, turnS, turn * WORLDS + i).sub(way.deadS);
+        until = until.blend(until.min(told), told.compare(GT, flown));
+      }
+      until.intoArray(stopS, i);
+      FloatVector left = until.sub(flown);
+      VectorMask<Float> on = left.compare(GT, 0f);
+      any |= on.anyTrue();
+      // A plant is never stepped by no time; what comes of this step is not taken.
+      FloatVector.broadcast(SPECIES, stepS).blend(left.min(stepS), on).intoArray(forS, i);
+      left.intoArray(goes, i);
+    }
+    return any;
+  }
+
+  private void take(LaneVectors vectors) {
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> on = FloatVector.fromArray(SPECIES, goes, i).compare(GT, 0f);
+      for (int number = i; number < from.length; number += WORLDS)
+        FloatVector.fromArray(SPECIES, to, number).intoArray(from, number, on);
+      FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
+          until = FloatVector.fromArray(SPECIES, stopS, i);
+      // To the end itself: a rest that rounding leaves would be a step of its own.
+      FloatVector then = flown.add(FloatVector.fromArray(SPECIES, forS, i));
+      flown.blend(until.blend(then, until.sub(then).compare(GT, 1e-6f)), on).intoArray(flownS, i);
+    }
+  }
+}

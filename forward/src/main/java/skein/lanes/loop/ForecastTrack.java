@@ -1,0 +1,589 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.EQ;
+import static jdk.incubator.vector.VectorOperators.GE;
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.I2F;
+import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.MAX;
+import static jdk.incubator.vector.VectorOperators.MIN;
+import static jdk.incubator.vector.VectorOperators.NE;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.ArrayList;
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.forecast.VehicleForecast;
+import skein.lanes.policy.Directions;
+import skein.lanes.policy.LanePolicy;
+
+/**
+ * What is known of one vehicle in many worlds: when it was read last, the commands sent since, and which of
+ * them it takes the vehicle to fly under. The scalar reference is {@link VehicleForecast} with a {@link
+ * skein.vehicle.PlantModel}: of its past the commands count that wait out the dead time, and what {@link
+ * ForecastVehicles} remember.
+ *
+ * <p>{@link #lay} lays the way from the reading to a moment: turns, one after the other, at which the vehicle
+ * begins to follow another direction. The first {@link #held} turns were found at readings and stand; what
+ * comes after them is estimated anew each time. No time in it depends on where vehicles are, so seconds in
+ * floats do.
+ */
+final class ForecastTrack {
+  private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
+
+  private static final float GRACE_S = VehicleForecast.Grace() * 1e-9f;
+
+  /** Before all that is known, s. */
+  private static final float LONG_AGO_S = -1e9f;
+
+  /** Times further back than so many grains count as this far back. */
+  private static final int FAR = 1 << 30;
+
+  /** Turns that may stand: those within a dead time before the reading, and the one before them. */
+  final int held;
+
+  /** From a command's arrival until the vehicle is taken to follow it, s. */
+  final float deadS;
+
+  private final int periodGrains, farRows;
+  private final float periodS;
+
+  /**
+   * The row in which the newest reading became known, -1 before the first; when it was made, from that row's
+   * begin.
+   */
+  final int[] knownRow = new int[WORLDS], readAt = new int[WORLDS];
+
+  /** 1 where it became known in this period. */
+  final int[] fresh = new int[WORLDS];
+
+  // The row of the oldest command held, which was in effect at the reading; the direction of the one before.
+  private final int[] head = new int[WORLDS];
+  private final Directions before = new Directions(WORLDS), prior = new Directions(WORLDS);
+
+  // By row modulo slots: when the command was sent, NONE without one, and when it was known to have arrived;
+  // from the row's begin.
+  private int slots = 8, oldest;
+  private int[] sentAt = new int[slots * WORLDS], answeredAt = new int[slots * WORLDS];
+  private Directions sent = new Directions(slots * WORLDS);
+
+  /** The turns of the way laid: when, s from the reading, in order, and the directions from then on. */
+  float[] turnS;
+
+  Directions turn;
+
+  /** {@link #turnS}, and the directions' numbers. */
+  private float[][] ofTurns;
+
+  /** By vector: the first turn that counts, those of {@link #held} before it do not; how many there are. */
+  final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
+
+  /** At most, of any vector. */
+  int turns;
+
+  /** By vector, the row of the first command on the way laid. */
+  private final int[] firstOf = new int[WORLDS / LANES];
+
+  /** Whether a command on the way laid may be taken for lost within a period. */
+  private boolean mayLose;
+
+  /** How long the way is, and the part of it until the command is sent: how old the reading is then, s. */
+  final float[] endS = new float[WORLDS], ageS = new float[WORLDS];
+
+  /** 1 where a turn is that of a command of its own. */
+  private int[] counts;
+
+  /** Readings that enter together, with the mean delays then. */
+  private static final class Readings {
+    final int[] madeAt = new int[WORLDS], receivedAt = new int[WORLDS];
+    final float[] toS = new float[WORLDS], fromS = new float[WORLDS];
+  }
+
+  private final ArrayList<Readings> readings = new ArrayList<>();
+
+  /** Those to which the way was laid. */
+  private Readings nth;
+
+  // How many of a world's have entered in this row; when the last was made, from the row's begin.
+  private final int[] entered = new int[WORLDS], newestAt = new int[WORLDS];
+
+  // Where some enter together, 1; in which vectors.
+  final int[] enters = new int[WORLDS];
+  final LaneVectors entering = new LaneVectors();
+
+  /**
+   * @param deadS from a command's arrival until the vehicle is taken to follow it
+   */
+  ForecastTrack(double periodS, double deadS) {
+    this.periodS = (float) periodS;
+    this.deadS = (float) deadS;
+    periodGrains = LaneViews.grains(periodS);
+    farRows = FAR / periodGrains;
+    held = 4 + 4 * (int) Math.ceil(deadS / periodS);
+    makeTurns();
+  }
+
+  private void makeTurns() {
+    turnS = new float[(held + 1 + slots) * WORLDS];
+    turn = new Directions(turnS.length);
+    ofTurns = new float[][] {turnS, turn.cos, turn.sin};
+    counts = new int[turnS.length];
+  }
+
+  void start() {
+    Arrays.fill(knownRow, -1);
+    Arrays.fill(readAt, -FAR);
+    Arrays.fill(entered, 0);
+    Arrays.fill(head, 0);
+    Arrays.fill(before.cos, 0);
+    Arrays.fill(before.sin, 0);
+    Arrays.fill(turnS, LONG_AGO_S);
+    Arrays.fill(turn.cos, 0);
+    Arrays.fill(turn.sin, 0);
+    Arrays.fill(heldFrom, held - 1);
+    oldest = 0;
+  }
+
+  /** To a period; they are taken in turn. */
+  void startRow(int row) {
+    Arrays.fill(fresh, 0);
+    IntVector here = IntVector.broadcast(INTS, row);
+    IntVector first = here.add(0);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      first = first.min(IntVector.fromArray(INTS, head, i));
+      here.sub(IntVector.fromArray(INTS, knownRow, i))
+          .min(farRows)
+          .mul(-periodGrains)
+          .add(IntVector.fromArray(INTS, readAt, i))
+          .intoArray(newestAt, i);
+    }
+    oldest = Math.max(oldest, first.reduceLanes(MIN));
+    if (row - oldest >= slots) makeRoom(row);
+    int slot = (row & slots - 1) * WORLDS;
+    Arrays.fill(sentAt, slot, slot + WORLDS, NONE);
+  }
+
+  private void makeRoom(int row) {
+    int count = slots;
+    int[] sentBefore = sentAt, answeredBefore = answeredAt;
+    float[][] standing = ofTurns;
+    Directions directions = sent;
+    slots = 2 * count;
+    sentAt = new int[slots * WORLDS];
+    answeredAt = new int[slots * WORLDS];
+    sent = new Directions(slots * WORLDS);
+    for (int r = oldest; r < row; r++) {
+      int from = (r & count - 1) * WORLDS, to = (r & slots - 1) * WORLDS;
+      System.arraycopy(sentBefore, from, sentAt, to, WORLDS);
+      System.arraycopy(answeredBefore, from, answeredAt, to, WORLDS);
+      System.arraycopy(directions.cos, from, sent.cos, to, WORLDS);
+      System.arraycopy(directions.sin, from, sent.sin, to, WORLDS);
+    }
+    makeTurns();
+    for (int i = 0; i < ofTurns.length; i++)
+      System.arraycopy(standing[i], 0, ofTurns[i], 0, held * WORLDS);
+  }
+
+  /**
+   * Notes commands.
+   *
+   * @param times when each is sent, from the row's begin; {@link LaneOffers#NONE} where none is
+   * @param answers when it is known to have arrived, {@link LaneOffers#NONE} where that is never told
+   */
+  void send(int row, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
+    int slot = (row & slots - 1) * WORLDS;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector.fromArray(INTS, times, i).intoArray(sentAt, slot + i);
+      IntVector.fromArray(INTS, answers, i).intoArray(answeredAt, slot + i);
+      FloatVector.fromArray(SPECIES, directions.cos, i).intoArray(sent.cos, slot + i);
+      FloatVector.fromArray(SPECIES, directions.sin, i).intoArray(sent.sin, slot + i);
+    }
+  }
+
+  /**
+   * Takes readings that came, where they are newer than the newest, and updates the mean delays by them. What
+   * they tell of commands waits for {@link #conclude}.
+   *
+   * @param whose of which vehicle each reading is
+   * @param vehicle this one
+   * @param asked when it was asked for, made and received, from the row's begin
+   * @param delays the means of all vehicles' readings
+   */
+  void enter(
+      LaneVectors vectors,
+      int[] whose,
+      int vehicle,
+      int[] asked,
+      int[] made,
+      int[] received,
+      MeanDelays delays) {
+    IntVector zero = IntVector.broadcast(INTS, 0), one = IntVector.broadcast(INTS, 1);
+    entering.count = 0;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector now = IntVector.fromArray(INTS, made, i), last = IntVector.fromArray(INTS, newestAt, i);
+      VectorMask<Integer> newer =
+          IntVector.fromArray(INTS, whose, i).compare(EQ, vehicle).and(now.compare(GT, last));
+      if (!newer.anyTrue()) continue;
+      entering.first[entering.count++] = i;
+      zero.blend(one, newer).intoArray(enters, i);
+      last.blend(now, newer).intoArray(newestAt, i);
+    }
+    delays.take(entering, enters, asked, made, received);
+    note(made, received, delays);
+  }
+
+  /** Notes readings that enter: of each world the first, the second and so on together. */
+  private void note(int[] made, int[] received, MeanDelays delays) {
+    for (int k = 0; k < entering.count; k++) {
+      int i = entering.first[k];
+      IntVector count = IntVector.fromArray(INTS, entered, i);
+      VectorMask<Integer> enter = IntVector.fromArray(INTS, enters, i).compare(GT, 0);
+      int least = count.reduceLanes(MIN), most = count.reduceLanes(MAX);
+      while (readings.size() <= most) readings.add(new Readings());
+      for (int n = least; n <= most; n++) {
+        Readings nth = readings.get(n);
+        VectorMask<Integer> does = count.compare(EQ, n).and(enter);
+        VectorMask<Float> means = does.cast(SPECIES);
+        IntVector.fromArray(INTS, nth.madeAt, i)
+            .blend(IntVector.fromArray(INTS, made, i), does)
+            .intoArray(nth.madeAt, i);
+        IntVector.fromArray(INTS, nth.receivedAt, i)
+            .blend(IntVector.fromArray(INTS, received, i), does)
+            .intoArray(nth.receivedAt, i);
+        FloatVector.fromArray(SPECIES, nth.toS, i)
+            .blend(FloatVector.fromArray(SPECIES, delays.toS, i), means)
+            .intoArray(nth.toS, i);
+        FloatVector.fromArray(SPECIES, nth.fromS, i)
+            .blend(FloatVector.fromArray(SPECIES, delays.fromS, i), means)
+            .intoArray(nth.fromS, i);
+      }
+      count.add(1, enter).intoArray(entered, i);
+    }
+  }
+
+  /**
+   * Lays the way to the readings that entered in this period: of each world to the first, then to the second
+   * and so on, each of which is {@link #conclude concluded} before the next.
+   *
+   * @param n which reading of each world, from 0
+   * @return whether some world has so many
+   */
+  boolean layToReading(int row, int n) {
+    if (!findEntering(n)) {
+      Arrays.fill(entered, 0);
+      return false;
+    }
+    nth = readings.get(n);
+    lay(row, entering, nth.receivedAt, nth.receivedAt, nth.toS, nth.fromS);
+    aimAt(row, nth.madeAt);
+    return true;
+  }
+
+  /** When the readings were made to which the way was laid, from the row's begin. */
+  int[] madeAt() {
+    return nth.madeAt;
+  }
+
+  /** Lets stand what is taken to have acted before these readings, by what was known then. */
+  void conclude(int row) {
+    settle(row);
+    renew(row, nth.madeAt);
+  }
+
+  /** In which vectors a world has so many readings and one more. */
+  private boolean findEntering(int n) {
+    entering.count = 0;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Integer> more = IntVector.fromArray(INTS, entered, i).compare(GT, n);
+      if (more.anyTrue()) entering.first[entering.count++] = i;
+      IntVector.broadcast(INTS, 0).blend(1, more).intoArray(enters, i);
+    }
+    return entering.count > 0;
+  }
+
+  private void renew(int row, int[] made) {
+    IntVector here = IntVector.broadcast(INTS, row);
+    for (int k = 0; k < entering.count; k++) {
+      int i = entering.first[k];
+      IntVector enter = IntVector.fromArray(INTS, enters, i);
+      VectorMask<Integer> does = enter.compare(GT, 0);
+      IntVector.fromArray(INTS, readAt, i)
+          .blend(IntVector.fromArray(INTS, made, i), does)
+          .intoArray(readAt, i);
+      IntVector.fromArray(INTS, knownRow, i).blend(here, does).intoArray(knownRow, i);
+      enter.max(IntVector.fromArray(INTS, fresh, i)).intoArray(fresh, i);
+    }
+  }
+
+  /** The way is as long as from the reading before until this one, if there was one before. */
+  private void aimAt(int row, int[] made) {
+    IntVector here = IntVector.broadcast(INTS, row);
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        rowS = FloatVector.broadcast(SPECIES, periodS),
+        zero = FloatVector.broadcast(SPECIES, 0f);
+    for (int k = 0; k < entering.count; k++) {
+      int i = entering.first[k];
+      IntVector rows = IntVector.fromArray(INTS, knownRow, i);
+      FloatVector span =
+          ((FloatVector)
+                  IntVector.fromArray(INTS, made, i)
+                      .sub(IntVector.fromArray(INTS, readAt, i))
+                      .convertShape(I2F, SPECIES, 0))
+              .mul(grainS)
+              .add(((FloatVector) here.sub(rows).convertShape(I2F, SPECIES, 0)).mul(rowS));
+      zero.blend(span, flies(i)).intoArray(endS, i);
+    }
+  }
+
+  /** Where a reading enters that is not the first. */
+  private VectorMask<Float> flies(int i) {
+    return IntVector.fromArray(INTS, knownRow, i)
+        .compare(GE, 0)
+        .and(IntVector.fromArray(INTS, enters, i).compare(GT, 0))
+        .cast(SPECIES);
+  }
+
+  /** Of the way laid, lets the turns stand whose commands are taken to have acted until readings. */
+  private void settle(int row) {
+    float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
+    float[] beforeX = before.cos, beforeY = before.sin, priorX = prior.cos, priorY = prior.sin;
+    int mask = slots - 1, last = (held - 1) * WORLDS, first = (held + 1) * WORLDS;
+    IntVector none = IntVector.broadcast(INTS, NONE);
+    FloatVector longAgo = FloatVector.broadcast(SPECIES, LONG_AGO_S),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        dead = FloatVector.broadcast(SPECIES, deadS);
+    boolean isFull = false;
+    for (int k = 0; k < entering.count; k++) {
+      int i = entering.first[k];
+      VectorMask<Float> flies = flies(i);
+      if (!flies.anyTrue()) continue;
+      FloatVector span = FloatVector.fromArray(SPECIES, endS, i);
+      FloatVector until = span.add(dead);
+      int laidFrom = firstOf[i / LANES], turns = turnsOf[i / LANES], since = heldFrom[i / LANES];
+      for (int from = held * WORLDS + i; from < turns * WORLDS; from += WORLDS) {
+        FloatVector at = FloatVector.fromArray(SPECIES, turnS, from),
+            x = FloatVector.fromArray(SPECIES, turnX, from),
+            y = FloatVector.fromArray(SPECIES, turnY, from);
+        VectorMask<Float> stands =
+            FloatVector.fromArray(SPECIES, turnX, last + i)
+                .compare(NE, x)
+                .or(FloatVector.fromArray(SPECIES, turnY, last + i).compare(NE, y))
+                .and(at.compare(LE, until))
+                .and(flies);
+        if (stands.anyTrue()) {
+          // What has turned the vehicle by then replaces the last turn; others follow it.
+          VectorMask<Float> follows = stands.and(at.compare(GT, span));
+          if (follows.anyTrue()) {
+            int oldestAt = since * WORLDS + i;
+            FloatVector oldestS = FloatVector.fromArray(SPECIES, turnS, oldestAt);
+            // Worlds make room by what no longer counts: else all that follow in one would take room in all.
+            boolean isNeeded =
+                oldestAt >= last
+                    || FloatVector.fromArray(SPECIES, turnS, oldestAt + WORLDS)
+                        .compare(GT, oldestS.max(span))
+                        .and(follows)
+                        .anyTrue();
+            isFull |= isNeeded && since == 0;
+            if (isNeeded && since > 0) {
+              since--;
+              for (float[] each : ofTurns)
+                FloatVector.fromArray(SPECIES, each, oldestAt).intoArray(each, oldestAt - WORLDS);
+            }
+            for (int to = oldestAt; to < last; to += WORLDS)
+              for (float[] each : ofTurns)
+                FloatVector.fromArray(SPECIES, each, to)
+                    .blend(FloatVector.fromArray(SPECIES, each, to + WORLDS), follows)
+                    .intoArray(each, to);
+          }
+          for (float[] each : ofTurns)
+            FloatVector.fromArray(SPECIES, each, last + i)
+                .blend(FloatVector.fromArray(SPECIES, each, from), stands)
+                .intoArray(each, last + i);
+        }
+      }
+      IntVector earliest = IntVector.fromArray(INTS, head, i);
+      FloatVector.fromArray(SPECIES, beforeX, i).intoArray(priorX, i);
+      FloatVector.fromArray(SPECIES, beforeY, i).intoArray(priorY, i);
+      for (int r = laidFrom; r < row; r++) {
+        int slot = (r & mask) * WORLDS + i, at = first + (r - laidFrom) * WORLDS + i;
+        VectorMask<Float> present =
+            IntVector.fromArray(INTS, sentAt, slot)
+                .compare(LT, none)
+                .and(earliest.compare(LE, r))
+                .cast(SPECIES);
+        VectorMask<Float> acted =
+            IntVector.fromArray(INTS, counts, at)
+                .compare(GT, 0)
+                .cast(SPECIES)
+                .and(FloatVector.fromArray(SPECIES, turnS, at).compare(LE, until))
+                .and(flies);
+        FloatVector x = FloatVector.fromArray(SPECIES, priorX, i),
+            y = FloatVector.fromArray(SPECIES, priorY, i);
+        if (acted.anyTrue()) {
+          IntVector.fromArray(INTS, head, i).blend(r, acted.cast(INTS)).intoArray(head, i);
+          FloatVector.fromArray(SPECIES, beforeX, i).blend(x, acted).intoArray(beforeX, i);
+          FloatVector.fromArray(SPECIES, beforeY, i).blend(y, acted).intoArray(beforeY, i);
+        }
+        x.blend(FloatVector.fromArray(SPECIES, sent.cos, slot), present).intoArray(priorX, i);
+        y.blend(FloatVector.fromArray(SPECIES, sent.sin, slot), present).intoArray(priorY, i);
+      }
+      boolean isPast = true;
+      for (int number = since; number < held; number++) {
+        FloatVector at = FloatVector.fromArray(SPECIES, turnS, number * WORLDS + i);
+        at = at.blend(at.sub(span).max(longAgo), flies);
+        at.intoArray(turnS, number * WORLDS + i);
+        isPast &= !at.compare(GT, zero).anyTrue();
+        if (isPast) since = number;
+      }
+      heldFrom[i / LANES] = since;
+    }
+    if (isFull)
+      throw new IllegalStateException(
+          "more than " + held + " commands act within a dead time of " + deadS + " s");
+  }
+
+  /**
+   * Lays the way from the newest reading until a command acts that is sent at a moment, of the period from
+   * {@code known} on.
+   *
+   * @param known by world, until when what was answered is known, from the row's begin
+   * @param when the moments, from there too; {@link LaneOffers#NONE} where no way is asked for
+   * @param isFirst whether it is the first way since readings entered
+   */
+  void lay(int row, LaneVectors vectors, int[] known, int[] when, MeanDelays delays, boolean isFirst) {
+    // But for what is taken for lost meanwhile, the ways to all moments are one.
+    if (isFirst || mayLose) lay(row, vectors, known, when, delays.toS, delays.fromS);
+    aim(row, vectors, known, when, delays.toS);
+  }
+
+  /** How long the way is. */
+  private void aim(int row, LaneVectors vectors, int[] known, int[] when, float[] toS) {
+    IntVector here = IntVector.broadcast(INTS, row), none = IntVector.broadcast(INTS, NONE);
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        rowS = FloatVector.broadcast(SPECIES, periodS),
+        zero = FloatVector.broadcast(SPECIES, 0f);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector now = IntVector.fromArray(INTS, when, i);
+      now = now.blend(IntVector.fromArray(INTS, known, i), now.compare(EQ, none));
+      FloatVector age =
+          ((FloatVector) now.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
+              .mul(grainS)
+              .add(
+                  ((FloatVector)
+                          here.sub(IntVector.fromArray(INTS, knownRow, i)).convertShape(I2F, SPECIES, 0))
+                      .mul(rowS));
+      age.intoArray(ageS, i);
+      age.add(FloatVector.fromArray(SPECIES, toS, i)).max(zero).intoArray(endS, i);
+    }
+  }
+
+  /** The turns of the way, by what is known at a moment and what is taken for lost at another. */
+  private void lay(int row, LaneVectors vectors, int[] known, int[] when, float[] toS, float[] fromS) {
+    float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
+    int mask = slots - 1, standing = (held - 1) * WORLDS;
+    turns = 0;
+    mayLose = false;
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        no = IntVector.broadcast(INTS, 0),
+        yes = IntVector.broadcast(INTS, 1);
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        rowS = FloatVector.broadcast(SPECIES, periodS),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        half = FloatVector.broadcast(SPECIES, 0.5f),
+        grace = FloatVector.broadcast(SPECIES, GRACE_S),
+        dead = FloatVector.broadcast(SPECIES, deadS),
+        longAgo = FloatVector.broadcast(SPECIES, LONG_AGO_S);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector until = IntVector.fromArray(INTS, known, i),
+          now = IntVector.fromArray(INTS, when, i),
+          rows = IntVector.fromArray(INTS, knownRow, i),
+          read = IntVector.fromArray(INTS, readAt, i),
+          earliest = IntVector.fromArray(INTS, head, i);
+      now = now.blend(until, now.compare(EQ, none));
+      FloatVector to = FloatVector.fromArray(SPECIES, toS, i),
+          roundTrip = to.add(FloatVector.fromArray(SPECIES, fromS, i)),
+          patience = roundTrip.add(roundTrip).add(grace);
+      int place = standing + WORLDS + i;
+      FloatVector at = FloatVector.fromArray(SPECIES, turnS, standing + i),
+          x = FloatVector.fromArray(SPECIES, turnX, standing + i),
+          y = FloatVector.fromArray(SPECIES, turnY, standing + i);
+      at.intoArray(turnS, place);
+      x.intoArray(turnX, place);
+      y.intoArray(turnY, place);
+      FloatVector latest = to.add(longAgo);
+      IntVector seen = earliest.sub(earliest);
+      int first = Math.max(oldest, Math.min(earliest.reduceLanes(MIN), row));
+      firstOf[i / LANES] = first;
+      turnsOf[i / LANES] = held + 1 + row - first;
+      turns = Math.max(turns, turnsOf[i / LANES]);
+      for (int r = first; r < row; r++) {
+        int slot = (r & mask) * WORLDS + i;
+        place += WORLDS;
+        int begin = (int) Math.max((r - row) * (long) periodGrains, -FAR);
+        IntVector sending = IntVector.fromArray(INTS, sentAt, slot),
+            answered = IntVector.fromArray(INTS, answeredAt, slot);
+        VectorMask<Integer> present = sending.compare(LT, none).and(earliest.compare(LE, r));
+        VectorMask<Integer> later = seen.compare(GT, 0);
+        VectorMask<Float> isKnown = answered.add(begin).compare(LE, until).cast(SPECIES);
+        FloatVector acts =
+            ((FloatVector) sending.sub(read).convertShape(I2F, SPECIES, 0))
+                .mul(grainS)
+                .add(((FloatVector) rows.neg().add(r).convertShape(I2F, SPECIES, 0)).mul(rowS))
+                .add(to);
+        FloatVector off =
+            ((FloatVector) answered.sub(sending).convertShape(I2F, SPECIES, 0))
+                .mul(grainS)
+                .sub(roundTrip)
+                .mul(half);
+        acts = acts.add(zero.blend(off, isKnown)).max(latest);
+        FloatVector wait =
+            ((FloatVector) now.sub(sending).convertShape(I2F, SPECIES, 0))
+                .mul(grainS)
+                .add((row - r) * periodS);
+        VectorMask<Float> unanswered = present.and(later).cast(SPECIES).andNot(isKnown);
+        mayLose |= wait.add(rowS).compare(GT, patience).and(unanswered).anyTrue();
+        VectorMask<Float> count = present.cast(SPECIES).andNot(wait.compare(GT, patience).and(unanswered));
+        VectorMask<Float> late = present.andNot(later).cast(SPECIES).and(acts.compare(GT, zero));
+        if (late.anyTrue()) {
+          // It acts later than was thought at the reading. The place before it has no turn of its own.
+          at.blend(dead, late).intoArray(turnS, place - WORLDS);
+          x.blend(FloatVector.fromArray(SPECIES, before.cos, i), late).intoArray(turnX, place - WORLDS);
+          y.blend(FloatVector.fromArray(SPECIES, before.sin, i), late).intoArray(turnY, place - WORLDS);
+        }
+        seen = seen.blend(yes, present);
+        latest = latest.blend(acts, count);
+        at = at.blend(acts.max(zero).add(dead), count);
+        x = x.blend(FloatVector.fromArray(SPECIES, sent.cos, slot), count);
+        y = y.blend(FloatVector.fromArray(SPECIES, sent.sin, slot), count);
+        at.intoArray(turnS, place);
+        x.intoArray(turnX, place);
+        y.intoArray(turnY, place);
+        no.blend(yes, count.cast(INTS)).intoArray(counts, place);
+      }
+    }
+  }
+
+  /**
+   * Tells when readings were made that are fresh.
+   *
+   * @param joined becomes {@link LaneOffers#NONE} where the vehicle is not known yet
+   * @param into from the row's begin
+   */
+  void tell(int[] joined, int[] into) {
+    System.arraycopy(newestAt, 0, into, 0, WORLDS);
+    IntVector none = IntVector.broadcast(INTS, NONE);
+    for (int i = 0; i < WORLDS; i += LANES)
+      IntVector.fromArray(INTS, joined, i)
+          .blend(none, IntVector.fromArray(INTS, knownRow, i).compare(LT, 0))
+          .intoArray(joined, i);
+  }
+}

@@ -1,0 +1,262 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.EQ;
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.NE;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.forward.Delays;
+import skein.forward.LoopTiming;
+import skein.forward.TabledDelays;
+
+/**
+ * The tasks of the {@code futures} loop: each period one for each vehicle, which reads all one
+ * after the other, and offers its own vehicle what was read. Tasks overlap and overtake; with the
+ * window full they begin later, in turn, when a task has ended: no earlier than that one of all
+ * which ends as the n-th from behind, where n may be under way.
+ */
+final class FuturesOffers extends LaneOffers {
+  private static final int STEP = LaneDelays.placeOf(1);
+
+  /** Tasks last for longer and for shorter by about so much. */
+  private static final double AHEAD_S = 0.2;
+
+  private static final LaneVectors ALL = LaneVectors.all();
+
+  /** Long past. */
+  private static final int PAST = -1_000_000_000;
+
+  private final int periodGrains, timeoutGrains, ahead, most;
+
+  /** Steps kept: a power of two. */
+  private final int ring;
+
+  // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
+  private final int[][][] beginAt, end;
+
+  /** The latest ends of all tasks before, the latest first, from the begin of the step known last. */
+  private final int[][] latest;
+
+  /** When the first task of the last step that was not missed began. */
+  private final int[] began = new int[WORLDS];
+
+  /** 1 where the step drawn last has no tasks. */
+  private final int[] missed = new int[WORLDS];
+
+  /** By vehicle: the delays of a task's question and of the answer, in turn. */
+  private final int[][] drawn;
+
+  /** Steps that may have offers still, and the next to be drawn. */
+  private int oldest, next;
+
+  // By agent: the next offer, the one behind it, and of the next its step and when its task began.
+  private final int[][] soonest, second, stepOf, beginOf;
+
+  // Where random numbers are: of a step drawn, or of the steps of the beat's offers; and when the tasks of
+  // these go on to the next vehicle.
+  private final int[] places = new int[WORLDS], goesOn = new int[WORLDS];
+
+  private final int[] beatPlaces = new int[WORLDS];
+  private int row;
+
+  /** In which some world was offered something in this beat. */
+  private final LaneVectors taken = new LaneVectors();
+
+  /**
+   * @param maxDelayS the longest one-way delay of any link
+   */
+  FuturesOffers(LoopTiming.Futures timing, int vehicles, double maxDelayS) {
+    super(vehicles, new LaneDelays(), false, (int) Math.ceil(AHEAD_S / timing.periodS()));
+    double periodS = timing.periodS(),
+        taskS = vehicles * Math.min(timing.asking().timeoutS(), 2 * maxDelayS);
+    periodGrains = LaneViews.grains(periodS);
+    timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
+    // A decision waits for the answer to the command before at most.
+    double waitsS = 2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS();
+    ahead = 1 + rowsAhead + (int) Math.ceil(waitsS / periodS);
+    // A task may wait for one that waits for another.
+    ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(3 * taskS / periodS) + 4) - 1);
+    most = vehicles * timing.asking().window();
+    drawn = new int[2 * vehicles][WORLDS];
+    soonest = new int[vehicles][WORLDS];
+    second = new int[vehicles][WORLDS];
+    stepOf = new int[vehicles][WORLDS];
+    beginOf = new int[vehicles][WORLDS];
+    beginAt = new int[vehicles][ring][WORLDS];
+    end = new int[vehicles][ring][WORLDS];
+    latest = new int[most][WORLDS];
+    keepOffers(beatPlaces);
+  }
+
+  @Override
+  public void start(int[] worldKeys, TabledDelays[] links) {
+    delays.start(worldKeys, links);
+    for (int[] each : latest) Arrays.fill(each, PAST);
+    Arrays.fill(began, PAST);
+    whose = vehicles - 1;
+    oldest = 0;
+    next = 0;
+    while (next < ahead) draw();
+  }
+
+  /** The tasks of one more step. */
+  private void draw() {
+    int step = next++, slot = step & ring - 1;
+    IntVector period = IntVector.broadcast(INTS, step == 0 ? 0 : periodGrains),
+        past = IntVector.broadcast(INTS, PAST);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      for (int[] each : latest)
+        IntVector.fromArray(INTS, each, i).sub(period).max(past).intoArray(each, i);
+      IntVector.fromArray(INTS, began, i).sub(period).max(past).intoArray(began, i);
+    }
+    Arrays.fill(places, LaneDelays.placeOf(step));
+    for (int agent = 0; agent < vehicles; agent++) {
+      begin(agent, beginAt[agent][slot]);
+      delays.drawInTurn(ALL, places, agent, (long) step * periodGrains, beginAt[agent][slot], drawn);
+      end(beginAt[agent][slot], end[agent][slot]);
+    }
+  }
+
+  /** When an agent's tasks begin. */
+  private void begin(int agent, int[] begins) {
+    int[] lastOf = latest[most - 1];
+    IntVector zero = IntVector.broadcast(INTS, 0);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector before = IntVector.fromArray(INTS, began, i);
+      IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(agent == 0 ? zero : before.max(zero));
+      if (agent == 0) {
+        // A step whose predecessor waits still is missed. The other tasks follow the first.
+        VectorMask<Integer> goes = before.compare(LE, zero);
+        before.blend(begin, goes).intoArray(began, i);
+        zero.blend(1, goes.not()).intoArray(missed, i);
+      }
+      begin.intoArray(begins, i);
+    }
+  }
+
+  /** When they end, if they do with an offer. */
+  private void end(int[] begins, int[] ends) {
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        past = IntVector.broadcast(INTS, PAST),
+        timeout = IntVector.broadcast(INTS, timeoutGrains);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Integer> goes = IntVector.fromArray(INTS, missed, i).compare(EQ, 0);
+      IntVector over = IntVector.fromArray(INTS, begins, i);
+      VectorMask<Integer> offers = goes;
+      for (int v = 0; v < vehicles; v++) {
+        IntVector there = IntVector.fromArray(INTS, drawn[2 * v], i),
+            back = IntVector.fromArray(INTS, drawn[2 * v + 1], i).add(there);
+        over = over.add(back.min(timeout), offers);
+        offers = offers.andNot(back.compare(GT, timeout));
+      }
+      none.blend(over, offers).intoArray(ends, i);
+      IntVector more = past.blend(over, goes);
+      for (int[] each : latest) {
+        IntVector held = IntVector.fromArray(INTS, each, i);
+        held.max(more).intoArray(each, i);
+        more = held.min(more);
+      }
+    }
+  }
+
+  @Override
+  public void startRow(int number) {
+    row = number;
+    draw();
+    while (oldest < row && isEmpty(end, oldest & ring - 1)) oldest++;
+    if (next - oldest > ring)
+      throw new IllegalStateException("more than " + ring + " steps have tasks under way");
+    taken.takeAll();
+    Arrays.fill(joinedAt, NONE);
+    for (int agent = 0; agent < vehicles; agent++) look(agent);
+  }
+
+  @Override
+  public boolean nextBeat() {
+    boolean any = false;
+    for (int[] each : soonest) any |= isBefore(each, periodGrains);
+    if (!any) return false;
+    do whose = (whose + 1) % vehicles;
+    while (!take(whose));
+    return true;
+  }
+
+  /** Takes an agent's next offers where no other has one before; of one moment, the first agent's comes first. */
+  private boolean take(int agent) {
+    int[] own = soonest[agent];
+    IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
+        none = IntVector.broadcast(INTS, NONE),
+        here = IntVector.broadcast(INTS, row);
+    taken.count = 0;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector time = IntVector.fromArray(INTS, own, i);
+      VectorMask<Integer> due = time.compare(LT, horizon);
+      for (int other = 0; other < vehicles; other++)
+        if (other != agent)
+          due = due.and(time.sub(agent < other ? 1 : 0).compare(LT, IntVector.fromArray(INTS, soonest[other], i)));
+      none.blend(time, due).intoArray(joinedAt, i);
+      if (due.anyTrue()) {
+        taken.first[taken.count++] = i;
+        IntVector.fromArray(INTS, second[agent], i).intoArray(nextAt, i);
+        IntVector.fromArray(INTS, beginOf[agent], i).intoArray(goesOn, i);
+        IntVector step = IntVector.fromArray(INTS, stepOf[agent], i);
+        step.mul(STEP).intoArray(places, i);
+        step.sub(here).mul(STEP).intoArray(beatPlaces, i);
+      }
+    }
+    if (taken.count == 0) return false;
+    read(agent);
+    look(agent);
+    return true;
+  }
+
+  /** When an agent's tasks that offer something read each vehicle: their delays are drawn again. */
+  private void read(int agent) {
+    delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
+    for (int v = 0; v < vehicles; v++) {
+      int[] there = drawn[2 * v], back = drawn[2 * v + 1];
+      for (int k = 0; k < taken.count; k++) {
+        int i = taken.first[k];
+        IntVector at = IntVector.fromArray(INTS, goesOn, i).add(IntVector.fromArray(INTS, there, i));
+        at.intoArray(sampledAt[v], i);
+        at.add(IntVector.fromArray(INTS, back, i)).intoArray(goesOn, i);
+      }
+    }
+  }
+
+  /**
+   * Which offers an agent has next, in vectors in which it took some, or may have more; what it took is over.
+   */
+  private void look(int agent) {
+    int[][] begins = beginAt[agent], ends = end[agent];
+    IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);
+    for (int k = 0; k < taken.count; k++) {
+      int i = taken.first[k];
+      VectorMask<Integer> gone = IntVector.fromArray(INTS, joinedAt, i).compare(NE, none);
+      IntVector last = IntVector.broadcast(INTS, -1).blend(IntVector.fromArray(INTS, stepOf[agent], i), gone);
+      IntVector first = zero.add(none), then = zero.add(none), which = zero.add(zero), begun = zero.add(zero);
+      for (int step = oldest; step < next; step++) {
+        int slot = step & ring - 1, shift = (step - row) * periodGrains;
+        IntVector time = IntVector.fromArray(INTS, ends[slot], i);
+        time = time.blend(none, last.compare(EQ, step));
+        time.intoArray(ends[slot], i);
+        time = time.add(shift, time.compare(NE, none));
+        VectorMask<Integer> sooner = time.compare(LT, first);
+        then = then.min(first.max(time));
+        first = first.min(time);
+        which = which.blend(step, sooner);
+        begun = begun.blend(IntVector.fromArray(INTS, begins[slot], i).add(shift), sooner);
+      }
+      first.intoArray(soonest[agent], i);
+      then.intoArray(second[agent], i);
+      which.intoArray(stepOf[agent], i);
+      begun.intoArray(beginOf[agent], i);
+    }
+  }
+}

@@ -1,0 +1,428 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.LOG2_E;
+import static skein.simd.LaneMath.ONE;
+import static skein.simd.LaneMath.POWER_1;
+import static skein.simd.LaneMath.POWER_2;
+import static skein.simd.LaneMath.POWER_3;
+import static skein.simd.LaneMath.POWER_4;
+import static skein.simd.LaneMath.POWER_5;
+import static skein.simd.LaneMath.ROUND;
+import static skein.simd.LaneMath.SPECIES;
+import static skein.simd.LaneMath.ZERO;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import jdk.incubator.vector.VectorOperators;
+import skein.forward.Duelist;
+import skein.lanes.policy.Directions;
+import skein.vehicle.FirstOrderLag;
+import skein.vehicle.ReducedModel;
+
+/**
+ * The vehicles of one role in many worlds, with first-order lag, and the commands on their way to
+ * them, which act at times of their own in each world. Positions are those at a row's begin;
+ * readings show them at times of their own, through the commands that act before.
+ *
+ * <p>The response to commanded velocities is linear: position and velocity are those without the
+ * commands under way, plus each such command's change times its step response, s(t) = t − lag·(1 −
+ * r(t)) and 1 − r(t), where r(t) = exp(−t / lag), from the time on at which it acts. With r(end − at)
+ * = exp(−end / lag) · growth(at) one exponential serves all commands. What a world computes depends
+ * on its own commands alone, to the bit: those of others only decide whether zeros are added.
+ *
+ * <p>{@link PlantFlights} flies the same vehicle under every loop. This second way exists for {@code
+ * stream}, where it makes 100 million agent-steps a second and pieces 54.
+ */
+public final class LagVehicles extends LaneVehicles {
+  private static final float FUTURE = 1e9f;
+
+  /** No reading is taken so long before its row's begin. */
+  private final float earliestS;
+
+  private final double periodS;
+  private final FirstOrderLag lag;
+  private final float lagS, speedMps, periodGain, periodDecay;
+
+  // Of each world at the row's begin the velocity asked for, and what the velocity lacks of it.
+  private static final int WANTED_X = OWN,
+      WANTED_Y = OWN + WORLDS,
+      LACK_X = OWN + 2 * WORLDS,
+      LACK_Y = OWN + 3 * WORLDS;
+
+  /** When the readings are taken, and what remains of an error then. */
+  private static final int END = OWN + 4 * WORLDS, DECAY = OWN + 5 * WORLDS;
+
+  /** The velocity commanded last, whether it acts yet or not. */
+  private static final int SENT_X = OWN + 6 * WORLDS, SENT_Y = OWN + 7 * WORLDS;
+
+  private static final int NUMBERS = 8;
+
+  /** The row flown to. */
+  private int row;
+
+  private static final int[] AT_BEGIN = new int[WORLDS];
+  private static final LaneVectors ALL = LaneVectors.all();
+
+  /**
+   * By slot: when the command acts, from its own row's begin, s; e to that time over the lag; and by
+   * how much it changes the velocity asked for.
+   */
+  private float[] commands;
+
+  private static final int AT = 0, GROWTH = WORLDS, CHANGE_X = 2 * WORLDS, CHANGE_Y = 3 * WORLDS;
+  private static final int SLOT = 4 * WORLDS;
+
+  // Commands by the beat in which they were decided, modulo slots: the oldest that an early reading
+  // may be without, the first that some world has yet to feel, the next; and of each the row, and the
+  // times between which it acts.
+  private int slots;
+  private int oldest, first, next;
+  private int[] rowOf;
+  private float[] soonest, latest;
+
+  // Those that act before the readings: where they are, how old they are, how old they were when
+  // the vehicles were flown last, and what remains of an error after their age.
+  private int near;
+  private int[] nearFrom;
+  private float[] nearAge, nearYounger, nearAged;
+
+  /** So many rows in seconds, and what remains of an error after them. */
+  private final float[] rowsS, remains;
+
+  /** Whether powers of e hold what is under way for so long. */
+  public static boolean canFly(ReducedModel model, double longestS) {
+    return longestS <= MOST_LAGS * model.lagS();
+  }
+
+  private static final double MOST_LAGS = 80;
+
+  /**
+   * @param longestS how long a command is under way at most
+   * @param earliestS no reading is taken so long before its row's begin
+   */
+  public LagVehicles(
+      Duelist duelist, ReducedModel model, double periodS, double longestS, double earliestS) {
+    super(duelist, NUMBERS);
+    this.periodS = periodS;
+    this.earliestS = (float) earliestS;
+    allocate(8);
+    lag = new FirstOrderLag(model.lagS());
+    lagS = (float) model.lagS();
+    speedMps = (float) (duelist.speed() * model.gain());
+    periodDecay = (float) lag.remains(periodS);
+    periodGain = (float) lag.carriesS(periodS);
+    rowsS = new float[4 + (int) Math.ceil((longestS + earliestS) / periodS)];
+    remains = new float[rowsS.length];
+    for (int i = 0; i < remains.length; i++) {
+      rowsS[i] = (float) (i * periodS);
+      remains[i] = (float) lag.remains(i * periodS);
+    }
+  }
+
+  @Override
+  public void start() {
+    super.start();
+    oldest = 0;
+    first = 0;
+    next = 0;
+    row = 0;
+  }
+
+  @Override
+  void act(int row, LaneVectors vectors, int[] acts, Directions commanded) {
+    if (next - oldest == slots) makeRoom();
+    int number = next & slots - 1, slot = number * SLOT;
+    rowOf[number] = row;
+    if (vectors.count * LANES < WORLDS) Arrays.fill(commands, slot, slot + SLOT, 0f);
+    send(vectors, number, slot, acts, commanded);
+    next++;
+  }
+
+  private void send(LaneVectors vectors, int number, int slot, int[] acts, Directions commanded) {
+    float[] state = this.state, commands = this.commands, cos = commanded.cos, sin = commanded.sin;
+    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE), soonestOf = none, latestOf = none.not();
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        speed = FloatVector.broadcast(SPECIES, speedMps),
+        doublings = FloatVector.broadcast(SPECIES, LOG2_E / lagS),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        round = FloatVector.broadcast(SPECIES, ROUND),
+        power1 = FloatVector.broadcast(SPECIES, POWER_1),
+        power2 = FloatVector.broadcast(SPECIES, POWER_2),
+        power3 = FloatVector.broadcast(SPECIES, POWER_3),
+        power4 = FloatVector.broadcast(SPECIES, POWER_4),
+        power5 = FloatVector.broadcast(SPECIES, POWER_5);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector grains = IntVector.fromArray(INTS, acts, i);
+      VectorMask<Integer> does = grains.compare(LT, none);
+      VectorMask<Float> yes = does.cast(SPECIES);
+      soonestOf = soonestOf.min(grains);
+      latestOf = latestOf.lanewise(VectorOperators.MAX, grains, does);
+      FloatVector at =
+          zero.blend(((FloatVector) grains.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS), yes);
+      at.intoArray(commands, slot + AT + i);
+      FloatVector exponent = at.mul(doublings);
+      FloatVector rounded = exponent.add(round);
+      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
+      rest.fma(power5, power4)
+          .fma(square, rest.fma(power3, power2))
+          .fma(square, rest.fma(power1, one))
+          .reinterpretAsInts()
+          .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
+          .reinterpretAsFloats()
+          .intoArray(commands, slot + GROWTH + i);
+      FloatVector beforeX = FloatVector.fromArray(SPECIES, state, SENT_X + i),
+          beforeY = FloatVector.fromArray(SPECIES, state, SENT_Y + i);
+      FloatVector nowX = beforeX.blend(FloatVector.fromArray(SPECIES, cos, i).mul(speed), yes),
+          nowY = beforeY.blend(FloatVector.fromArray(SPECIES, sin, i).mul(speed), yes);
+      nowX.sub(beforeX).intoArray(commands, slot + CHANGE_X + i);
+      nowY.sub(beforeY).intoArray(commands, slot + CHANGE_Y + i);
+      nowX.intoArray(state, SENT_X + i);
+      nowY.intoArray(state, SENT_Y + i);
+    }
+    // A little wider than floats are exact.
+    soonest[number] = soonestOf.reduceLanes(VectorOperators.MIN) * LaneViews.GRAIN_S * 0.999f;
+    latest[number] = latestOf.reduceLanes(VectorOperators.MAX) * LaneViews.GRAIN_S * 1.001f;
+  }
+
+  private void makeRoom() {
+    int[] rows = rowOf;
+    float[] from = soonest, upTo = latest, before = commands;
+    int mask = slots - 1;
+    allocate(2 * slots);
+    for (int number = oldest; number < next; number++) {
+      int old = number & mask, slot = number & slots - 1;
+      rowOf[slot] = rows[old];
+      soonest[slot] = from[old];
+      latest[slot] = upTo[old];
+      System.arraycopy(before, old * SLOT, commands, slot * SLOT, SLOT);
+    }
+  }
+
+  private void allocate(int count) {
+    slots = count;
+    commands = new float[count * SLOT];
+    rowOf = new int[count];
+    soonest = new float[count];
+    latest = new float[count];
+    nearFrom = new int[count];
+    nearAge = new float[count];
+    nearYounger = new float[count];
+    nearAged = new float[count];
+  }
+
+  @Override
+  void read(
+      int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
+    if (fresh != null) remember();
+    // Those that are flown on must be so everywhere; where they are already, the others stay.
+    LaneVectors read = this.row < row ? ALL : vectors;
+    flyTo(row, read, at);
+    if (withVelocity) readVelocities(read);
+    lookBack(at, fresh);
+    if (fresh != null) keep(fresh);
+  }
+
+  @Override
+  void flyToRow(int row, boolean isLookedAt) {
+    if (this.row < row) flyTo(row, ALL, AT_BEGIN);
+  }
+
+  /** Flies on from the row before, if the vehicles are there, and reads them. */
+  private void flyTo(int row, LaneVectors vectors, int[] sampledAt) {
+    boolean fliesOn = this.row < row;
+    findNear(row, latestS(sampledAt), fliesOn);
+    if (!fliesOn) fly(vectors, 0, 0, 1, sampledAt);
+    else {
+      fly(vectors, (float) periodS, periodGain, periodDecay, sampledAt);
+      while (first < next && latest[first & slots - 1] <= ageS(first & slots - 1, row)) first++;
+      while (oldest < first
+          && latest[oldest & slots - 1] <= ageS(oldest & slots - 1, row) - earliestS) oldest++;
+    }
+    this.row = row;
+  }
+
+  /** Not before the last of these. */
+  private static float latestS(int[] sampledAt) {
+    IntVector latest = IntVector.broadcast(INTS, 0);
+    for (int i = 0; i < WORLDS; i += LANES)
+      latest = latest.max(IntVector.fromArray(INTS, sampledAt, i));
+    return latest.reduceLanes(VectorOperators.MAX) * (LaneViews.GRAIN_S * 1.001f);
+  }
+
+  private float ageS(int slot, int row) {
+    return rowsS[row - rowOf[slot]];
+  }
+
+  private void findNear(int row, float latestSampleS, boolean fliesOn) {
+    near = 0;
+    for (int number = first; number < next; number++) {
+      int slot = number & slots - 1, rows = row - rowOf[slot];
+      float age = ageS(slot, row);
+      if (soonest[slot] - age < Math.max(latestSampleS, 0f) || soonest[slot] <= age) {
+        nearFrom[near] = slot * SLOT;
+        nearAge[near] = age;
+        nearAged[near] = remains[rows];
+        nearYounger[near] = !fliesOn ? age : rows == 1 ? -FUTURE : ageS(slot, row - 1);
+        near++;
+      }
+    }
+  }
+
+  /** Flies for so long, with the commands that begin to act in this time, and reads the vehicles. */
+  private void fly(LaneVectors vectors, float dtS, float gainS, float keepShare, int[] sampledAt) {
+    float[] state = this.state, commands = this.commands;
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
+        minusGain = FloatVector.broadcast(SPECIES, -gainS),
+        keep = FloatVector.broadcast(SPECIES, keepShare),
+        lag = FloatVector.broadcast(SPECIES, lagS),
+        minusLag = FloatVector.broadcast(SPECIES, -lagS),
+        halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
+        grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        round = FloatVector.broadcast(SPECIES, ROUND),
+        power1 = FloatVector.broadcast(SPECIES, POWER_1),
+        power2 = FloatVector.broadcast(SPECIES, POWER_2),
+        power3 = FloatVector.broadcast(SPECIES, POWER_3),
+        power4 = FloatVector.broadcast(SPECIES, POWER_4),
+        power5 = FloatVector.broadcast(SPECIES, POWER_5);
+    for (int n = 0; n < vectors.count; n++) {
+      int i = vectors.first[n];
+      FloatVector end =
+          ((FloatVector)
+                  IntVector.fromArray(INTS, sampledAt, i)
+                      .convertShape(VectorOperators.I2F, SPECIES, 0))
+              .mul(grainS);
+      FloatVector exponent = end.mul(halvings);
+      FloatVector rounded = exponent.add(round);
+      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
+      FloatVector decay =
+          rest.fma(power5, power4)
+              .fma(square, rest.fma(power3, power2))
+              .fma(square, rest.fma(power1, one))
+              .reinterpretAsInts()
+              .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
+              .reinterpretAsFloats();
+      FloatVector wantedX = FloatVector.fromArray(SPECIES, state, WANTED_X + i),
+          wantedY = FloatVector.fromArray(SPECIES, state, WANTED_Y + i),
+          lackX = FloatVector.fromArray(SPECIES, state, LACK_X + i),
+          lackY = FloatVector.fromArray(SPECIES, state, LACK_Y + i);
+      FloatVector
+          x = lackX.fma(minusGain, wantedX.fma(dt, FloatVector.fromArray(SPECIES, state, X + i))),
+          y = lackY.fma(minusGain, wantedY.fma(dt, FloatVector.fromArray(SPECIES, state, Y + i)));
+      lackX = lackX.mul(keep);
+      lackY = lackY.mul(keep);
+      FloatVector lagDecay = lag.mul(decay);
+      FloatVector died = lagDecay.sub(lag);
+      FloatVector seenX = lackX.fma(died, wantedX.fma(end, x)),
+          seenY = lackY.fma(died, wantedY.fma(end, y));
+      // Of commands that begin to act, an earlier reading shows an effect that lookBack takes back.
+      FloatVector horizon = end.max(zero);
+      for (int k = 0; k < near; k++) {
+        int from = nearFrom[k] + i;
+        FloatVector age = FloatVector.broadcast(SPECIES, nearAge[k]),
+            younger = FloatVector.broadcast(SPECIES, nearYounger[k]),
+            aged = FloatVector.broadcast(SPECIES, nearAged[k]);
+        FloatVector acts = FloatVector.fromArray(SPECIES, commands, from + AT);
+        FloatVector wait = acts.sub(age);
+        VectorMask<Float> isNew = acts.compare(GT, younger);
+        VectorMask<Float> begins = acts.compare(LE, age, isNew);
+        VectorMask<Float> isSeen = wait.compare(LE, horizon, isNew);
+        FloatVector left =
+            FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(aged);
+        FloatVector late = minusLag.sub(wait);
+        FloatVector response = left.fma(lag, late);
+        FloatVector seen = left.fma(lagDecay, late.add(end));
+        FloatVector allX = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X),
+            allY = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y),
+            changeX = zero.blend(allX, begins),
+            changeY = zero.blend(allY, begins);
+        x = changeX.fma(response, x);
+        y = changeY.fma(response, y);
+        lackX = changeX.fma(left, lackX);
+        lackY = changeY.fma(left, lackY);
+        wantedX = wantedX.add(changeX);
+        wantedY = wantedY.add(changeY);
+        seenX = zero.blend(allX, isSeen).fma(seen, seenX);
+        seenY = zero.blend(allY, isSeen).fma(seen, seenY);
+      }
+      x.intoArray(state, X + i);
+      y.intoArray(state, Y + i);
+      lackX.intoArray(state, LACK_X + i);
+      lackY.intoArray(state, LACK_Y + i);
+      wantedX.intoArray(state, WANTED_X + i);
+      wantedY.intoArray(state, WANTED_Y + i);
+      seenX.intoArray(state, SEEN_X + i);
+      seenY.intoArray(state, SEEN_Y + i);
+      end.intoArray(state, END + i);
+      decay.intoArray(state, DECAY + i);
+    }
+  }
+
+  /** How fast the vehicles fly where they were read. */
+  void readVelocities(LaneVectors vectors) {
+    for (int n = 0; n < vectors.count; n++) {
+      int i = vectors.first[n];
+      FloatVector end = FloatVector.fromArray(SPECIES, state, END + i),
+          decay = FloatVector.fromArray(SPECIES, state, DECAY + i);
+      FloatVector vx =
+          FloatVector.fromArray(SPECIES, state, LACK_X + i)
+              .neg()
+              .fma(decay, FloatVector.fromArray(SPECIES, state, WANTED_X + i));
+      FloatVector vy =
+          FloatVector.fromArray(SPECIES, state, LACK_Y + i)
+              .neg()
+              .fma(decay, FloatVector.fromArray(SPECIES, state, WANTED_Y + i));
+      for (int k = 0; k < near; k++) {
+        int from = nearFrom[k] + i;
+        FloatVector wait = FloatVector.fromArray(SPECIES, commands, from + AT).sub(nearAge[k]);
+        VectorMask<Float> isSeen = wait.compare(GT, ZERO).and(wait.compare(LT, end));
+        FloatVector left =
+            FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(nearAged[k]).mul(decay);
+        FloatVector caughtUp = ZERO.blend(ONE.sub(left), isSeen);
+        vx = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X).fma(caughtUp, vx);
+        vy = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y).fma(caughtUp, vy);
+      }
+      vx.intoArray(state, SEEN_VX + i);
+      vy.intoArray(state, SEEN_VY + i);
+    }
+  }
+
+  /** Of readings that were taken before the row's begin. */
+  private void lookBack(int[] at, int[] fresh) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      long early = IntVector.fromArray(INTS, at, i).compare(LT, 0).toLong();
+      for (; early != 0; early &= early - 1) {
+        int world = i + Long.numberOfTrailingZeros(early);
+        if (fresh == null || fresh[world] > 0) lookBack(world, at[world]);
+      }
+    }
+  }
+
+  /** Takes commands back that had not acted when an early reading of a world was taken. */
+  private void lookBack(int world, int sampledAt) {
+    float end = sampledAt * LaneViews.GRAIN_S;
+    for (int number = next - 1; number >= oldest; number--) {
+      int slot = number & slots - 1, from = slot * SLOT + world;
+      float wait = commands[from + AT] - ageS(slot, row), acted = end - wait;
+      if (wait <= 0 && acted < 0 && rowOf[slot] < row) {
+        double remains = lag.remains(acted);
+        float caughtUp = (float) (1 - remains), response = (float) (acted - lag.carriedS(remains));
+        float changeX = commands[from + CHANGE_X], changeY = commands[from + CHANGE_Y];
+        state[SEEN_X + world] -= changeX * response;
+        state[SEEN_Y + world] -= changeY * response;
+        state[SEEN_VX + world] -= changeX * caughtUp;
+        state[SEEN_VY + world] -= changeY * caughtUp;
+      }
+    }
+  }
+}

@@ -1,0 +1,347 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.ASHR;
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LSHL;
+import static jdk.incubator.vector.VectorOperators.LSHR;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.XOR;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import jdk.incubator.vector.VectorOperators;
+import skein.forward.Delays;
+import skein.forward.Steering;
+import skein.lanes.policy.Directions;
+import skein.lanes.policy.LanePolicy;
+import skein.simd.WorldRandom;
+
+/**
+ * One vehicle in many worlds, and its controllers, as {@code skein.flow.Pace} and {@code
+ * skein.flow.Steer} let them: when each decides upon what it was offered, and when its command acts. A
+ * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept
+ * from the episode's begin, modulo 2³²: what is long past is drawn near again before it would be taken for
+ * the future.
+ */
+public abstract class LaneAgents {
+  private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
+
+  /** A second or so, in grains: 2 to a power. */
+  private static final int LONG = 28;
+
+  private static final float LONG_S = (1 << LONG) * LaneViews.GRAIN_S;
+
+  /** In the place of how long ago it decided: never. */
+  private static final int NEVER = 1 << 20;
+
+  /** The vehicle's number. */
+  public final int self;
+
+  public final LaneVehicles vehicles;
+  private final int line, periodGrains, intervalGrains, handoverGrains, deadGrains;
+  private final boolean decidesFirst;
+
+  /** Whether all are offered the same at the same time: then all that was sent was sent before. */
+  public final boolean together;
+
+  // When it may be commanded again, and when the last command reaches it.
+  private final int[] ready = new int[WORLDS], reaches = new int[WORLDS];
+
+  /** When the last command was sent; not kept where all are offered the same {@link #together}. */
+  public final int[] sentAt = new int[WORLDS];
+
+  /** When it decides, from the period's begin; {@link LaneOffers#NONE} where it does not. */
+  public final int[] decides = new int[WORLDS];
+
+  /**
+   * 1 where it goes before what it is offered in the moment in which it may be commanded again: by a {@link
+   * #forecast} offers are scheduled a period before, and this was known before that.
+   */
+  private final int[] goesFirst = new int[WORLDS];
+
+  // When it sends, or NONE, when the command acts, and when it is known to have arrived: the first never is.
+  private final int[] sends = new int[WORLDS], acts = new int[WORLDS], answers = new int[WORLDS];
+
+  /** What readings are carried forward by; null where decisions go by the readings themselves. */
+  public final LaneForecast forecast;
+
+  /** From the own last decision to this one, s. */
+  public final float[] elapsedS = new float[WORLDS];
+
+  /** When it decided last; and how often {@link #LONG} passed besides, or {@link #NEVER}. */
+  private final int[] decidedAt = new int[WORLDS], decidedLong = new int[WORLDS];
+
+  /** When the period began. */
+  public int now;
+
+  private final int[] drawn = new int[2 * LANES];
+
+  // Over links whose tables change: places of random numbers, how long commands and their answers are under
+  // way, and when commands arrive.
+  private final int[] drawnAt = new int[WORLDS],
+      there = new int[WORLDS],
+      back = new int[WORLDS],
+      arrives = new int[WORLDS];
+
+  /** Directions commanded, or velocities over the vehicles' speed: what was sent last, and before that. */
+  public final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
+
+  /** What was decided last: that which is sent, unless what waits is the decision; and what is now. */
+  public final Directions decided, decidedNow = new Directions(WORLDS);
+
+  /**
+   * @param deadTimeS from a command's arrival until the vehicle follows it
+   */
+  public LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
+    this.self = self;
+    this.vehicles = vehicles;
+    forecast = loop.forecast();
+    decidesFirst = loop.decidesFirst();
+    together = loop.offers().together;
+    decided = decidesFirst ? new Directions(WORLDS) : sent;
+    line = Delays.command(self);
+    Steering steering = loop.steering();
+    periodGrains = LaneViews.grains(loop.periodS());
+    intervalGrains = LaneViews.grains(Math.max(loop.intervalS(), steering.minIntervalS()));
+    handoverGrains = LaneViews.grains(steering.handoverS());
+    deadGrains = LaneViews.grains(deadTimeS);
+  }
+
+  /** Back to the start of an episode; what was sent and decided before it, the kind of agents fills in. */
+  public void start() {
+    now = 0;
+    for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
+    Arrays.fill(sentAt, -1);
+    Arrays.fill(decidedLong, NEVER);
+    Arrays.fill(goesFirst, 0);
+    vehicles.start();
+  }
+
+  /** Whether decisions look at velocities. */
+  public abstract boolean needsVelocity();
+
+  /** Whether decisions ask how old readings are. */
+  public boolean needsAges() {
+    return false;
+  }
+
+  /**
+   * Whether it takes images until it decides, of what the others fly that were offered the same: {@link
+   * #choose} waits until they have commanded.
+   */
+  public boolean sees() {
+    return false;
+  }
+
+  /**
+   * Decides, in all worlds: {@link #decidedNow}.
+   *
+   * @param all by the vehicle's number, with what is read of their vehicles
+   * @param readAt by vehicle, when the readings held were taken; for those that {@link #needsAges ask}
+   */
+  public abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
+
+  /**
+   * What was chosen is remembered where {@link #decides} is a time.
+   *
+   * @param endGrains of the episode
+   */
+  public abstract void remember(LaneVectors vectors, int endGrains);
+
+  /** To a period; they are taken in turn. */
+  public void startRow(int row) {
+    now = row * periodGrains;
+    if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
+  }
+
+  /** What is long past, nearer. */
+  private void drawNear() {
+    IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      for (int[] each : new int[][] {ready, reaches, sentAt})
+        IntVector.fromArray(INTS, each, i).sub(begin).max(past).add(begin).intoArray(each, i);
+      IntVector at = IntVector.fromArray(INTS, decidedAt, i);
+      IntVector passed = begin.sub(at).lanewise(ASHR, LONG);
+      at.add(passed.lanewise(LSHL, LONG)).intoArray(decidedAt, i);
+      IntVector.fromArray(INTS, decidedLong, i).add(passed).intoArray(decidedLong, i);
+    }
+  }
+
+  /** Decide where it is their turn, as {@link #choose}; but those who {@link #sees see}. */
+  public final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
+    look(vectors, offers.joinedAt, offers.nextAt);
+    if (forecast != null) forecast.predict(vectors, decides);
+    if (!sees()) choose(all, offers, vectors, readAt);
+  }
+
+  /**
+   * What decisions go by of this vehicle: {@code LaneObservation.X} and so on, from {@link #seenFrom} on. Of
+   * what is predicted that is of the agents who decide.
+   */
+  public final float[] seen() {
+    return forecast == null ? vehicles.state : forecast.predicted(self);
+  }
+
+  public final int seenFrom() {
+    return forecast == null ? LaneVehicles.SEEN_X : 0;
+  }
+
+  /** When each decides and sends. */
+  private void look(LaneVectors vectors, int[] joinedAt, int[] nextAt) {
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        begin = IntVector.broadcast(INTS, now),
+        never = IntVector.broadcast(INTS, NEVER / 2),
+        less = IntVector.broadcast(INTS, (1 << LONG) - 1);
+    FloatVector longS = FloatVector.broadcast(SPECIES, LONG_S),
+        grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector joined = IntVector.fromArray(INTS, joinedAt, i);
+      IntVector when = joined.max(IntVector.fromArray(INTS, ready, i).sub(begin));
+      VectorMask<Integer> offered = joined.compare(LT, none);
+      IntVector next = IntVector.fromArray(INTS, nextAt, i).add(IntVector.fromArray(INTS, goesFirst, i));
+      VectorMask<Integer> goes = when.compare(LT, next).and(offered);
+      IntVector sending = none.blend(when, goes), deciding = decidesFirst ? joined : sending;
+      sending.intoArray(sends, i);
+      deciding.intoArray(decides, i);
+      // In two parts, of which neither depends on the period in which it is looked at.
+      IntVector passed = deciding.add(begin).sub(IntVector.fromArray(INTS, decidedAt, i));
+      IntVector many =
+          IntVector.fromArray(INTS, decidedLong, i).add(passed.lanewise(ASHR, LONG));
+      FloatVector rest =
+          ((FloatVector) passed.and(less).convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS);
+      zero.blend(
+              ((FloatVector) many.convertShape(VectorOperators.I2F, SPECIES, 0)).fma(longS, rest),
+              many.compare(LT, never).cast(SPECIES))
+          .intoArray(elapsedS, i);
+    }
+  }
+
+  /**
+   * Command what was decided.
+   *
+   * @param endGrains of the episode
+   */
+  final void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
+    int place = LaneDelays.placeOf(row) + LaneDelays.placeOfLine(line);
+    if (!offers.delays.isSteady) draw(row, offers.delays, offers.place[self], vectors);
+    send(place, offers.delays, offers.place[self], vectors);
+    if (forecast != null) forecast.send(self, vectors, sends, answers, sent);
+    if (vectors.count * LANES < WORLDS) forget(vectors);
+    remember(vectors, endGrains);
+    vehicles.act(row, vectors, acts, sent);
+  }
+
+  /** How long commands and their answers are under way, over links whose tables change. */
+  private void draw(int row, LaneDelays delays, int[] places, LaneVectors vectors) {
+    long begin = (long) row * periodGrains;
+    IntVector step = IntVector.broadcast(INTS, LaneDelays.placeOf(row)),
+        now = IntVector.broadcast(INTS, this.now),
+        none = IntVector.broadcast(INTS, NONE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector.fromArray(INTS, places, i).add(step).intoArray(drawnAt, i);
+    }
+    delays.draw(vectors, drawnAt, line, begin, sends, there);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector when = IntVector.fromArray(INTS, sends, i);
+      none.blend(
+              when.add(IntVector.fromArray(INTS, there, i)).max(IntVector.fromArray(INTS, reaches, i).sub(now)),
+              when.compare(LT, none))
+          .intoArray(arrives, i);
+    }
+    delays.draw(vectors, drawnAt, line + 1, begin, arrives, back);
+  }
+
+  /** Draws its delays in the same pass: a look into a table takes as long as a dozen other operations. */
+  private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors) {
+    boolean isSteady = delays.isSteady;
+    int[] keys = delays.keysOf(line), tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
+    IntVector here = IntVector.broadcast(INTS, place),
+        next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
+        multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
+        multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2),
+        none = IntVector.broadcast(INTS, NONE),
+        interval = IntVector.broadcast(INTS, intervalGrains),
+        handover = IntVector.broadcast(INTS, handoverGrains),
+        dead = IntVector.broadcast(INTS, deadGrains),
+        begin = IntVector.broadcast(INTS, now),
+        never = IntVector.broadcast(INTS, NEVER / 2),
+        period = IntVector.broadcast(INTS, periodGrains),
+        zero = IntVector.broadcast(INTS, 0);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector there, back;
+      if (isSteady) {
+        IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
+            from = IntVector.fromArray(INTS, tableOf, i);
+        IntVector a = key.add(here), b = key.add(next);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+        a.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, 0);
+        b.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, LANES);
+        there = IntVector.fromArray(INTS, table, 0, drawn, 0);
+        back = IntVector.fromArray(INTS, table, 0, drawn, LANES);
+      } else {
+        there = IntVector.fromArray(INTS, this.there, i);
+        back = IntVector.fromArray(INTS, this.back, i);
+      }
+      IntVector when = IntVector.fromArray(INTS, sends, i), time = IntVector.fromArray(INTS, decides, i);
+      VectorMask<Integer> goes = when.compare(LT, none);
+      VectorMask<Integer> does = time.compare(LT, none);
+      VectorMask<Float> sending = goes.cast(SPECIES), deciding = does.cast(SPECIES);
+      IntVector before = IntVector.fromArray(INTS, decidedLong, i),
+          reachedBefore = IntVector.fromArray(INTS, reaches, i);
+      // Commands to one vehicle keep their order.
+      IntVector arrives = when.add(there).max(reachedBefore.sub(begin));
+      none.blend(arrives.add(dead), goes).intoArray(acts, i);
+      // The command before is answered when this one has replaced it; the very first replaces none.
+      IntVector again = when.add(interval), answer = arrives.add(back);
+      VectorMask<Integer> replaces = before.compare(LT, never);
+      none.blend(answer, replaces).intoArray(answers, i);
+      again = again.blend(answer.add(handover).max(again), replaces);
+      if (forecast != null) {
+        IntVector known = when.blend(answer, replaces);
+        IntVector.fromArray(INTS, goesFirst, i)
+            .blend(zero.blend(1, again.sub(known).compare(GT, period)), goes)
+            .intoArray(goesFirst, i);
+      }
+      reachedBefore.blend(arrives.add(begin), goes).intoArray(reaches, i);
+      IntVector.fromArray(INTS, ready, i).blend(again.add(begin), goes).intoArray(ready, i);
+      FloatVector newCos = FloatVector.fromArray(SPECIES, decidedNow.cos, i),
+          newSin = FloatVector.fromArray(SPECIES, decidedNow.sin, i),
+          cos = FloatVector.fromArray(SPECIES, sent.cos, i),
+          sin = FloatVector.fromArray(SPECIES, sent.sin, i);
+      if (!together) {
+        IntVector.fromArray(INTS, sentAt, i).blend(when.add(begin), goes).intoArray(sentAt, i);
+        FloatVector.fromArray(SPECIES, sentBefore.cos, i).blend(cos, sending).intoArray(sentBefore.cos, i);
+        FloatVector.fromArray(SPECIES, sentBefore.sin, i).blend(sin, sending).intoArray(sentBefore.sin, i);
+      }
+      cos.blend(newCos, sending).intoArray(sent.cos, i);
+      sin.blend(newSin, sending).intoArray(sent.sin, i);
+      if (decidesFirst) {
+        FloatVector.fromArray(SPECIES, decided.cos, i).blend(newCos, deciding).intoArray(decided.cos, i);
+        FloatVector.fromArray(SPECIES, decided.sin, i).blend(newSin, deciding).intoArray(decided.sin, i);
+      }
+      before.blend(zero, does).intoArray(decidedLong, i);
+      IntVector.fromArray(INTS, decidedAt, i).blend(time.add(begin), does).intoArray(decidedAt, i);
+    }
+  }
+
+  /** Nobody decides in the other vectors. */
+  private void forget(LaneVectors vectors) {
+    int next = 0;
+    for (int i = 0; i < WORLDS; i += LANES)
+      if (next < vectors.count && vectors.first[next] == i) next++;
+      else Arrays.fill(decides, i, i + LANES, NONE);
+  }
+}

@@ -1,0 +1,42 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import jdk.incubator.vector.IntVector;
+import skein.lanes.policy.LanePolicy;
+
+/** Which vectors of a block of worlds a pass goes over: those in which something happens. Mutable. */
+public final class LaneVectors {
+  private static final int WORLDS = LanePolicy.WORLDS;
+
+  /** The first worlds of these vectors. */
+  public final int[] first = new int[WORLDS / LANES];
+
+  public int count;
+
+  /** All vectors. */
+  public static LaneVectors all() {
+    LaneVectors all = new LaneVectors();
+    all.takeAll();
+    return all;
+  }
+
+  void takeAll() {
+    count = 0;
+    for (int i = 0; i < WORLDS; i += LANES) first[count++] = i;
+  }
+
+  /**
+   * Those in which some world has a time.
+   *
+   * @param noneAt in the place of a time, above all
+   */
+  public void take(int[] times, int noneAt) {
+    IntVector none = IntVector.broadcast(INTS, noneAt);
+    count = 0;
+    for (int i = 0; i < WORLDS; i += LANES)
+      if (IntVector.fromArray(INTS, times, i).compare(LT, none).anyTrue()) first[count++] = i;
+  }
+}

@@ -1,0 +1,388 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.GE;
+import static jdk.incubator.vector.VectorOperators.LSHR;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.XOR;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import java.util.Arrays;
+import java.util.function.Supplier;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.forward.DelayTable;
+import skein.forward.Delays;
+import skein.forward.LoopTiming;
+import skein.forward.Nanos;
+import skein.forward.TabledDelays;
+import skein.lanes.policy.LanePolicy;
+import skein.simd.WorldRandom;
+
+/**
+ * The views of many worlds under the {@code stream} loop, row by row: row m has the view of
+ * questions m. Nearly always all are answered before anything of the next row, which is looked
+ * after here by lanes; where it is not so, the world's views come one by one from a {@link
+ * ViewSource} until it is so again. Then a row may have no view of a world, or several: so a
+ * row has one or more beats, with at most one view each.
+ *
+ * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and the same as in
+ * {@link Rollout} to the nanosecond.
+ */
+public final class LaneViews {
+  public static final int WORLDS = LanePolicy.WORLDS;
+  public final int vehicles;
+
+  private static final int GRAIN_NS = DelayTable.GrainNs();
+
+  /** {@link DelayTable#GrainNs} in seconds. */
+  public static final float GRAIN_S = GRAIN_NS * 1e-9f;
+
+  /** In the place of a time: no view. */
+  public static final int NONE = Integer.MAX_VALUE;
+
+  /** As late as a time counts. */
+  private static final int LATEST = 2_000_000_000;
+
+  private static final int[] AT_ONCE = new int[WORLDS];
+  private static final LaneVectors ALL = LaneVectors.all();
+
+  /** Rows kept: more than are looked ahead. */
+  private static final int ROWS = 8;
+
+  /**
+   * Rows within which questions are answered where all is regular, at most: no question of a later
+   * row can be answered before, and the window is never full.
+   */
+  private static final int MOST_AHEAD = 4;
+
+  /** So many rows before its own a view may be told. */
+  public static final int ROWS_EARLY = 1;
+
+  private final int ahead;
+
+  private final long periodNs;
+
+  /** Off, all views are told one by one. */
+  private final boolean shortCut;
+
+  private final int periodGrains;
+  private final int patienceGrains, latestGrains;
+
+  /** By world, made when some view of it is to come one by one. */
+  private final ViewSource[] sources = new ViewSource[WORLDS];
+
+  private final Supplier<ViewSource> newSource;
+
+  private int[] keys;
+  private TabledDelays[] links;
+
+  public final LaneDelays delays = new LaneDelays();
+
+  // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and all
+  // are back; the same of the next row's answers.
+  private final int[][][] reached;
+  private final int[][] first = new int[ROWS][WORLDS],
+      last = new int[ROWS][WORLDS],
+      nextLast = new int[ROWS][WORLDS];
+
+  private final int[] drawn = new int[4 * LANES];
+  private final int[] roundTrip = new int[WORLDS], otherRoundTrip = new int[WORLDS];
+
+  /** The lanes of each vector that {@link #ask} found irregular. */
+  private final long[] irregularLanes = new long[WORLDS / LANES];
+
+  // Worlds whose views come one by one: from which row to which; these worlds.
+  private final int[] irregularFrom = new int[WORLDS], irregularUpTo = new int[WORLDS];
+  private final int[] irregular = new int[WORLDS];
+  private int irregularCount;
+
+  /** Whether a world's source tells a view that has not had its beat. */
+  private final boolean[] hasNext = new boolean[WORLDS];
+
+  // The beat's views: when each is joined, when the world's next one is; what its readings were
+  // asked as, in places from the row's; when they were taken.
+  public int[] joinedAt, nextAt;
+  public final int[][] place;
+  public int[][] sampledAt;
+
+  /** Whether a world has no view in this beat, or one with an old reading. */
+  boolean hasOld;
+
+  /** Whether some reading was asked as another than the row's. */
+  private boolean hasOther;
+
+  /** 1 where the beat's view has a reading of the vehicle that the view before had not. */
+  public final int[][] isFresh;
+
+  private int row;
+
+  /** Steps that were looked at for what is irregular. */
+  private int lookedAt;
+
+  private boolean more;
+
+  public LaneViews(
+      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
+    this.vehicles = vehicles;
+    reached = new int[ROWS][vehicles][WORLDS];
+    place = new int[vehicles][WORLDS];
+    isFresh = new int[vehicles][WORLDS];
+    this.shortCut = shortCut;
+    periodNs = Nanos.of(timing.periodS());
+    ahead = Math.min(MOST_AHEAD, timing.asking().window());
+    periodGrains = grains(timing.periodS());
+    patienceGrains = grains(timing.patienceS());
+    latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
+    newSource = () -> ViewSource.apply(timing, vehicles, durationS, maxDelayS, ahead);
+  }
+
+  public static int grains(double seconds) {
+    return (int) (Nanos.of(seconds) / GRAIN_NS);
+  }
+
+  /** Whether a time is a whole number of grains. */
+  public static boolean isWhole(double seconds) {
+    return Nanos.of(seconds) % GRAIN_NS == 0;
+  }
+
+  /** Back to the start of an episode. */
+  public void start(int[] worldKeys, TabledDelays[] worldLinks) {
+    keys = worldKeys;
+    links = worldLinks;
+    delays.start(worldKeys, worldLinks);
+    irregularCount = 0;
+    Arrays.fill(irregularUpTo, -1);
+    Arrays.fill(hasNext, false);
+    row = -1;
+    hasOther = true;
+    for (int step = 0; step < ahead; step++) ask(step);
+  }
+
+  /**
+   * When question {@code step} reaches the vehicles, and when it is answered. With that, looks for
+   * worlds whose view of the step before is not simply that of that step's questions. An answer of
+   * this step may have come before views of the steps before, but not before the one of the row
+   * now.
+   */
+  private void ask(int step) {
+    for (int vehicle = 0; vehicle < vehicles; vehicle += 2) answer(vehicle, step);
+    if (step > 0) {
+      lookedAt = step;
+      for (int i = 0; i < irregularLanes.length; i++)
+        for (long lanes = shortCut ? irregularLanes[i] : -1L >>> -LANES; lanes != 0; lanes &= lanes - 1) {
+          int world = i * LANES + Long.numberOfTrailingZeros(lanes);
+          if (irregularUpTo[world] < step - 1) makeIrregular(world, row + 1);
+        }
+    }
+  }
+
+  /**
+   * The same of a vehicle and the next one, if there is one: delays of a pair come from one sequence, and a
+   * look into a table takes as long as a dozen other operations, which go on meanwhile.
+   */
+  private void answer(int vehicle, int step) {
+    int place = LaneDelays.placeOf(step), slot = step % ROWS, slotBefore = (step + ROWS - 1) % ROWS;
+    boolean isFirst = vehicle == 0, isLast = vehicle + 2 >= vehicles, isAlone = vehicle + 1 == vehicles;
+    int other = isAlone ? vehicle : vehicle + 1;
+    int[][] to = reached[slot], toBefore = reached[slotBefore];
+    boolean isSteady = delays.isSteady;
+    if (!isSteady) {
+      draw(vehicle, step, to[vehicle], roundTrip);
+      draw(other, step, to[other], otherRoundTrip);
+    }
+    int[] keys = delays.keysOf(Delays.question(0, vehicle)), tableOf = delays.tableOf, table = delays.delays;
+    IntVector place0 = IntVector.broadcast(INTS, place),
+        place1 = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
+        place2 = IntVector.broadcast(INTS, place + 2 * WorldRandom.STRIDE),
+        place3 = IntVector.broadcast(INTS, place + 3 * WorldRandom.STRIDE),
+        multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
+        multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
+    IntVector period = IntVector.broadcast(INTS, periodGrains),
+        patience = IntVector.broadcast(INTS, patienceGrains),
+        latest = IntVector.broadcast(INTS, latestGrains);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector toOne, one, toTwo, two;
+      if (isSteady) {
+        IntVector key = IntVector.fromArray(INTS, keys, i),
+            begin = IntVector.fromArray(INTS, tableOf, i);
+        IntVector a = key.add(place0), b = key.add(place1), c = key.add(place2), d = key.add(place3);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+        c = c.lanewise(XOR, c.lanewise(LSHR, 16)).mul(multiplier1);
+        d = d.lanewise(XOR, d.lanewise(LSHR, 16)).mul(multiplier1);
+        a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+        b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+        c = c.lanewise(XOR, c.lanewise(LSHR, 15)).mul(multiplier2);
+        d = d.lanewise(XOR, d.lanewise(LSHR, 15)).mul(multiplier2);
+        a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
+        b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
+        c.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 2 * LANES);
+        d.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 3 * LANES);
+        toOne = IntVector.fromArray(INTS, table, 0, drawn, 0);
+        one = IntVector.fromArray(INTS, table, 0, drawn, LANES).add(toOne);
+        toTwo = isAlone ? toOne : IntVector.fromArray(INTS, table, 0, drawn, 2 * LANES);
+        two = isAlone ? one : IntVector.fromArray(INTS, table, 0, drawn, 3 * LANES).add(toTwo);
+      } else {
+        toOne = IntVector.fromArray(INTS, to[vehicle], i);
+        one = IntVector.fromArray(INTS, roundTrip, i);
+        toTwo = IntVector.fromArray(INTS, to[other], i);
+        two = IntVector.fromArray(INTS, otherRoundTrip, i);
+      }
+      toOne.intoArray(to[vehicle], i);
+      toTwo.intoArray(to[other], i);
+      IntVector soonest = one.min(two), slowest = one.max(two);
+      VectorMask<Integer> overtakes =
+          IntVector.fromArray(INTS, toBefore[vehicle], i)
+              .compare(GE, toOne.add(period))
+              .or(IntVector.fromArray(INTS, toBefore[other], i).compare(GE, toTwo.add(period)));
+      if (!isFirst) {
+        soonest = soonest.min(IntVector.fromArray(INTS, first[slot], i));
+        slowest = slowest.max(IntVector.fromArray(INTS, last[slot], i));
+      }
+      soonest.intoArray(first[slot], i);
+      slowest.intoArray(last[slot], i);
+      long irregular = isFirst ? 0 : irregularLanes[i / LANES];
+      if (isLast) {
+        slowest.add(period).intoArray(nextLast[slotBefore], i);
+        IntVector end = IntVector.fromArray(INTS, last[slotBefore], i);
+        overtakes =
+            end.compare(GE, soonest.add(period))
+                .or(end.sub(IntVector.fromArray(INTS, first[slotBefore], i)).compare(GE, patience))
+                .or(latest.compare(LT, end))
+                .or(overtakes);
+      }
+      irregularLanes[i / LANES] = irregular | overtakes.toLong();
+    }
+  }
+
+  /** When a step's question reaches a vehicle, and when it is answered, over links whose tables change. */
+  private void draw(int vehicle, int step, int[] to, int[] roundTrip) {
+    int place = LaneDelays.placeOf(step), line = Delays.question(0, vehicle);
+    long begin = (long) step * periodGrains;
+    delays.draw(place, line, begin, AT_ONCE, to);
+    delays.draw(place, line + 1, begin, to, roundTrip);
+    LaneDelays.add(ALL, to, roundTrip);
+  }
+
+  private void makeIrregular(int world, int step) {
+    if (hasNext[world]) {
+      // It was thought to be regular again behind the view that comes next.
+      stayIrregular(world);
+    } else {
+      irregular[irregularCount++] = world;
+      irregularFrom[world] = step;
+      if (sources[world] == null) sources[world] = newSource.get();
+      sources[world].begin(keys[world], links[world], step);
+      goOn(world);
+    }
+  }
+
+  private void stayIrregular(int world) {
+    irregularUpTo[world] = Integer.MAX_VALUE;
+  }
+
+  /** To the next view of a world whose views come one by one. */
+  private void goOn(int world) {
+    ViewSource source = sources[world];
+    source.next();
+    hasNext[world] = true;
+    boolean isRegular = source.isRegular() && shortCut;
+    for (int step = source.row() + 1; isRegular && step < lookedAt; step++)
+      isRegular = isRegular(world, step);
+    if (isRegular) irregularUpTo[world] = source.row();
+    else stayIrregular(world);
+  }
+
+  /** Whether {@link #ask} found nothing irregular, in one world. */
+  private boolean isRegular(int world, int step) {
+    int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
+    int end = last[step % ROWS][world];
+    for (int v = 0; v < vehicles; v++)
+      if (to[v][world] >= nextTo[v][world] + periodGrains) return false;
+    return end < first[(step + 1) % ROWS][world] + periodGrains
+        && end - first[step % ROWS][world] < patienceGrains
+        && end <= latestGrains;
+  }
+
+  /** To the first beat of a row; rows are taken in turn, from 0. */
+  public void startRow(int number) {
+    row = number;
+    ask(row + ahead);
+    int slot = row % ROWS;
+    joinedAt = last[slot];
+    nextAt = nextLast[slot];
+    sampledAt = reached[slot];
+    if (hasOther) for (int[] places : place) Arrays.fill(places, 0);
+    hasOther = false;
+    hasOld = false;
+    more = irregularCount > 0;
+    if (more) {
+      for (int[] each : isFresh) Arrays.fill(each, 1);
+      irregularBeat(true);
+    }
+  }
+
+  /** To the next beat of the row, if it has one. */
+  public boolean nextBeat() {
+    if (!more) return false;
+    Arrays.fill(joinedAt, NONE);
+    for (int[] each : isFresh) Arrays.fill(each, 0);
+    hasOld = true;
+    return irregularBeat(false);
+  }
+
+  /**
+   * Puts the beat's views of irregular worlds where the others' are; whether there were any. A world without
+   * one in a row may have several in the next. Then the first is told now: a beat more costs all worlds.
+   */
+  private boolean irregularBeat(boolean isFirst) {
+    more = false;
+    boolean any = false;
+    int kept = 0;
+    for (int i = 0; i < irregularCount; i++) {
+      int world = irregular[i];
+      ViewSource source = sources[world];
+      boolean isEarly =
+          isFirst && irregularFrom[world] <= row && source.row() == row + ROWS_EARLY && !source.isRegular();
+      if (source.row() == row || isEarly) {
+        any = true;
+        put(world, source);
+        if (irregularUpTo[world] == source.row()) hasNext[world] = false;
+        else {
+          goOn(world);
+          nextAt[world] = fromTick(source.joinedAt());
+          if (source.row() == row) {
+            more = true;
+            // The next row was looked after already.
+            stayIrregular(world);
+          }
+        }
+      } else if (isFirst && irregularFrom[world] <= row) {
+        joinedAt[world] = NONE;
+        for (int[] each : isFresh) each[world] = 0;
+        hasOld = true;
+      } else if (isFirst) nextAt[world] = fromTick(source.joinedAt());
+      if (hasNext[world]) irregular[kept++] = world;
+    }
+    irregularCount = kept;
+    return any;
+  }
+
+  private void put(int world, ViewSource source) {
+    joinedAt[world] = fromTick(source.joinedAt());
+    for (int v = 0; v < vehicles; v++) {
+      int at = fromTick(source.sampledAt()[v]);
+      sampledAt[v][world] = at;
+      place[v][world] = LaneDelays.placeOf(source.question()[v]) - LaneDelays.placeOf(row);
+      hasOther |= place[v][world] != 0;
+      isFresh[v][world] = source.isFresh()[v] ? 1 : 0;
+      hasOld |= !source.isFresh()[v];
+    }
+  }
+
+  private int fromTick(long timeNs) {
+    long grains = (timeNs - row * periodNs) / GRAIN_NS;
+    return (int) Math.max(-LATEST, Math.min(LATEST, grains));
+  }
+}

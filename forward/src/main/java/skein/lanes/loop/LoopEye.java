@@ -1,0 +1,280 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.forward.DelayTable;
+import skein.forward.Duelist;
+import skein.forward.ImageTiming;
+import skein.forward.Nanos;
+import skein.forward.TabledDelays;
+import skein.lanes.policy.CameraTrackerLanes;
+import skein.lanes.policy.LanePolicy;
+import skein.lanes.timetable.ImageSource;
+
+/**
+ * An eye in many worlds, whose images are taken and known at times of their own in each, which {@link
+ * ImageSource}s tell. They are taken when the vehicles' flight until then is known: with the next decision,
+ * or some time later. Until a decision the camera looks to where it did after the one before.
+ */
+public class LoopEye extends CameraTrackerLanes {
+  private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
+  private static final int IMAGE = CameraTrackerLanes.Detection(), BELIEF = CameraTrackerLanes.Belief();
+  private static final int RING = ImageTiming.Ring(), GRAIN_NS = DelayTable.GrainNs();
+  private static final LaneVectors ALL = LaneVectors.all();
+
+  /** In one go a world's images are taken, and known, so many times at most. */
+  private static final int MOST = 8;
+
+  private final ImageSource[] sources = new ImageSource[WORLDS];
+  private final LaneVehicles ours, theirs;
+  private final long periodNs;
+
+  /** When the period begins. */
+  private long beginNs;
+
+  private int row;
+
+  // Of a go, by world: how many images are taken; in turn, which and when, with what errors, and whether the
+  // opponent is found in view.
+  private final int[] takes = new int[WORLDS];
+  private final int[][] taken = new int[MOST][WORLDS];
+  public final long[][] takenNs = new long[MOST][WORLDS];
+  private final float[][] bearings = new float[MOST][WORLDS], ranges = new float[MOST][WORLDS];
+  public final boolean[][] isFound = new boolean[MOST][WORLDS];
+
+  // And how many become known; in turn, which; which is newer and entered before, or -1.
+  private final int[] knows = new int[WORLDS];
+  private final int[][] known = new int[MOST][WORLDS], newer = new int[MOST][WORLDS];
+
+  /** What each world's images showed, by the image modulo {@link #RING}, and when they were taken, s. */
+  private final float[] images = new float[RING * IMAGE * WORLDS], imagesS = new float[RING * WORLDS];
+
+  /** In which vectors something happens. */
+  private final LaneVectors some = new LaneVectors();
+
+  // Images that are taken together: when, where both vehicles are, what is shown.
+  private final int[] at = new int[WORLDS];
+  public final float[] ourX = new float[WORLDS],
+      ourY = new float[WORLDS],
+      theirX = new float[WORLDS],
+      theirY = new float[WORLDS],
+      shown = new float[IMAGE * WORLDS];
+
+  // Images that become known together: 1 where one does, and where it is older than what entered before; that
+  // newer one; the belief that they enter, after the one and after both.
+  private final int[] enters = new int[WORLDS], isOlder = new int[WORLDS];
+  private final float[] newerShown = new float[IMAGE * WORLDS], newerS = new float[WORLDS];
+  private final float[] from = new float[BELIEF * WORLDS],
+      reached = new float[BELIEF * WORLDS],
+      replayed = new float[BELIEF * WORLDS];
+
+  /** So long before a period's begin, all images are taken. */
+  private final int[] longAgo = new int[WORLDS];
+
+  /**
+   * @param own has an eye
+   * @param ours who fly as it, in all worlds
+   */
+  public LoopEye(
+      CameraTrackerLanes.Forms forms,
+      Duelist own,
+      Duelist opponent,
+      LoopLanes loop,
+      LaneAgents ours,
+      LaneAgents theirs) {
+    super(forms, own, opponent);
+    this.ours = ours.vehicles;
+    this.theirs = theirs.vehicles;
+    periodNs = Nanos.of(loop.periodS());
+    for (int world = 0; world < WORLDS; world++)
+      sources[world] = ImageSource.apply(own.eye().get(), ours.self, loop.durationS());
+    Arrays.fill(longAgo, -LaneViews.grains(Math.min(loop.periodS(), LaneFlights.MOST_PIECE_S)));
+  }
+
+  /** Back to the start of an episode. */
+  public void start(int[] worldKeys, TabledDelays[] links) {
+    forget();
+    row = 0;
+    beginNs = 0;
+    for (int world = 0; world < WORLDS; world++) sources[world].begin(worldKeys[world], links[world]);
+  }
+
+  /** To a period; they are taken in turn. Images wait for decisions only as long as flights are remembered. */
+  public void startRow(int number) {
+    row = number;
+    beginNs = row * periodNs;
+    see(ALL, longAgo);
+  }
+
+  /**
+   * Tells what is decided upon, and turns the camera there where it is decided.
+   *
+   * @param decides when, from the period's begin; {@link LaneOffers#NONE} where it is not
+   * @param own where the own vehicles are taken to be: north from {@code x} on, east from {@code y} on
+   * @param actsS how long until what is decided acts, where {@code own} is for that moment; else null
+   */
+  public void look(LaneVectors vectors, int[] decides, float[] own, int x, int y, float[] actsS) {
+    see(vectors, decides);
+    float[] nowS = nowS(), aheadS = aheadS(), axis = axis();
+    for (int k = 0; k < vectors.count; k++)
+      for (int i = vectors.first[k], end = i + LANES; i < end; i++)
+        if (decides[i] != NONE) {
+          nowS[i] = seconds(timeNs(decides[i]));
+          aheadS[i] = actsS == null ? -1f : actsS[i];
+        }
+    decideUpon(own, x, own, y);
+    for (int k = 0; k < vectors.count; k++)
+      for (int i = vectors.first[k], end = i + LANES; i < end; i++)
+        if (decides[i] != NONE) axis[i] = newAxis()[i];
+  }
+
+  private long timeNs(int grains) {
+    return beginNs + (long) grains * GRAIN_NS;
+  }
+
+  private static float seconds(long ns) {
+    return (float) (ns * 1e-9);
+  }
+
+  /**
+   * Takes images, and what they show, until moments. Until a decision the camera does not turn, so that all are
+   * taken before any is known.
+   *
+   * @param until from the period's begin; {@link LaneOffers#NONE} in worlds that are left as they are
+   */
+  private void see(LaneVectors vectors, int[] until) {
+    boolean more = true;
+    while (more) {
+      more = gather(vectors, until);
+      for (int n = 0; find(vectors, takes, n); n++) take(n);
+      for (int n = 0; find(vectors, knows, n); n++) join(n);
+    }
+  }
+
+  /** What happens to the images in one go; whether there may be more. */
+  private boolean gather(LaneVectors vectors, int[] until) {
+    boolean more = false;
+    for (int k = 0; k < vectors.count; k++)
+      for (int i = vectors.first[k], end = i + LANES; i < end; i++) {
+        ImageSource source = sources[i];
+        takes[i] = 0;
+        knows[i] = 0;
+        if (until[i] == NONE) continue;
+        long untilNs = timeNs(until[i]);
+        while (source.atNs() <= untilNs && takes[i] + knows[i] < MOST) {
+          if (source.isTaken()) {
+            int n = takes[i]++;
+            taken[n][i] = source.image() % RING;
+            takenNs[n][i] = source.atNs();
+            bearings[n][i] = source.bearing();
+            ranges[n][i] = source.range();
+            isFound[n][i] = source.isFound();
+          } else {
+            int n = knows[i]++;
+            known[n][i] = source.image() % RING;
+            newer[n][i] = source.order().isOlder() ? source.order().last() % RING : -1;
+          }
+          source.next();
+        }
+        more |= takes[i] + knows[i] == MOST;
+      }
+    return more;
+  }
+
+  /** In which vectors some world has more than so many; whether any has. */
+  private boolean find(LaneVectors vectors, int[] counts, int n) {
+    some.count = 0;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      if (IntVector.fromArray(INTS, counts, i).compare(GT, n).anyTrue()) some.first[some.count++] = i;
+    }
+    return some.count > 0;
+  }
+
+  /** Takes each world's n-th image of this go. */
+  private void take(int n) {
+    for (int k = 0; k < some.count; k++)
+      for (int i = some.first[k], end = i + LANES; i < end; i++)
+        at[i] = takes[i] > n ? (int) Math.ceilDiv(takenNs[n][i] - beginNs, GRAIN_NS) : NONE;
+    ours.look(row, some, at, ourX, ourY);
+    theirs.look(row, some, at, theirX, theirY);
+    System.arraycopy(bearings[n], 0, bearing(), 0, WORLDS);
+    System.arraycopy(ranges[n], 0, range(), 0, WORLDS);
+    detect(ourX, ourY, 0, theirX, theirY, 0, shown);
+    for (int k = 0; k < some.count; k++)
+      for (int i = some.first[k], end = i + LANES; i < end; i++) if (takes[i] > n) keep(n, i);
+  }
+
+  /** Keeps what a world's n-th image of this go shows. */
+  public void keep(int n, int world) {
+    int image = taken[n][world], to = image * IMAGE * WORLDS + world;
+    for (int number = 0; number < IMAGE * WORLDS; number += WORLDS) images[to + number] = shown[world + number];
+    if (!isFound[n][world]) images[to] = 0;
+    imagesS[image * WORLDS + world] = seconds(takenNs[n][world]);
+  }
+
+  /** Each world's n-th image of this go that becomes known enters the belief. */
+  private void join(int n) {
+    float[] takenS = takenS();
+    boolean anyOlder = false;
+    for (int k = 0; k < some.count; k++)
+      for (int i = some.first[k], end = i + LANES; i < end; i++) {
+        boolean does = knows[i] > n, older = does && newer[n][i] >= 0;
+        enters[i] = does ? 1 : 0;
+        isOlder[i] = older ? 1 : 0;
+        anyOlder |= older;
+        if (does) recall(i, known[n][i], shown, takenS);
+        if (older) recall(i, newer[n][i], newerShown, newerS);
+      }
+    if (anyOlder) {
+      blend(newest(), before(), from);
+      join(from, shown, reached);
+      System.arraycopy(newerS, 0, takenS, 0, WORLDS);
+      join(reached, newerShown, replayed);
+    } else join(newest(), shown, reached);
+    enter();
+  }
+
+  private void recall(int world, int image, float[] into, float[] intoS) {
+    int at = image * IMAGE * WORLDS + world;
+    for (int number = 0; number < IMAGE * WORLDS; number += WORLDS) into[number + world] = images[at + number];
+    intoS[world] = imagesS[image * WORLDS + world];
+  }
+
+  /** One belief, and another where an older image enters. */
+  private void blend(float[] belief, float[] whereOlder, float[] into) {
+    for (int k = 0; k < some.count; k++) {
+      int i = some.first[k];
+      VectorMask<Float> older = IntVector.fromArray(INTS, isOlder, i).compare(GT, 0).cast(SPECIES);
+      for (int number = i; number < into.length; number += WORLDS)
+        FloatVector.fromArray(SPECIES, belief, number)
+            .blend(FloatVector.fromArray(SPECIES, whereOlder, number), older)
+            .intoArray(into, number);
+    }
+  }
+
+  private void enter() {
+    float[] newest = newest(), before = before();
+    for (int k = 0; k < some.count; k++) {
+      int i = some.first[k];
+      VectorMask<Float> does = IntVector.fromArray(INTS, enters, i).compare(GT, 0).cast(SPECIES),
+          older = IntVector.fromArray(INTS, isOlder, i).compare(GT, 0).cast(SPECIES);
+      for (int number = i; number < newest.length; number += WORLDS) {
+        FloatVector held = FloatVector.fromArray(SPECIES, newest, number),
+            one = FloatVector.fromArray(SPECIES, reached, number),
+            both = FloatVector.fromArray(SPECIES, replayed, number);
+        FloatVector.fromArray(SPECIES, before, number)
+            .blend(held.blend(one, older), does)
+            .intoArray(before, number);
+        held.blend(one.blend(both, older), does).intoArray(newest, number);
+      }
+    }
+  }
+}

@@ -1,0 +1,135 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import java.util.Arrays;
+import java.util.Comparator;
+import jdk.incubator.vector.IntVector;
+import skein.forward.TabledDelays;
+import skein.lanes.policy.LanePolicy;
+import skein.lanes.score.Scoreboard;
+
+/**
+ * Flies many worlds at a time, each with delays of its own, under a loop's full event timing: duels and
+ * teams, with vehicles whose flight is known in pieces. A loop tells what is offered when ({@link
+ * LaneOffers}), {@link LaneAgents} decide upon it and send, {@link LaneVehicles} fly. {@code Rollout} is
+ * the scalar reference: both draw the same delays from a world's key, and every event happens at the same
+ * nanosecond in both. Nothing is allocated after construction but where links need more room than any
+ * before; one instance per thread.
+ */
+public final class LoopKernel {
+  public static final int WORLDS = LanePolicy.WORLDS;
+
+  private final int steps;
+  private final double periodS;
+  private final LaneOffers offers;
+  private final LaneAgents[] agents;
+
+  /** The same; those who see come last. */
+  private final LaneAgents[] turns;
+  private final Scoreboard scores;
+  private final boolean withVelocity, withAges;
+
+  /** Whether readings are carried forward: then one counts before all vehicles are known. */
+  private final boolean isForecast;
+
+  private static final LaneVectors ALL = LaneVectors.all();
+  private final int[][] readAt;
+
+  /** In which somebody is offered something in a beat. */
+  private final LaneVectors vectors = new LaneVectors();
+
+  /**
+   * @param agents by the vehicle's number, made with the same loop
+   * @param scores by which they are judged
+   */
+  public LoopKernel(LoopLanes loop, LaneAgents[] agents, Scoreboard scores) {
+    this.agents = agents;
+    turns = agents.clone();
+    Arrays.sort(turns, Comparator.comparing(LaneAgents::sees));
+    this.scores = scores;
+    offers = loop.offers();
+    periodS = loop.periodS();
+    steps = (int) Math.round(loop.durationS() / periodS);
+    readAt = new int[agents.length][WORLDS];
+    boolean needsVelocity = false, needsAges = false;
+    for (LaneAgents each : agents) {
+      float[] state = each.vehicles.state;
+      scores.place(each.self, state, LaneVehicles.X, state, LaneVehicles.Y);
+      needsVelocity |= each.needsVelocity();
+      needsAges |= each.needsAges();
+    }
+    isForecast = loop.forecast() != null;
+    withVelocity = needsVelocity || isForecast;
+    withAges = needsAges;
+  }
+
+  /**
+   * Flies one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
+   *
+   * @param worldKeys {@link skein.simd.WorldRandom#key} of each world
+   * @param links of each world; none may be slower than the loop was made for
+   */
+  public void fly(int[] worldKeys, TabledDelays[] links) {
+    offers.start(worldKeys, links);
+    for (LaneAgents each : agents) each.start();
+    scores.start(WORLDS);
+    for (int row = 0; row < steps; row++) {
+      if (row > 0) {
+        for (LaneAgents each : agents) each.startRow(row);
+        if (withAges) growOlder();
+      }
+      offers.startRow(row);
+      boolean isScored = row == 0;
+      while (offers.nextBeat()) {
+        offers.beat++;
+        vectors.take(offers.joinedAt, LaneOffers.NONE);
+        for (LaneAgents each : agents) read(row, each);
+        // Reading them has flown the vehicles to the row's begin, if that is their way.
+        if (!isScored) score(row);
+        isScored = true;
+        for (LaneAgents each : turns) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);
+        int end = grainsToEnd(row);
+        for (LaneAgents each : turns)
+          if (offers.isFor(each.self)) {
+            if (each.sees()) each.choose(agents, offers, vectors, readAt);
+            each.command(row, offers, vectors, end);
+          }
+      }
+      if (!isScored) score(row);
+    }
+    score(steps);
+  }
+
+  private void read(int row, LaneAgents agent) {
+    int[] at = offers.sampledAt[agent.self], fresh = offers.fresh[agent.self], held = readAt[agent.self];
+    agent.vehicles.read(row, isForecast ? ALL : vectors, offers.joinedAt, at, fresh, withVelocity);
+    if (withAges)
+      for (int i = 0; i < WORLDS; i += LANES) {
+        IntVector now = IntVector.fromArray(INTS, at, i), before = IntVector.fromArray(INTS, held, i);
+        if (fresh != null) now = before.blend(now, IntVector.fromArray(INTS, fresh, i).compare(GT, 0));
+        now.intoArray(held, i);
+      }
+  }
+
+  private void growOlder() {
+    int period = LaneViews.grains(periodS);
+    for (int[] each : readAt)
+      for (int i = 0; i < WORLDS; i++) each[i] = Math.max(each[i] - period, Integer.MIN_VALUE / 2);
+  }
+
+  private void score(int row) {
+    float timeS = (float) (row * periodS);
+    boolean counts = scores.counts(timeS);
+    for (LaneAgents each : agents) each.vehicles.flyToRow(row, counts);
+    if (counts) scores.score(timeS);
+  }
+
+  /** From a row's begin to the end of the episode, as far as integers count. */
+  private int grainsToEnd(int row) {
+    double seconds = (steps - row) * periodS;
+    return seconds < 7 ? LaneViews.grains(seconds) : Integer.MAX_VALUE;
+  }
+}

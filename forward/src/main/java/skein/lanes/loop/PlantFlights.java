@@ -1,0 +1,96 @@
+package skein.lanes.loop;
+
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.forward.Duelist;
+import skein.lanes.plant.PlantLanes;
+import skein.lanes.plant.PlantPieces;
+import skein.lanes.policy.Directions;
+import skein.simd.BoundFunction;
+import skein.simd.LaneCall;
+import skein.vehicle.Plant;
+
+/**
+ * Vehicles that move by a {@link Plant}, whose commands act at times of their own in each world. A
+ * piece is a step, of which {@link PlantPieces} tells what is kept; before the first command there is
+ * none, and the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
+ */
+public final class PlantFlights extends LaneFlights {
+  private static final int STATE = PlantPieces.State() * WORLDS;
+
+  private final PlantLanes lanes;
+  private final int[] starts;
+  private final LaneCall flown, position, look;
+
+  /** The state flown to. */
+  private final float[] reached;
+
+  public PlantFlights(Duelist duelist, PlantLanes lanes, LoopLanes loop) {
+    super(duelist, lanes.pieces().kept(), lanes.plant().stepS(), loop);
+    PlantPieces pieces = lanes.pieces();
+    this.lanes = lanes;
+    starts = pieces.starts();
+    reached = new float[lanes.count() * WORLDS];
+    float[] parameters = pieces.parametersOf(lanes.plant(), duelist.speed());
+    flown = bound(pieces.flown(), parameters);
+    flown.output(0, reached, 0, 0);
+    position = bound(pieces.position(), parameters);
+    look = bound(pieces.look(), parameters);
+  }
+
+  private LaneCall bound(BoundFunction of, float[] parameters) {
+    LaneCall call = new LaneCall(of, parameters);
+    for (int place = 0; place < of.inputs().length; place++)
+      call.input(place, of.inputs()[place] == PlantPieces.Since() ? sinceS : chosen, 0, 0);
+    return call;
+  }
+
+  @Override
+  void rest(float[] pieces) {
+    lanes.rest(pieces, STATE);
+    Arrays.fill(pieces, ALONG_X, ALONG_X + WORLDS, Float.NaN);
+    for (int axis = 0; axis < 2; axis++)
+      for (int world = 0; world < WORLDS; world++)
+        pieces[starts[axis] * WORLDS + world] += state[(axis == 0 ? X : Y) + world];
+  }
+
+  @Override
+  public void fly(float[] into, int at, boolean withVelocity) {
+    LaneCall call = withVelocity ? look : position;
+    call.output(0, into, at, 0);
+    call.apply();
+  }
+
+  @Override
+  void flyOn() {
+    flown.apply();
+  }
+
+  @Override
+  void begin(LaneVectors vectors, int at, int[] acts, Directions commanded) {
+    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
+    int flown = STATE + reached.length, size = chosen.length;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k], to = at + i;
+      VectorMask<Float> does = IntVector.fromArray(INTS, acts, i).compare(LT, none).cast(SPECIES);
+      FloatVector.fromArray(SPECIES, chosen, ALONG_X + i)
+          .blend(FloatVector.fromArray(SPECIES, commanded.cos, i), does)
+          .intoArray(pieces, to + ALONG_X);
+      FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i)
+          .blend(FloatVector.fromArray(SPECIES, commanded.sin, i), does)
+          .intoArray(pieces, to + ALONG_Y);
+      for (int number = STATE; number < flown; number += WORLDS)
+        FloatVector.fromArray(SPECIES, chosen, number + i)
+            .blend(FloatVector.fromArray(SPECIES, reached, number - STATE + i), does)
+            .intoArray(pieces, to + number);
+      for (int number = flown; number < size; number += WORLDS)
+        FloatVector.fromArray(SPECIES, chosen, number + i).intoArray(pieces, to + number);
+    }
+  }
+}

@@ -1,0 +1,48 @@
+package skein.lanes.loop;
+
+import skein.forward.LoopTiming;
+import skein.forward.TabledDelays;
+
+/** The views of the {@code stream} loop, offered to all vehicles at once. */
+public final class StreamOffers extends LaneOffers {
+  private final LaneViews views;
+  private boolean isFirst;
+
+  /**
+   * @param maxDelayS the longest one-way delay of any link
+   */
+  public StreamOffers(
+      LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
+    this(new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut));
+  }
+
+  private StreamOffers(LaneViews views) {
+    super(views.vehicles, views.delays, true, LaneViews.ROWS_EARLY);
+    this.views = views;
+  }
+
+  @Override
+  public void start(int[] worldKeys, TabledDelays[] links) {
+    views.start(worldKeys, links);
+  }
+
+  @Override
+  public void startRow(int row) {
+    views.startRow(row);
+    isFirst = true;
+  }
+
+  @Override
+  public boolean nextBeat() {
+    if (!isFirst && !views.nextBeat()) return false;
+    isFirst = false;
+    joinedAt = views.joinedAt;
+    nextAt = views.nextAt;
+    for (int v = 0; v < vehicles; v++) {
+      sampledAt[v] = views.sampledAt[v];
+      fresh[v] = views.hasOld ? views.isFresh[v] : null;
+      place[v] = views.place[v];
+    }
+    return true;
+  }
+}

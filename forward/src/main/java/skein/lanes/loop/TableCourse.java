@@ -1,0 +1,61 @@
+package skein.lanes.loop;
+
+import java.util.Arrays;
+import java.util.function.ToIntFunction;
+import skein.forward.DelayTable;
+import skein.forward.TableStretch;
+
+/** Which table of delays a world's link has at which time of a flight. Mutable. */
+final class TableCourse {
+  private final ToIntFunction<DelayTable> beginOf;
+
+  /** The link, as far as it is known. */
+  private TableStretch stretch;
+
+  // Of each stretch: where its table begins, and until when it holds, since the flight's begin, in grains.
+  private int[] tables = new int[4];
+
+  private long[] ends = new long[4];
+  private int count;
+
+  /** That of the time asked for last: most times lie near one another. */
+  private int at;
+
+  /**
+   * @param beginOf where a table begins in {@link LaneDelays#delays}
+   */
+  TableCourse(ToIntFunction<DelayTable> beginOf) {
+    this.beginOf = beginOf;
+  }
+
+  /** Back to the start of a flight. */
+  void start(TableStretch first) {
+    stretch = first;
+    count = 0;
+    at = 0;
+    know();
+  }
+
+  /** Where the table of a message begins that is sent at this time, since the flight's begin, in grains. */
+  int tableAt(long sentAt) {
+    while (sentAt >= ends[at]) {
+      if (at + 1 == count) {
+        stretch.next();
+        know();
+      }
+      at++;
+    }
+    while (at > 0 && sentAt < ends[at - 1]) at--;
+    return tables[at];
+  }
+
+  private void know() {
+    if (count == ends.length) {
+      ends = Arrays.copyOf(ends, 2 * count);
+      tables = Arrays.copyOf(tables, 2 * count);
+    }
+    tables[count] = beginOf.applyAsInt(stretch.table());
+    // Messages are sent at whole grains.
+    ends[count++] = Math.ceilDiv(stretch.untilNs(), DelayTable.GrainNs());
+  }
+}

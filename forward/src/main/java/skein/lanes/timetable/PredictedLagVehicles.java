@@ -1,0 +1,88 @@
+package skein.lanes.timetable;
+
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+import static skein.simd.LaneMath.constant;
+
+import jdk.incubator.vector.FloatVector;
+import skein.lanes.policy.Directions;
+import skein.vehicle.PlantModel;
+
+/**
+ * Predicts by a first-order lag, which is linear: a prediction is the reading's position, its
+ * velocity times a number of the timetable, and each command on the way times one of its own. The
+ * scalar reference is {@link PlantModel} without drag.
+ */
+public final class PredictedLagVehicles extends PredictedVehicles {
+  private final float speed;
+  private int worlds = WORLDS;
+
+  /**
+   * @param speedMps what commands come to in the end
+   */
+  public PredictedLagVehicles(double speedMps) {
+    speed = (float) speedMps;
+  }
+
+  @Override
+  public void start(int worlds) {
+    this.worlds = worlds;
+  }
+
+  @Override
+  void predict(
+      float[] seenX,
+      float[] seenY,
+      float[] seenVx,
+      float[] seenVy,
+      Directions sent,
+      int reading,
+      int into,
+      Propagation propagation,
+      boolean withVelocity) {
+    float carried = propagation.first(), kept = propagation.second();
+    carry(seenX, seenVx, carried, seenX, reading, into);
+    carry(seenY, seenVy, carried, seenY, reading, into);
+    if (withVelocity) {
+      keep(seenVx, kept, reading, into);
+      keep(seenVy, kept, reading, into);
+    }
+    int[] commands = propagation.commands();
+    float[] numbers = propagation.numbers();
+    for (int part = 0; part < commands.length; part++) {
+      int place = commands[part];
+      if (place != Propagation.Rest()) {
+        float moved = numbers[2 * part] * speed, faster = numbers[2 * part + 1] * speed;
+        add(sent.cos, place * WORLDS, moved, seenX, into);
+        add(sent.sin, place * WORLDS, moved, seenY, into);
+        if (withVelocity) {
+          add(sent.cos, place * WORLDS, faster, seenVx, into);
+          add(sent.sin, place * WORLDS, faster, seenVy, into);
+        }
+      }
+    }
+  }
+
+  private void carry(
+      float[] position, float[] velocity, float seconds, float[] predicted, int from, int into) {
+    FloatVector factor = constant(seconds);
+    for (int i = 0; i < worlds; i += LANES)
+      FloatVector.fromArray(SPECIES, velocity, from + i)
+          .fma(factor, FloatVector.fromArray(SPECIES, position, from + i))
+          .intoArray(predicted, into + i);
+  }
+
+  private void keep(float[] velocity, float share, int from, int into) {
+    FloatVector factor = constant(share);
+    for (int i = 0; i < worlds; i += LANES)
+      FloatVector.fromArray(SPECIES, velocity, from + i).mul(factor).intoArray(velocity, into + i);
+  }
+
+  private void add(float[] what, int from, float times, float[] to, int at) {
+    FloatVector factor = constant(times);
+    for (int i = 0; i < worlds; i += LANES)
+      FloatVector.fromArray(SPECIES, what, from + i)
+          .fma(factor, FloatVector.fromArray(SPECIES, to, at + i))
+          .intoArray(to, at + i);
+  }
+}

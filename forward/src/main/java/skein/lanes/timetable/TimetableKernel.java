@@ -1,0 +1,119 @@
+package skein.lanes.timetable;
+
+import skein.lanes.policy.LanePolicy;
+
+/**
+ * Flies many candidates through one episode, by its {@link Timetable}: teams of any size under any
+ * loop's timing, with any vehicles that fly by timetables. {@code Rollout} with the same delays and
+ * the same model is its scalar reference.
+ *
+ * <p>What happens when is the same in all lanes, so that everything about time is a number of the
+ * timetable. Nothing is allocated after construction but where a timetable needs more places than
+ * any before; one instance per thread.
+ */
+public final class TimetableKernel {
+  /** Candidates flown together. */
+  public static final int WORLDS = LanePolicy.WORLDS;
+
+  /** Kinds of a timetable's operations. */
+  public static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, EXPOSE = 5, JOIN = 6,
+      ENTER = 7;
+
+  private final TimetableAgents[] agents;
+  private final TimetableScores scores;
+  private final boolean withVelocity;
+
+  // Of the episode's timetable.
+  private int[] operations, views;
+  private int numbers;
+  private float[] times;
+  private Propagation[] propagations;
+  private boolean readsVelocity;
+
+  /**
+   * @param agents by the vehicle's number in the timetable
+   */
+  public TimetableKernel(TimetableAgents[] agents, TimetableScores scores) {
+    this.agents = agents;
+    this.scores = scores;
+    boolean needsVelocity = false;
+    for (TimetableAgents each : agents) needsVelocity |= each.needsVelocity();
+    withVelocity = needsVelocity;
+  }
+
+  /**
+   * Flies {@link #WORLDS} candidates through one episode, by the policies' parameters.
+   *
+   * @param timetable of as many vehicles
+   * @param worlds those that count are the first
+   */
+  public void fly(Timetable timetable, int worlds) {
+    start(timetable, worlds);
+    for (int i = 0; i < timetable.size(); i++) perform(i);
+  }
+
+  /** Back to the start of an episode. */
+  public void start(Timetable timetable, int worlds) {
+    if (timetable.vehicles() != agents.length)
+      throw new IllegalArgumentException(
+          "a timetable of " + timetable.vehicles() + " vehicles for " + agents.length);
+    for (TimetableAgents each : agents) each.start(timetable, worlds);
+    scores.start(worlds);
+    operations = timetable.operations();
+    views = timetable.views();
+    numbers = timetable.numbers();
+    times = timetable.times();
+    propagations = timetable.propagations();
+    // Predictions start from velocities, whoever looks at them.
+    readsVelocity = withVelocity || propagations.length > 0;
+  }
+
+  /** Does the timetable's next operation. */
+  public void perform(int operation) {
+    int field = operation * Timetable.Fields(), number = operation * numbers;
+    TimetableAgents agent = agents[operations[field + 1]];
+    int first = operations[field + 2];
+    switch (operations[field]) {
+      case LOOK ->
+          agent.vehicles.look(
+              times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
+      case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
+      case SCORE -> scores.score(agents, views, first * agents.length, times[number]);
+      case EXPOSE ->
+          agent.expose(agents, views, first * agents.length, operations[field + 3], times, number);
+      case JOIN -> agent.join(first, operations[field + 3] != 0, operations[field + 4]);
+      case PREDICT ->
+          agent.vehicles.predicted.predict(
+              agent.vehicles.seenX,
+              agent.vehicles.seenY,
+              agent.vehicles.seenVx,
+              agent.vehicles.seenVy,
+              agent.headings,
+              first * WORLDS,
+              operations[field + 3] * WORLDS,
+              propagations[operations[field + 4]],
+              withVelocity);
+      case ENTER ->
+          agent.vehicles.predicted.enter(
+              agent.vehicles.seenX,
+              agent.vehicles.seenY,
+              agent.vehicles.seenVx,
+              agent.vehicles.seenVy,
+              agent.headings,
+              first < 0 ? -1 : first * WORLDS,
+              operations[field + 3] * WORLDS,
+              propagations[operations[field + 4]]);
+      case DECIDE ->
+          agent.decide(
+              agents,
+              views,
+              first * agents.length,
+              operations[field + 3] * WORLDS,
+              operations[field + 4] * WORLDS,
+              operations[field + 5] * WORLDS,
+              times,
+              number);
+      default -> throw new IllegalStateException("no operation of a timetable: " + operations[field]);
+    }
+  }
+}

@@ -1,0 +1,78 @@
+package skein.lanes.loop
+
+import skein.forward.Duelist
+import skein.lanes.plant.{PlantCorrection, PlantLanes}
+import skein.lanes.timetable.{
+  CommandPropagator,
+  PredictedLagVehicles,
+  PredictedPlants,
+  PredictedVehicles,
+  Propagation,
+  Propagator,
+  StepClock,
+  TimetablePredictor
+}
+import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
+
+/** A kind of model that carries readings forward by lanes. */
+private[skein] trait LanePredictor extends TimetablePredictor:
+  /** All worlds' predictions of one vehicle where every world has delays of its own. */
+  def alone(duelist: Duelist): ForecastVehicles
+
+private[skein] object LanePredictor:
+  /** @return or why this model does not predict by lanes
+    */
+  def of(model: VehicleModel[?]): Either[String, LanePredictor] = model match
+    case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
+    case PlantModel(plant)                          =>
+      for
+        lanes      <- PlantLanes.of(plant)
+        correction <- PlantCorrection.of(plant, lanes.count)
+      yield PlantPredictor(lanes, correction)
+    case ConstantVelocity => Right(CoastPredictor)
+    case _                => Left("the lanes predict by plants and by constant velocity")
+
+/** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
+private[lanes] object CoastPredictor extends LanePredictor, Propagator:
+  def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
+  def alone(duelist: Duelist): ForecastVehicles            = ForecastCoasting()
+  def deadTimeS: Double                                    = 0
+  def propagator: Propagator                               = this
+  def next(legs: Vector[Propagator.Leg]): Propagator       = this
+  def predicted(legs: Vector[Propagator.Leg]): Propagation =
+    Propagation(Array.empty, Array.empty, legs.iterator.map(_.span.toSeconds).sum.toFloat, 1)
+
+/** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of
+  * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
+  */
+private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePredictor:
+  def deadTimeS: Double                             = model.deadTimeS
+  def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
+  def alone(duelist: Duelist): ForecastVehicles = ForecastLagVehicles(duelist.speed * model.gain, model.lagS)
+
+  def propagator: Propagator = CommandPropagator(model.deadTimeS, propagation)
+
+  private def propagation(flown: Vector[CommandPropagator.Flown], totalS: Double): Propagation =
+    val lag = FirstOrderLag(model.lagS)
+    CommandPropagator.told(flown, perPart = 2, lag.carriesS(totalS), lag.remains(totalS)): (part, into, at) =>
+      val (left, after)               = (totalS - part.fromS, totalS - part.untilS)
+      val (carriedLeft, carriedAfter) = (lag.carriesS(left), lag.carriesS(after))
+      into(at) = ((left - carriedLeft) - (after - carriedAfter)).toFloat
+      into(at + 1) = (carriedLeft / model.lagS - carriedAfter / model.lagS).toFloat
+
+/** By [[PredictedPlants]]. */
+private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction: PlantCorrection)
+    extends LanePredictor:
+  private val tell = lanes.stages.tell(lanes.plant)
+
+  override def remembers: Boolean                   = !correction.isTold
+  def deadTimeS: Double                             = lanes.plant.deadTimeS
+  def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, correction, duelist.speed)
+  def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, correction, duelist.speed)
+
+  def propagator: Propagator =
+    CommandPropagator(lanes.plant.deadTimeS, (flown, _) => propagation(flown))
+
+  private def propagation(flown: Vector[CommandPropagator.Flown]): Propagation =
+    CommandPropagator.told(flown, StepClock.numbers(lanes)): (part, into, at) =>
+      StepClock(lanes, tell, part.fromS).tell(part.untilS, acts = false, into, at)

@@ -1,0 +1,55 @@
+package skein.lanes.plant
+
+import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
+import skein.vehicle.Plant
+
+/** A plant's step, and what is read of it at its end, as expressions. Their parameters are the speed of a
+  * command of length 1, then the plant's own numbers.
+  *
+  * @param first the first parameter's number
+  * @param state its numbers as the step begins
+  * @param north of the command, over the speed
+  * @param spanS how long it is flown
+  * @param taken what counts of the state at the end
+  */
+private[lanes] final class PlantExpressions(
+    trace: Trace,
+    stepping: Formula,
+    reading: Formula,
+    first: Int,
+    state: Int => Node,
+    north: Node,
+    east: Node,
+    spanS: Node,
+    taken: Vector[Node] => Vector[Node] = identity
+):
+  private val count   = stepping.outputs.size
+  private val speed   = trace.param(first)
+  private val stepOwn = angles(stepping, first + 1, leafOfStep)
+
+  /** The state at the end. */
+  val stepped: Vector[Node] = taken(stepping.outputs.map((_, node) => stepOwn.convert(node)))
+
+  private val readOwn = angles(reading, first + 1 + stepOwn.derived.size, stepped)
+
+  /** Position and velocity at the end, north and east. */
+  val seen: Vector[Node] = reading.outputs.map((_, node) => readOwn.convert(node))
+
+  /** The same where the position counts from a start. */
+  def seenFrom(startX: Node, startY: Node): Vector[Node] =
+    Vector(trace.add(seen(0), startX), trace.add(seen(1), startY)) ++ seen.drop(2)
+
+  /** How many parameters there are. */
+  val parameters: Int = 1 + stepOwn.derived.size + readOwn.derived.size
+
+  private def angles(formula: Formula, from: Int, leaf: Int => Node) =
+    Angles(formula.trace, trace, leaf, _ => None, number => trace.param(from + number))
+
+  private def leafOfStep(input: Int) =
+    if input < count then state(input)
+    else if input < count + 2 then trace.mul(if input == count then north else east, speed)
+    else spanS
+
+  def parametersOf(plant: Plant[?], speedMps: Double): Array[Double] =
+    speedMps +: (Evaluation(stepOwn.derived)(Array.emptyDoubleArray, stepping.parametersOf(plant)) ++
+      Evaluation(readOwn.derived)(Array.emptyDoubleArray, reading.parametersOf(plant)))

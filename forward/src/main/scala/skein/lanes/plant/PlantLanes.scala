@@ -1,0 +1,80 @@
+package skein.lanes.plant
+
+import java.util.Arrays
+import java.util.concurrent.ConcurrentHashMap
+import skein.formula.{Formula, Untraceable}
+import skein.simd.{FixedFormula, Forms, LaneFunction}
+import skein.vehicle.{PlaneReading, Plant, PlantState}
+
+/** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
+private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
+  /** How many numbers its state is. */
+  def count: Int = form.count
+
+  /** What it begins with. */
+  val initial: Array[Float] = PlantState.numbers(plant.initial).map(_.toFloat).toArray
+  if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
+
+  /** What is read of it at rest, from where it starts. */
+  val resting: PlaneReading                 = readingOf(plant)
+  private def readingOf[S](plant: Plant[S]) = plant.read(plant.initial)
+
+  /** Fills in the numbers of a state at rest, of all worlds. */
+  def rest(array: Array[Float], from: Int): Unit =
+    val worlds = LaneFunction.COUNT
+    for i <- 0 until count do
+      Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
+
+  /** The next state: of the state's numbers, then the commanded velocity and the time. */
+  def step: FixedFormula = form.step.of(plant)
+
+  /** Position and velocity, of the state's numbers. */
+  def read: FixedFormula = form.read.of(plant)
+
+  /** Its steps where all are equally long. */
+  def steps: PlantSteps = form.steps
+
+  /** Its step in parts. */
+  def stages: PlantStages = form.stages
+
+  /** The same where steps begin at times of their own in each world. */
+  def pieces: PlantPieces = form.pieces
+
+/** What plants of one form are compiled to. */
+private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formula):
+  val count: Int = stepping.outputs.size
+  if reading.inputs.size != count then throw Untraceable(s"a state of $count doubles was expected")
+
+  def fits(other: Plant[?]): Boolean = stepping.fits(other) && reading.fits(other)
+
+  val stages: PlantStages = PlantStages(stepping, reading)
+
+  /** Searches, whose worlds share delays, do not wait for these to be compiled. */
+  lazy val step: FixedFormula  = FixedFormula(stepping, plant)
+  lazy val read: FixedFormula  = FixedFormula(reading, plant)
+  lazy val steps: PlantSteps   = PlantSteps(stepping, reading, stages.places)
+  lazy val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
+
+private[skein] object PlantLanes:
+  private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()
+
+  /** Plants of one form share what is compiled.
+    *
+    * @return or why such plants do not fly by lanes
+    */
+  def of(plant: Plant[?]): Either[String, PlantLanes] =
+    val forms = known.computeIfAbsent(plant.getClass, _ => Forms[Plant[?], PlantForm](_.fits(_))(traced))
+    forms(plant)
+      .flatMap: form =>
+        try Right(PlantLanes(plant, form))
+        catch case untraceable: Untraceable => Left(untraceable)
+      .left
+      .map(refused)
+
+  private def traced(plant: Plant[?]) =
+    for
+      step <- Formula.of(plant, "step")
+      read <- Formula.of(plant, "read")
+    yield PlantForm(plant, step, read)
+
+  private def refused(why: Untraceable) = s"the vehicle is no formula: ${why.getMessage}"

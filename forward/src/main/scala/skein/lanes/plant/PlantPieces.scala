@@ -1,0 +1,67 @@
+package skein.lanes.plant
+
+import skein.formula.{Formula, Node, Trace}
+import skein.simd.BoundFunction
+import skein.vehicle.Plant
+
+/** A plant's flight through one step, in worlds whose steps begin at times of their own. Compiled once for
+  * all plants of a form. Kept of a step are the command, north and east over the speed, then the state as it
+  * begins, and then, unless that tells it, where the vehicle started. A vehicle rests under a command that is
+  * no number.
+  *
+  * @param places the state's numbers that begin where the vehicle starts, north and east, if there are such
+  */
+private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, places: Option[Vector[Int]]):
+  import PlantPieces.*
+
+  private val trace = Trace()
+  private val count = stepping.outputs.size
+
+  private val expressions =
+    val (since, stepS) = (trace.input(Since), trace.param(0))
+    val north          = trace.input(North)
+    // A plant is never stepped by no time; what comes of this step is not taken.
+    val flies = trace.and(trace.lt(trace.const(0), since), trace.equal(north, north))
+    PlantExpressions(
+      trace,
+      stepping,
+      reading,
+      first = 1,
+      number => trace.input(State + number),
+      north,
+      trace.input(East),
+      trace.where(trace.lt(since, stepS), since, stepS),
+      _.zipWithIndex.map((node, number) => trace.where(flies, node, trace.input(State + number)))
+    )
+
+  /** How many numbers are kept of a step. */
+  val kept: Int = State + count + (if places.isDefined then 0 else 2)
+
+  /** The rows that begin where the vehicle starts, north and east. */
+  val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(State + _).toArray
+
+  private val seen =
+    if places.isDefined then expressions.seen
+    else expressions.seenFrom(trace.input(starts(0)), trace.input(starts(1)))
+
+  /** The state a time after the step began, row by row. */
+  val flown: BoundFunction = bound(expressions.stepped)
+
+  /** The position then. */
+  val position: BoundFunction = bound(seen.take(2))
+
+  /** Position and velocity then. */
+  val look: BoundFunction = bound(seen)
+
+  private def bound(of: Vector[Node]) =
+    BoundFunction.of(of, { case row if row < Since => row }, areRows = true)
+
+  def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
+    (plant.stepS +: expressions.parametersOf(plant, speedMps)).map(_.toFloat)
+
+private[lanes] object PlantPieces:
+  /** What the expressions' inputs are: what is kept, by row, and how long ago the step began, s. */
+  val North: Int = 0
+  val East: Int  = 1
+  val State: Int = 2
+  val Since: Int = 1 << 16

@@ -1,0 +1,76 @@
+package skein.lanes.plant
+
+import skein.formula.{Formula, Untraceable}
+import skein.simd.{FixedFormula, Forms, LaneCall, LaneFunction}
+import skein.units.Vector3
+import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
+
+/** How quadrotors of one form fly many at a time: [[Quadrotor.stepInAir]] itself, compiled, for
+  * `moveByVelocityZ` with the yaw held, in calm air.
+  */
+private[lanes] final class QuadrotorLanes private (
+    val quadrotor: Quadrotor,
+    private[lanes] val formula: FixedFormula
+):
+  import QuadrotorLanes.*
+
+  /** The numbers of a vehicle's state by their names, each of which is one row. */
+  val rows: Vector[String] = formula.inputs.map(_.stripPrefix(State)).take(formula.bound.outputs)
+
+  def row(name: String): Int = rows.indexOf(name)
+
+  /** Which numbers these are of a state. */
+  def numbersOf(state: QuadrotorState): Vector[Double] = fields.map(_.getDouble(state))
+
+  private lazy val fields = rows.map: name =>
+    val field = classOf[QuadrotorState].getDeclaredField(name)
+    field.setAccessible(true)
+    field
+
+  /** What a vehicle above its start is to hold, to settle at this altitude. */
+  def holdingAt(downM: Double): Vector3 =
+    Vector3(0, 0, downM - quadrotor.hoverSagM(downM, Environment.Calm))
+
+  /** One step.
+    *
+    * @param from rows of the states before it, and of those after it
+    * @param goal rows of what is commanded: velocity north and east, m/s, and down, m
+    */
+  def step(from: Array[Float], to: Array[Float], goal: Array[Float]): LaneCall =
+    val call = LaneCall(formula.bound, formula.parameters.map(_.toFloat))
+    for (input, place) <- formula.bound.inputs.zipWithIndex do
+      if input < rows.size then call.input(place, from, 0)
+      else call.input(place, goal, (input - rows.size) * LaneFunction.COUNT)
+    call.output(0, to, 0)
+    call
+
+private[lanes] object QuadrotorLanes:
+  private val State = "state."
+
+  /** @return or why such quadrotors do not fly by lanes */
+  def of(quadrotor: Quadrotor): Either[String, QuadrotorLanes] =
+    val airborne = Airborne(quadrotor)
+    forms(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)
+
+  private val forms = Forms[Airborne, FixedFormula](_.fits(_))(compiled)
+
+  private def compiled(of: Airborne): Either[Untraceable, FixedFormula] =
+    for formula <- Formula.of(of, "step", known = known)
+    yield
+      // A step's outputs are the next one's inputs.
+      require(formula.inputs.map(_.stripPrefix(State)).startsWith(formula.outputs.map(_._1)), formula.inputs)
+      FixedFormula(formula, of, rows = formula.outputs.size)
+
+  /** Of a state in the air under `moveByVelocityZ`, what is no number. */
+  private def known: Map[String, Any] = Map(
+    "grounded"      -> false,
+    "contacts"      -> 0,
+    "verticalMode"  -> VerticalMode.Position,
+    "cascadeMemory" -> null
+  ).map((name, value) => (State + name, value))
+
+  /** What is compiled. */
+  private final class Airborne(quadrotor: Quadrotor):
+    def step(state: QuadrotorState, northMps: Double, eastMps: Double, downM: Double): QuadrotorState =
+      quadrotor.stepInAir(state, Setpoint.velocityZ(northMps, eastMps, downM), Environment.Calm)
+      state

@@ -1,0 +1,138 @@
+package skein.lanes.plant
+
+import skein.lanes.policy.Directions
+import skein.simd.{BoundFunction, LaneCall}
+import skein.simd.LaneFunction.COUNT as WORLDS
+
+/** Flights by the [[PlantStages]] of one plant, in many worlds whose steps begin and end together. Mutable.
+  *
+  * @param speedMps of a command of length 1
+  * @param startX where each world's begins, north and east, m
+  */
+private[lanes] final class StagedFlight(
+    lanes: PlantLanes,
+    speedMps: Double,
+    startX: Array[Float],
+    startY: Array[Float]
+):
+  import PlantStages.{East, North, StartX, StartY}
+  private val stages               = lanes.stages
+  private val parameters           = stages.parametersOf(lanes.plant, speedMps)
+  private val (times, firstOfTime) = (stages.times, stages.firstOfTime)
+  private val wholeStep            = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
+
+  /** That it [[begin]]s with, number by number. */
+  val state: Array[Float] = Array.ofDim[Float](lanes.count * WORLDS)
+
+  private val still         = Array.ofDim[Float](WORLDS)
+  private val begun, atRest = Array.ofDim[Float](stages.kept * WORLDS)
+  private val next          =
+    if stages.isKeptInPlace then begun else Array.ofDim[Float](stages.kept * WORLDS)
+  private val (north, east)           = (stages.act.place(North), stages.act.place(East))
+  private val (firstNorth, firstEast) = (stages.begin.place(North), stages.begin.place(East))
+  private val beginning               = bound(stages.begin, state, begun)
+  private var moving                  = Moving(begun, next)
+  private var other                   = Moving(next, begun)
+  private val resting                 = bound(stages.begin, state, atRest)
+  lanes.rest(state, 0)
+
+  private var worlds = WORLDS
+
+  /** From now on the first worlds alone count. */
+  def use(worlds: Int): Unit =
+    this.worlds = worlds
+    for call <- Vector(beginning, resting) ++ moving.calls ++ other.calls do call.use(worlds)
+
+  /** By what is kept of a step in one place; what is kept of the next step goes to another, or to the same.
+    */
+  private final class Moving(val kept: Array[Float], to: Array[Float]):
+    val position: LaneCall = bound(stages.position, kept)
+    val look: LaneCall     = bound(stages.look, kept)
+    val act: LaneCall      = bound(stages.act, kept, to)
+    val goOn: LaneCall     = bound(stages.goOn, kept, to)
+    lazy val end: LaneCall = bound(stages.end, kept)
+    def calls              = Vector(position, look, act, goOn)
+
+  private def bound(of: BoundFunction, rows: Array[Float], to: Array[Float] = null): LaneCall =
+    val call = LaneCall(of, parameters)
+    for (input, place) <- of.inputs.zipWithIndex do
+      input match
+        case StartX       => call.input(place, startX, 0)
+        case StartY       => call.input(place, startY, 0)
+        case North | East => call.input(place, still, 0)
+        case _            => call.input(place, rows, 0)
+    if to != null then call.output(0, to, 0)
+    call
+
+  /** Puts one world's to its start, at rest; until its next command it is told to stand still. */
+  def rest(world: Int): Unit =
+    resting()
+    for at <- world until atRest.length by WORLDS do moving.kept(at) = atRest(at)
+
+  /** The first step begins, under a command.
+    *
+    * @param from the index of the first world's
+    */
+  def begin(commanded: Directions, from: Int): Unit =
+    if moving.kept ne begun then turnOver()
+    beginning.input(firstNorth, commanded.cos, from)
+    beginning.input(firstEast, commanded.sin, from)
+    beginning()
+
+  /** The next step begins at the moment flown to, under a command. */
+  def act(commanded: Directions, from: Int): Unit =
+    moving.act.input(north, commanded.cos, from)
+    moving.act.input(east, commanded.sin, from)
+    moving.act()
+    turnOver()
+
+  /** Flies on.
+    *
+    * @param time from `at` on, how many steps end until then, and the numbers of the time after the last
+    */
+  def flyTo(time: Array[Float], at: Int): Unit =
+    var steps = time(at).toInt
+    while steps > 0 do
+      tell(wholeStep, 0)
+      moving.goOn()
+      turnOver()
+      steps -= 1
+    tell(time, at + 1)
+
+  private def tell(time: Array[Float], at: Int): Unit =
+    var i = 0
+    while i < times do
+      parameters(firstOfTime + i) = time(at + i)
+      i += 1
+
+  private def turnOver(): Unit =
+    val before = moving
+    moving = other
+    other = before
+
+  /** Where they are, and how fast. */
+  def look(
+      x: Array[Float],
+      y: Array[Float],
+      vx: Array[Float],
+      vy: Array[Float],
+      into: Int,
+      withVelocity: Boolean
+  ): Unit =
+    val look = if withVelocity then moving.look else moving.position
+    look.output(0, x, into)
+    look.output(1, y, into)
+    if withVelocity then
+      look.output(2, vx, into)
+      look.output(3, vy, into)
+    look()
+
+  /** The state that they are in, number by number.
+    *
+    * @param at where the first one's begins
+    */
+  def end(into: Array[Float], at: Int): Unit =
+    val end = moving.end
+    end.use(worlds)
+    end.output(0, into, at)
+    end()

@@ -1,0 +1,148 @@
+package skein.lanes.policy
+
+import java.util.Arrays
+import skein.formula.Untraceable
+import skein.forward.Duelist
+import skein.fusion.{SensorFormulas, SensorModel}
+import skein.simd.FixedFormula
+
+/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds. Compiled from
+  * [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. Which images are taken, and
+  * when they enter the belief, [[skein.lanes.timetable.TimetableEye]] knows where that is the same in all
+  * worlds, and [[skein.lanes.loop.LoopEye]] where it is not. Mutable.
+  */
+private[lanes] abstract class CameraTrackerLanes(
+    forms: CameraTrackerLanes.Forms,
+    own: Duelist,
+    opponent: Duelist
+):
+  import CameraTrackerLanes.*
+
+  private val detected     = forms.detected.call
+  private val joined       = forms.joined.call
+  private val decided      = forms.decidedUpon.call
+  private val ownDown      = everywhere(own.altitudeDownM)
+  private val opponentDown = everywhere(opponent.altitudeDownM)
+  private val startX       = everywhere(opponent.startX)
+  private val startY       = everywhere(opponent.startY)
+  private val startAxis    =
+    StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
+
+  /** The belief, and that before the newest image entered. */
+  protected var newest, before: Array[Float] = Array.ofDim(Belief * WORLDS)
+
+  /** The errors of an image that is taken. */
+  protected val bearing, range: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** When an image was taken that enters the belief, s since the start. */
+  protected val takenS: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** When it is decided, s since the start; and [[SensorFormulas.decidedUpon]]'s `aheadS`. */
+  protected val nowS, aheadS: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** Where the camera looks, rad, and where it would after a decision. */
+  protected val axis, newAxis: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** What is decided upon; velocities are the opponent's own. */
+  val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
+  val heading: Directions                                  = Directions(WORLDS)
+
+  detected.input(0, axis, 0)
+  detected.input(3, ownDown, 0)
+  detected.input(6, opponentDown, 0)
+  detected.input(7, bearing, 0)
+  detected.input(8, range, 0)
+  joined.input(Belief + Detection, takenS, 0)
+  decided.input(Belief, startX, 0)
+  decided.input(Belief + 1, startY, 0)
+  decided.input(Belief + 2, opponentDown, 0)
+  decided.input(Belief + 5, ownDown, 0)
+  decided.input(Belief + 6, nowS, 0)
+  decided.input(Belief + 7, aheadS, 0)
+  for (array, output) <-
+      Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, newAxis).zipWithIndex
+  do decided.output(output, array, 0)
+
+  /** From now on the first worlds alone count. */
+  protected def use(worlds: Int): Unit = for call <- Seq(detected, joined, decided) do call.use(worlds)
+
+  /** Nothing is known but where the opponent starts. */
+  protected def forget(): Unit =
+    for state <- Seq(newest, before) do Arrays.fill(state, 0f)
+    Arrays.fill(axis, startAxis)
+
+  /** What images show that are taken now, with the errors told, if the opponent is found wherever it is in
+    * view.
+    *
+    * @param oursX the own vehicles' places, from `oursAt` on, m
+    * @param into [[CameraTrackerLanes.Detection]] numbers of each world; first whether the opponent is found,
+    *   1 or 0
+    */
+  protected final def detect(
+      oursX: Array[Float],
+      oursY: Array[Float],
+      oursAt: Int,
+      theirsX: Array[Float],
+      theirsY: Array[Float],
+      theirsAt: Int,
+      into: Array[Float]
+  ): Unit =
+    detected.input(1, oursX, oursAt)
+    detected.input(2, oursY, oursAt)
+    detected.input(4, theirsX, theirsAt)
+    detected.input(5, theirsY, theirsAt)
+    detected.outputs(Detection, into, 0)
+    detected()
+
+  /** What is believed when images enter that were taken at [[takenS]]. */
+  protected final def join(belief: Array[Float], images: Array[Float], into: Array[Float]): Unit =
+    joined.inputs(0, Belief, belief, 0)
+    joined.inputs(Belief, Detection, images, 0)
+    joined.outputs(Belief, into, 0)
+    joined()
+
+  /** Tells [[northM]] and what follows, and [[newAxis]], at [[nowS]].
+    *
+    * @param x where the own vehicles are, from `xAt` on, m
+    */
+  protected final def decideUpon(x: Array[Float], xAt: Int, y: Array[Float], yAt: Int): Unit =
+    decided.inputs(0, Belief, newest, 0)
+    decided.input(Belief + 3, x, xAt)
+    decided.input(Belief + 4, y, yAt)
+    decided()
+
+  private def everywhere(value: Double) = Array.fill(WORLDS)(value.toFloat)
+
+private[lanes] object CameraTrackerLanes:
+  private val WORLDS = LanePolicy.WORLDS
+
+  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
+  val Belief    = 35
+  val Detection = 13
+
+  /** Below, what floats leave of a covariance is no covariance. */
+  private val LeastSd = 2e-4
+
+  /** Compiled. */
+  final class Forms(
+      val detected: FixedFormula,
+      val joined: FixedFormula,
+      val decidedUpon: FixedFormula
+  )
+
+  /** @return or why this sensor does not fly by lanes
+    */
+  def of(model: SensorModel): Either[String, Forms] =
+    val formulas                        = SensorFormulas(model)
+    def form(name: String, inputs: Int) = FixedFormula.of(formulas, name, alike = 0).map: formula =>
+      require(formula.inputs.size == inputs, s"$name of ${formula.inputs.mkString(", ")}")
+      formula
+    if model.bearingSdRad < LeastSd || model.rangeSd < LeastSd then
+      Left(s"the lanes know sensors with deviations of $LeastSd rad, and $LeastSd of the range, at least")
+    else
+      (for
+        detected    <- form("detected", 9)
+        joined      <- form("joined", Belief + Detection + 1)
+        decidedUpon <- form("decidedUpon", Belief + 8)
+      yield new Forms(detected, joined, decidedUpon)).left
+        .map((why: Untraceable) => s"the sensor is no formula: ${why.getMessage}")

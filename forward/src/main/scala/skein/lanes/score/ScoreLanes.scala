@@ -1,0 +1,167 @@
+package skein.lanes.score
+
+import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
+import skein.scenario.{Positions, Quantity, Reduction, Separation}
+import skein.simd.{BoundFunction, Forms}
+import skein.units.Expect
+
+/** What flights are judged by, in many worlds at once: the quantities, compiled from their methods
+  * [[Quantity.of]], and what they come to so far, in one function. Of each world some numbers are kept; the
+  * function computes their successors from them and from a view. Flights of one form differ in numbers alone.
+  */
+private[lanes] final class ScoreLanes private (
+    formulas: Vector[Formula],
+    val judged: Vector[Judged],
+    val count: Int
+):
+  import ScoreLanes.*
+
+  private val trace = Trace()
+
+  private val angles: Vector[Angles] = formulas.zipWithIndex.map: (formula, number) =>
+    Angles(
+      formula.trace,
+      trace,
+      trace.input,
+      _ => None,
+      parameter => trace.input(FirstParameter + number * Stride + parameter)
+    )
+
+  /** What is kept at the start, by place. */
+  val initial: Vector[Float] = judged.flatMap(initially)
+
+  /** Where begins what is kept of each number that is judged, and where it all ends. */
+  val places: Vector[Int] = judged.map(initially(_).size).scanLeft(0)(_ + _)
+
+  private val successors: Vector[Vector[Node]] = judged.indices.toVector.map: number =>
+    successorsOf(
+      number,
+      angles(number).convert(formulas(number).outputs(0)._2),
+      kept => trace.input(FirstKept + places(number) + kept)
+    )
+
+  /** What is kept next. Each successor takes the place of what it is made of, which nothing else reads.
+    *
+    * @param value now
+    */
+  private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
+    val own = trace.param(ownParameter(number))
+    judged(number).reduction match
+      case Reduction.Least => Vector(trace.binary(Op.Min, kept(0), value))
+      case Reduction.Most  => Vector(trace.binary(Op.Max, kept(0), value))
+      case Reduction.Mean  => Vector(trace.add(kept(0), value))
+      case Reduction.Rms   => Vector(trace.add(kept(0), trace.mul(value, value)))
+      case Reduction.Sd    => // Welford's mean and sum of squares: Technometrics 4 (1962), 419.
+        val off  = trace.sub(value, kept(0))
+        val mean = trace.add(kept(0), trace.mul(off, own))
+        Vector(mean, trace.add(kept(1), trace.mul(off, trace.sub(value, mean))))
+      case OfMoment.FirstWithin(_) =>
+        val now = trace.where(trace.le(value, own), trace.param(Time), trace.const(Double.PositiveInfinity))
+        Vector(trace.binary(Op.Min, now, kept(0)))
+      case OfMoment.Newest => Vector(value)
+
+  private val derived = angles.map(_.derived)
+  private val numbers = derived.map(Evaluation(_))
+
+  /** What is computed from a time on, until the next one's. */
+  val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
+    val numbers = judged.indices.filter(judged(_).fromS <= fromS).toVector
+    Stage(
+      fromS,
+      numbers,
+      numbers.flatMap(number => successors(number).indices.map(places(number) + _)),
+      BoundFunction.of(numbers.flatMap(successors))
+    )
+
+  /** What an input of the functions is. */
+  def source(input: Int): Source =
+    if input < 2 * count then Source.Reading(input % count, input / count)
+    else if input < FirstParameter then Source.Altitude(input - 2 * count)
+    else if input < FirstKept then
+      Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
+    else Source.Kept(input - FirstKept)
+
+  /** Whether a number needs the share of each value among all so far. */
+  def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
+
+  /** How many numbers a quantity differs by from another of its form. */
+  def parameters(number: Int): Int = derived(number).size
+
+  def parametersOf(number: Int, quantity: Quantity): Array[Double] =
+    numbers(number)(Array.emptyDoubleArray, formulas(number).parametersOf(quantity))
+
+  /** Whether flights of so many vehicles that are judged so are of this form. */
+  def fits(by: Vector[Judged], vehicles: Int): Boolean =
+    vehicles == count && by.size == judged.size && by.indices.forall: number =>
+      val (own, other) = (judged(number), by(number))
+      own.reduction == other.reduction && own.fromS == other.fromS && formulas(number).fits(other.quantity)
+
+private[lanes] object ScoreLanes:
+  private final val FirstParameter = 1 << 20
+  private final val Stride         = 1 << 18
+  private final val FirstKept      = 1 << 30
+
+  /** Parameters, which all worlds have alike: the time, s; then one for each number that is judged: a limit,
+    * or the share of the value that is new among all so far.
+    */
+  final val Time                     = 0
+  def ownParameter(number: Int): Int = 1 + number
+
+  enum Source:
+    /** North by 0 and east by 1. */
+    case Reading(vehicle: Int, field: Int)
+    case Altitude(vehicle: Int)
+    case Parameter(number: Int, parameter: Int)
+    case Kept(place: Int)
+
+  /** @param judged numbers of what is judged now
+    * @param places of what the function computes, by its outputs
+    */
+  final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
+    /** Times after this count: the last float that does not. */
+    def afterS: Float =
+      val (exact, near) = (Judged.afterS(fromS), Judged.afterS(fromS).toFloat)
+      if near > exact then Math.nextDown(near) else near
+
+  private def initially(judged: Judged): Vector[Float] = judged.reduction match
+    case Reduction.Least | OfMoment.FirstWithin(_) => Vector(Float.PositiveInfinity)
+    case Reduction.Most                            => Vector(Float.NegativeInfinity)
+    case OfMoment.Newest                           => Vector(Float.NaN)
+    case Reduction.Sd                              => Vector(0, 0)
+    case Reduction.Mean | Reduction.Rms            => Vector(0)
+
+  private val known = Forms[(Vector[Judged], Int), ScoreLanes]((form, of) => form.fits(of._1, of._2)):
+    (judged, vehicles) =>
+      Expect.each(judged)(each => formulaOf(each.quantity, vehicles)).map(ScoreLanes(_, judged, vehicles))
+
+  /** How flights of so many vehicles are judged by lanes, or why they are not. Compiled once for each form.
+    */
+  def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
+
+  /** What a number comes to; no number where nothing counted.
+    *
+    * @param kept last of it
+    * @param count how often it counted
+    */
+  def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
+    case Reduction.Rms | Reduction.Sd                   => math.sqrt(kept / count).toFloat
+    case Reduction.Mean                                 => kept / count
+    case Reduction.Least | Reduction.Most if count == 0 => Float.NaN
+    case _                                              => kept
+
+  /** By the distance of two vehicles.
+    *
+    * @param by what its values come to, from a time on, s
+    */
+  def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
+    of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)
+
+  private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
+    // Who writes a quantity may call its argument as they like.
+    val argument = quantity.getClass.getMethod("of", classOf[Positions]).getParameters.head.getName
+    Formula.of(
+      quantity,
+      "of",
+      Seq("northM", "eastM", "downM").map(field => s"$argument.$field" -> vehicles).toMap,
+      Some(Seq(classOf[Positions]))
+    )

@@ -1,0 +1,119 @@
+package skein.lanes.score
+
+import java.util.Arrays
+import skein.forward.Duelist
+import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
+import skein.scenario.Reduction
+
+/** Judges the flights of many worlds, once a period. Mutable. */
+private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores:
+  import ScoreLanes.Source
+
+  private val worlds     = TimetableAgents.WORLDS
+  private val judged     = lanes.judged
+  private val kept       = Array.ofDim[Float](lanes.initial.size * worlds)
+  private val ends       = lanes.places.tail.toArray
+  private val counts     = Array.ofDim[Int](judged.size)
+  private val shared     = Array.ofDim[Float](ScoreLanes.ownParameter(judged.size))
+  private val altitudes  = Array.ofDim[Float](lanes.count * worlds)
+  private val parameters =
+    Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
+  private val stages = lanes.stages.map(Stage(_)).toArray
+
+  private val hasShare = judged.indices.map(lanes.hasShare).toArray
+
+  for case (Judged(_, OfMoment.FirstWithin(limit), _), number) <- judged.zipWithIndex do
+    this.limit(number, limit.toFloat)
+
+  private final class Stage(of: ScoreLanes.Stage):
+    val fromS: Double      = of.fromS
+    val judged: Array[Int] = of.judged.toArray
+    val shown: ViewCall    = ViewCall(
+      of.function,
+      input => Some(lanes.source(input)).collect { case Source.Reading(vehicle, field) => (vehicle, field) },
+      shared
+    )
+    for (place, output) <- of.places.zipWithIndex do shown.call.output(output, kept, place * worlds)
+    for (input, place) <- of.function.inputs.zipWithIndex do
+      lanes.source(input) match
+        case Source.Reading(_, _)                => ()
+        case Source.Altitude(vehicle)            => shown.call.input(place, altitudes, vehicle * worlds)
+        case Source.Kept(from)                   => shown.call.input(place, kept, from * worlds)
+        case Source.Parameter(number, parameter) =>
+          shown.call.input(place, parameters(number), parameter * worlds)
+
+  /** Takes the numbers of what a world is judged by. */
+  def take(world: Int, vehicles: Vector[Duelist], numbers: Vector[Array[Double]]): Unit =
+    for (vehicle, i) <- vehicles.zipWithIndex do altitudes(i * worlds + world) = vehicle.altitudeDownM.toFloat
+    for (values, number) <- numbers.zipWithIndex; i <- values.indices do
+      parameters(number)(i * worlds + world) = values(i).toFloat
+
+  /** From now on a quantity is waited for to be at most this. */
+  def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most
+
+  def start(worlds: Int): Unit =
+    for stage <- stages do stage.shown.call.use(worlds)
+    shared(ScoreLanes.Time) = 0
+    for number <- judged.indices do forget(number)
+
+  /** From now on a number counts anew. */
+  def forget(number: Int): Unit =
+    counts(number) = 0
+    for place <- lanes.places(number) until lanes.places(number + 1) do
+      Arrays.fill(kept, place * worlds, (place + 1) * worlds, lanes.initial(place))
+
+  def score(agents: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
+    val stage = stageAt(timeS)
+    if stage != null then
+      stage.shown.look(agents, views, view)
+      add(stage, timeS)
+
+  /** Where a vehicle's positions stand from now on, one of each world: for scores without a view. */
+  def place(vehicle: Int, north: Array[Float], northAt: Int, east: Array[Float], eastAt: Int): Unit =
+    for stage <- stages do
+      stage.shown.show(vehicle, 0, north, northAt)
+      stage.shown.show(vehicle, 1, east, eastAt)
+
+  /** Whether anything counts at a time. */
+  def counts(timeS: Float): Boolean = stageAt(timeS) != null
+
+  /** Where all vehicles are [[place placed]] now, at a time that [[counts]]. */
+  def score(timeS: Float): Unit = add(stageAt(timeS), timeS)
+
+  private def stageAt(timeS: Float): Stage =
+    var last = stages.length - 1
+    while last >= 0 && !Judged.counts(timeS, stages(last).fromS) do last -= 1
+    if last < 0 then null else stages(last)
+
+  private def add(stage: Stage, timeS: Float): Unit =
+    shared(ScoreLanes.Time) = timeS
+    var i = 0
+    while i < stage.judged.length do
+      val number = stage.judged(i)
+      counts(number) += 1
+      if hasShare(number) then shared(ScoreLanes.ownParameter(number)) = 1f / counts(number)
+      i += 1
+    stage.shown.call.apply()
+
+  /** The time scored last, since the start, s. */
+  def scoredAtS: Float = shared(ScoreLanes.Time)
+
+  /** What is kept last of a number in a world: of a mean the sum, for example. */
+  def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
+
+  /** What a number came to, by world. */
+  def values(number: Int): Array[Float] = Array.tabulate(worlds)(value(number, _))
+
+  /** The same of one world; no number where nothing counted. */
+  def value(number: Int, world: Int): Float =
+    ScoreLanes.value(judged(number).reduction, soFar(number, world), counts(number))
+
+private[lanes] object Scoreboard:
+  /** By the distance of two vehicles.
+    *
+    * @param by what its values come to, from a time on, s
+    */
+  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard = Scoreboard(ScoreLanes.ofDistance(by*))
+
+  /** What learners are told: the newest distance, the sum and the least. */
+  def ofLearners: Scoreboard = ofDistance((OfMoment.Newest, 0), (Reduction.Mean, 0), (Reduction.Least, 0))

@@ -1,0 +1,111 @@
+package skein.lanes.timetable
+
+import java.util.Arrays
+import skein.lanes.plant.{PlantCorrection, PlantLanes, StagedFlight}
+import skein.lanes.policy.Directions
+
+/** Predicts by a plant: of each command, how many steps end under it, and the numbers of the time after the
+  * last ([[skein.lanes.plant.PlantStages]]). What readings do not tell of its state is flown on from reading
+  * to reading. The scalar reference is [[skein.vehicle.PlantModel]].
+  *
+  * @param correction what a reading tells of the state
+  * @param speedMps of a command of length 1
+  */
+private[lanes] final class PredictedPlants(
+    lanes: PlantLanes,
+    correction: PlantCorrection,
+    speedMps: Double
+) extends PredictedVehicles:
+  import PredictedVehicles.WORLDS
+  private val origin  = Array.ofDim[Float](WORLDS)
+  private val flight  = StagedFlight(lanes, speedMps, origin, origin)
+  private val still   = Directions(WORLDS)
+  private val correct = correction.call
+  private val count   = lanes.count
+
+  /** By a reading's place, if readings do not tell all of it. */
+  private var states = Array.emptyFloatArray
+  private val before = Array.ofDim[Float](count * WORLDS)
+  correct.inputs(0, count, before, 0)
+
+  override def start(worlds: Int): Unit =
+    flight.use(worlds)
+    correct.use(worlds)
+
+  override def enter(
+      seenX: Array[Float],
+      seenY: Array[Float],
+      seenVx: Array[Float],
+      seenVy: Array[Float],
+      sent: Directions,
+      from: Int,
+      reading: Int,
+      propagation: Propagation
+  ): Unit =
+    if states.length < seenX.length * count then states = Arrays.copyOf(states, seenX.length * count)
+    if from < 0 then lanes.rest(before, 0)
+    else
+      System.arraycopy(states, from * count, flight.state, 0, flight.state.length)
+      if fly(sent, propagation) then flight.end(before, 0)
+      else System.arraycopy(flight.state, 0, before, 0, before.length)
+    take(seenX, seenY, seenVx, seenVy, reading, states, reading * count)
+
+  override def restart(
+      world: Int,
+      seenX: Array[Float],
+      seenY: Array[Float],
+      seenVx: Array[Float],
+      seenVy: Array[Float]
+  ): Unit =
+    val state = Array.ofDim[Float](before.length)
+    lanes.rest(before, 0)
+    for reading <- 0 until states.length by state.length do
+      take(seenX, seenY, seenVx, seenVy, reading / count, state, 0)
+      for at <- world until state.length by WORLDS do states(reading + at) = state(at)
+
+  def predict(
+      seenX: Array[Float],
+      seenY: Array[Float],
+      seenVx: Array[Float],
+      seenVy: Array[Float],
+      sent: Directions,
+      reading: Int,
+      into: Int,
+      propagation: Propagation,
+      withVelocity: Boolean
+  ): Unit =
+    if correction.isTold then take(seenX, seenY, seenVx, seenVy, reading, flight.state, 0)
+    else System.arraycopy(states, reading * count, flight.state, 0, flight.state.length)
+    if fly(sent, propagation) then flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
+    else
+      for seen <- Array(seenX, seenY, seenVx, seenVy) do System.arraycopy(seen, reading, seen, into, WORLDS)
+
+  /** The state at a reading, of the one before it. */
+  private def take(
+      seenX: Array[Float],
+      seenY: Array[Float],
+      seenVx: Array[Float],
+      seenVy: Array[Float],
+      reading: Int,
+      into: Array[Float],
+      at: Int
+  ): Unit =
+    correct.input(count, seenX, reading)
+    correct.input(count + 1, seenY, reading)
+    correct.input(count + 2, seenVx, reading)
+    correct.input(count + 3, seenVy, reading)
+    correct.outputs(count, into, at)
+    correct()
+
+  /** From the flight's state on; false where it takes no time. */
+  private def fly(sent: Directions, propagation: Propagation): Boolean =
+    val (commands, perPart) = (propagation.commands, propagation.perPart)
+    var i                   = 0
+    while i < commands.length do
+      val command   = commands(i)
+      val commanded = if command == Propagation.Rest then still else sent
+      val from      = command.max(0) * WORLDS
+      if i == 0 then flight.begin(commanded, from) else flight.act(commanded, from)
+      flight.flyTo(propagation.numbers, i * perPart)
+      i += 1
+    commands.length > 0

@@ -1,0 +1,335 @@
+package skein.lanes.timetable
+
+import java.util.Comparator
+import skein.forward.{Delays, ImageTiming, LoopTiming, Rollout}
+import skein.fusion.SensorModel
+import skein.lanes.policy.LaneObservation
+import skein.vehicle.ConstantVelocity
+
+/** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where
+  * the vehicles are, so all candidates that meet the same delays share one timetable, whatever their policies
+  * decide.
+  *
+  * It is what [[Rollout]] does: an episode is flown once with vehicles that stand still, and an observer
+  * notes what happens: what is read, what is predicted from which reading through which commands, what is
+  * decided upon that, and when it acts.
+  *
+  * @param vehicles how many fly
+  * @param operations [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then
+  *   places
+  * @param numbers how many `times` there are of each operation
+  * @param times of each operation: of what happens to a vehicle, what its [[EventClock]] tells; of a
+  *   decision, the time since the one before, and in a duel the ages of the own and of the opponent's
+  *   reading; by who sees, the age of the own reading, the time, and until when a belief is carried
+  *   ([[TimetableEye.look]]); of an image what [[TimetableEye.expose]] takes; of a score, the time; s
+  * @param views what is decided and scored upon: the places of all vehicles' readings, one view after the
+  *   other
+  * @param propagations by which readings are carried forward, in loops that predict
+  * @param readings places that the readings of one vehicle need at a time
+  * @param headings the same for the headings of one vehicle
+  */
+private[skein] final class Timetable private[lanes] (
+    val vehicles: Int,
+    val operations: Array[Int],
+    val numbers: Int,
+    val times: Array[Float],
+    val views: Array[Int],
+    val propagations: Array[Propagation],
+    val readings: Int,
+    val headings: Int
+):
+  def size: Int = operations.length / Timetable.Fields
+
+  /** About so much memory is held, bytes. */
+  lazy val bytes: Long =
+    4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
+
+private[skein] object Timetable:
+  val Fields: Int = 6
+
+  /** Numbers of a reading: position and velocity, north and east. */
+  private[lanes] val Read: Int = LaneObservation.READ
+
+  /** Of an operation, at least: some clocks tell more. */
+  private[lanes] val LeastNumbers: Int = 4
+
+  /** The timetable of a world of this key, for so many vehicles of this kind.
+    *
+    * @param eyes of vehicles that see, in a duel
+    */
+  def of(
+      vehicles: Int,
+      durationS: Double,
+      timing: LoopTiming,
+      link: Delays,
+      key: Int,
+      model: TimetableDynamics,
+      eyes: Map[Int, SensorModel] = Map.empty
+  ): Timetable =
+    val notes = TimetableNotes(vehicles, model, eyes)
+    Rollout(
+      StandingStill.engagement(vehicles, durationS, eyes),
+      unpredicted(timing),
+      link,
+      StandingStill.Response(model.handoverS)
+    ).fly(key, observer = notes): Unit
+    TimetableCompiler(notes, vehicles, model).result
+
+  /** The same loop; what stands still is predicted at no cost. */
+  private def unpredicted(timing: LoopTiming): LoopTiming = timing match
+    case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
+    case other                             => other
+
+/** Puts events in the order of their times, chooses places for readings and headings, each until its last
+  * use, and tells each vehicle when what happens to it.
+  */
+private final class TimetableCompiler(
+    notes: TimetableNotes,
+    vehicles: Int,
+    model: TimetableDynamics
+):
+  import Timetable.Fields
+  import TimetableKernel.{ACT, DECIDE, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+
+  /** By time, and events of one time as they were noted. Only commands act later than what was noted after
+    * them.
+    */
+  private val order = notes.all.toArray
+  java.util.Arrays.sort(order, Comparator.comparingDouble[Note](_.atS))
+
+  /** Behind the last score. */
+  private val end = order.lastIndexWhere(_.isInstanceOf[Note.Score]) + 1
+
+  private val readings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.looks(vehicle) + 1))
+  private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
+  private val clocks   = Array.fill(vehicles)(model.clock())
+
+  /** Readings that are decided upon; of others only places count. */
+  private val decidedUpon =
+    Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
+
+  /** The number of each view among those that are told, or −1. */
+  private val told         = Array.fill(notes.views.size)(-1)
+  private val propagations = Array.newBuilder[Propagation]
+  private var placed       = 0
+  private val views        = Array.newBuilder[Int]
+  private var count        = 0
+
+  private val operations = Array.ofDim[Int](end * Fields)
+  private val numbers    = Timetable.LeastNumbers.max(clocks.map(_.numbers).max)
+  private val times      = Array.ofDim[Float](end * numbers)
+  private var size       = 0
+
+  def result: Timetable =
+    for i <- 0 until end do findLastUses(order(i), i)
+    for heading <- headings do heading.take(0)
+    for i <- 0 until end do
+      order(i) match
+        case note: Note.Look    => look(note)
+        case note: Note.Predict => predict(note, i)
+        case note: Note.Enter   => enter(note, i)
+        case note: Note.Decide  => decide(note, i)
+        case note: Note.Act     => act(note, i)
+        case note: Note.Score   => score(note, i)
+        case note: Note.Expose  => expose(note, i)
+        case note: Note.Join    => join(note)
+    Timetable(
+      vehicles,
+      java.util.Arrays.copyOf(operations, size * Fields),
+      numbers,
+      java.util.Arrays.copyOf(times, size * numbers),
+      views.result(),
+      propagations.result(),
+      readings.map(_.size).max,
+      headings.map(_.size).max
+    )
+
+  private def findLastUses(note: Note, at: Int): Unit = note match
+    case decide: Note.Decide =>
+      import decide.{before, vehicle}
+      usedAt(decide.view, at)
+      val seen = notes.views(decide.view)
+      for each <- 0 until vehicles do decidedUpon(each)(seen(each)) = true
+      headings(vehicle).usedAt(before, at)
+      if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
+      // Its effort is counted even where nobody uses it.
+      headings(vehicle).usedAt(before + 1, at)
+    case Note.Act(vehicle, _, decision)         => headings(vehicle).usedAt(decision, at)
+    case score: Note.Score                      => usedAt(score.view, at)
+    case image: Note.Expose                     => usedAt(image.view, at)
+    case Note.Predict(vehicle, _, _, from, way) =>
+      carriedAt(vehicle, from, way, at)
+    case Note.Enter(vehicle, _, reading, from, way) =>
+      carriedAt(vehicle, reading, way, at)
+      if from > 0 then readings(vehicle).usedAt(from, at)
+    case _: Note.Look | _: Note.Join => ()
+
+  private def carriedAt(vehicle: Int, reading: Int, way: Propagation, at: Int): Unit =
+    readings(vehicle).usedAt(reading, at)
+    decidedUpon(vehicle)(reading) = true
+    for command <- way.commands if command > 0 do headings(vehicle).usedAt(command, at)
+
+  private def usedAt(view: Int, at: Int): Unit =
+    val seen = notes.views(view)
+    for vehicle <- 0 until vehicles do readings(vehicle).usedAt(seen(vehicle), at)
+
+  private def releaseView(view: Int, at: Int): Unit =
+    val seen = notes.views(view)
+    for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
+
+  /** Its number in the timetable; its readings keep their places until it is used for the last time. */
+  private def tell(view: Int): Int =
+    if told(view) < 0 then
+      val seen = notes.views(view)
+      for vehicle <- 0 until vehicles do views += readings(vehicle).place(seen(vehicle))
+      told(view) = count
+      count += 1
+    told(view)
+
+  private def look(note: Note.Look): Unit =
+    import note.{reading, vehicle}
+    if readings(vehicle).isUsed(reading) then
+      operation(
+        LOOK,
+        vehicle,
+        readings(vehicle).take(reading),
+        if decidedUpon(vehicle)(reading) then 1 else 0
+      )
+      happens(vehicle, note.atS, acts = false)
+
+  private def decide(note: Note.Decide, at: Int): Unit =
+    import note.{before, vehicle}
+    operation(
+      DECIDE,
+      vehicle,
+      tell(note.view),
+      if vehicles == 2 then headings(1 - vehicle).place(note.opponent) else 0,
+      headings(vehicle).place(before),
+      // Taken before the one before is given back: its effort is counted from there.
+      headings(vehicle).take(before + 1)
+    )
+    took(
+      note.elapsedS,
+      note.ownAgeS,
+      if note.aheadS.isEmpty then note.opponentAgeS else note.atS,
+      note.aheadS.getOrElse(0)
+    )
+    releaseView(note.view, at)
+    headings(vehicle).release(before, at)
+    if vehicles == 2 then headings(1 - vehicle).release(note.opponent, at)
+    headings(vehicle).release(before + 1, at)
+
+  private def predict(note: Note.Predict, at: Int): Unit =
+    import note.{from, vehicle}
+    operation(
+      PREDICT,
+      vehicle,
+      readings(vehicle).place(from),
+      // Taken before the reading is given back: it is carried forward beside it.
+      readings(vehicle).take(note.reading),
+      placed
+    )
+    propagates(vehicle, note.way, at)
+    readings(vehicle).release(from, at)
+
+  private def enter(note: Note.Enter, at: Int): Unit =
+    import note.{from, reading, vehicle}
+    val before = if from > 0 then readings(vehicle).place(from) else -1
+    operation(ENTER, vehicle, before, readings(vehicle).place(reading), placed)
+    propagates(vehicle, note.way, at)
+    for each <- Seq(from, reading) if each > 0 do readings(vehicle).release(each, at)
+
+  /** Ends an operation that carries a vehicle on. */
+  private def propagates(vehicle: Int, way: Propagation, at: Int): Unit =
+    propagations += way.placed(headings(vehicle).place)
+    placed += 1
+    size += 1
+    for command <- way.commands if command > 0 do headings(vehicle).release(command, at)
+
+  private def act(note: Note.Act, at: Int): Unit =
+    import note.{decision, vehicle}
+    operation(ACT, vehicle, headings(vehicle).place(decision))
+    happens(vehicle, note.atS, acts = true)
+    headings(vehicle).release(decision, at)
+
+  private def expose(note: Note.Expose, at: Int): Unit =
+    operation(EXPOSE, note.vehicle, tell(note.view), note.image % ImageTiming.Ring)
+    took(note.atS, note.bearingError, note.rangeError, if note.isFound then 1 else 0)
+    releaseView(note.view, at)
+
+  private def join(note: Note.Join): Unit =
+    operation(
+      JOIN,
+      note.vehicle,
+      note.image % ImageTiming.Ring,
+      if note.isOlder then 1 else 0,
+      note.last.max(0) % ImageTiming.Ring
+    )
+    size += 1
+
+  private def score(note: Note.Score, at: Int): Unit =
+    operation(SCORE, 0, tell(note.view))
+    took(note.atS)
+    releaseView(note.view, at)
+
+  private def operation(
+      kind: Int,
+      agent: Int,
+      a: Int,
+      b: Int = 0,
+      c: Int = 0,
+      d: Int = 0
+  ): Unit =
+    val at = size * Fields
+    operations(at) = kind; operations(at + 1) = agent
+    operations(at + 2) = a; operations(at + 3) = b; operations(at + 4) = c
+    operations(at + 5) = d
+
+  /** Ends an operation that happens to a vehicle. */
+  private def happens(vehicle: Int, atS: Double, acts: Boolean): Unit =
+    clocks(vehicle).tell(atS, acts, times, size * numbers)
+    size += 1
+
+  /** Ends another operation, with these numbers. */
+  private def took(first: Double, second: Double = 0, third: Double = 0, fourth: Double = 0): Unit =
+    val at = size * numbers
+    times(at) = first.toFloat; times(at + 1) = second.toFloat
+    times(at + 2) = third.toFloat; times(at + 3) = fourth.toFloat
+    size += 1
+
+/** Places for numbered things until their last use; as few as possible. */
+private final class ReusedPlaces(numbers: Int):
+  import ReusedPlaces.Released
+  private val lastUse = Array.fill(numbers)(-1)
+  private val placeOf = Array.ofDim[Int](numbers)
+  private val unused  = Array.ofDim[Int](numbers)
+  private var free    = 0
+  private var most    = 0
+
+  def size: Int = most
+
+  def isUsed(number: Int): Boolean = lastUse(number) >= 0
+
+  def usedAt(number: Int, at: Int): Unit = lastUse(number) = at
+
+  def place(number: Int): Int = placeOf(number)
+
+  def take(number: Int): Int =
+    if free > 0 then
+      free -= 1
+      placeOf(number) = unused(free)
+    else
+      placeOf(number) = most
+      most += 1
+    placeOf(number)
+
+  /** Gives the place back if this was its last use. */
+  def release(number: Int, at: Int): Unit =
+    if lastUse(number) == at then
+      unused(free) = placeOf(number)
+      free += 1
+      // Two agents may have used it in the same event.
+      lastUse(number) = Released
+
+private object ReusedPlaces:
+  private val Released = Int.MaxValue

@@ -1,0 +1,77 @@
+package skein.lanes.timetable
+
+import java.util.Arrays
+import skein.forward.{Duelist, ImageTiming}
+import skein.lanes.policy.CameraTrackerLanes
+
+/** An eye in many worlds that take the same images at the same times, which a [[Timetable]] tells. Mutable.
+  */
+private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist)
+    extends CameraTrackerLanes(forms, own, opponent):
+  import CameraTrackerLanes.{Belief, Detection}
+  import TimetableAgents.WORLDS
+
+  private val images   = Array.fill(ImageTiming.Ring)(Array.emptyFloatArray)
+  private val validS   = Array.ofDim[Float](ImageTiming.Ring)
+  private var replayed = Array.ofDim[Float](Belief * WORLDS)
+
+  /** By world, whether an image shows the opponent: 1 or 0. */
+  protected def found(image: Int): Array[Float] = Arrays.copyOf(images(image), WORLDS)
+
+  /** Back to the start of an episode, of which the first worlds count. */
+  def start(worlds: Int): Unit =
+    use(worlds)
+    forget()
+
+  /** Takes an image.
+    *
+    * @param times from `at` on: when; the errors of the bearing and of the range; whether what is in view is
+    *   found
+    */
+  def expose(
+      image: Int,
+      ours: TimetableVehicles,
+      oursAt: Int,
+      theirs: TimetableVehicles,
+      theirsAt: Int,
+      times: Array[Float],
+      at: Int
+  ): Unit =
+    if images(image).length == 0 then images(image) = Array.ofDim[Float](Detection * WORLDS)
+    validS(image) = times(at)
+    Arrays.fill(bearing, times(at + 1))
+    Arrays.fill(range, times(at + 2))
+    detect(ours.seenX, ours.seenY, oursAt, theirs.seenX, theirs.seenY, theirsAt, images(image))
+    if times(at + 3) == 0 then Arrays.fill(images(image), 0, WORLDS, 0f)
+
+  /** What an image showed enters the belief.
+    *
+    * @param isOlder whether it was taken before the one that entered last
+    */
+  def join(image: Int, isOlder: Boolean, last: Int): Unit =
+    if isOlder then
+      step(before, image, replayed)
+      step(replayed, last, newest)
+      val free = before
+      before = replayed
+      replayed = free
+    else
+      val free = before
+      before = newest
+      newest = free
+      step(before, image, newest)
+
+  private def step(from: Array[Float], image: Int, into: Array[Float]): Unit =
+    Arrays.fill(takenS, validS(image))
+    join(from, images(image), into)
+
+  /** Tells what is decided upon, and turns the camera there.
+    *
+    * @param nowS since the start
+    * @param aheadS see [[skein.fusion.SensorFormulas.decidedUpon]]
+    */
+  def look(ours: TimetableVehicles, oursAt: Int, nowS: Float, aheadS: Float): Unit =
+    Arrays.fill(this.nowS, nowS)
+    Arrays.fill(this.aheadS, aheadS)
+    decideUpon(ours.seenX, oursAt, ours.seenY, oursAt)
+    System.arraycopy(newAxis, 0, axis, 0, WORLDS)

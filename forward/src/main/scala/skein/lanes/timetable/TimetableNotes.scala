@@ -1,0 +1,153 @@
+package skein.lanes.timetable
+
+import java.util.Arrays
+import scala.collection.mutable
+import skein.forecast.{Forecast, Leg}
+import skein.forward.{Grounds, LoopObserver}
+import skein.fusion.{Exposure, SensorModel}
+import skein.units.Instant
+
+/** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle.
+  */
+private[lanes] final class TimetableNotes(
+    vehicles: Int,
+    model: TimetableDynamics,
+    eyes: Map[Int, SensorModel]
+) extends LoopObserver:
+  val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
+
+  /** By vehicle: the readings that entered the forecast. */
+  private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
+
+  // What was predicted last: of which forecast, for a decision when, in which view.
+  private var predictedOf: Forecast = null
+  private var predictedAtNs         = 0L
+  private var predicted             = 0
+
+  /** By vehicle: how many there are, of what is predicted too. */
+  val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
+
+  /** By view, then by vehicle: the readings' numbers. */
+  val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
+
+  private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
+  private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
+  private val placed     = Array.ofDim[Int](vehicles)
+
+  private def look(vehicle: Int, timeS: Double): Int =
+    looks(vehicle) += 1
+    all += Note.Look(vehicle, timeS, looks(vehicle))
+    looks(vehicle)
+
+  /** Several decide upon one view, one after the other. */
+  private def viewOf(seen: Array[Int]): Int =
+    if views.isEmpty || !Arrays.equals(views.last, seen) then views += seen
+    views.size - 1
+
+  override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
+    val seen = readingOf(vehicle)
+    while seen.size <= question do seen += 0
+    seen(question) = look(vehicle, atNs * 1e-9)
+
+  override def entered(
+      vehicle: Int,
+      question: Int,
+      atNs: Long,
+      validAtNs: Long,
+      legs: => Vector[Leg]
+  ): Unit =
+    for predictor <- model.predictor do
+      val reading    = readingOf(vehicle)(question)
+      val before     = entered(vehicle).lastOption
+      val flown      = before.fold(Vector.empty)(_ => legs.map(plotted(vehicle, _)))
+      val propagator = before.fold(predictor.propagator)(_.propagator.next(flown))
+      if predictor.remembers then
+        val way = before.fold(Propagation.Nothing)(_.propagator.predicted(flown))
+        all += Note.Enter(vehicle, atNs * 1e-9, reading, before.fold(0)(_.reading), way)
+      entered(vehicle) += Entered(reading, validAtNs, propagator)
+
+  /** The reading that a forecast starts from. */
+  private def newest(vehicle: Int, forecast: Forecast): Entered =
+    val validAt = forecast.tracks(vehicle).get.newest.validAt.toNanos
+    entered(vehicle).findLast(_.validAtNs == validAt).get
+
+  private def plotted(vehicle: Int, leg: Leg): Propagator.Leg =
+    Propagator.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
+
+  /** The view of where all vehicles will be when a command acts that is sent now. */
+  private def predict(forecast: Forecast, atNs: Long): Int =
+    if (forecast ne predictedOf) || atNs != predictedAtNs then
+      predictedOf = forecast
+      predictedAtNs = atNs
+      val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
+      predicted = viewOf(Array.tabulate(vehicles): vehicle =>
+        val start = newest(vehicle, forecast)
+        looks(vehicle) += 1
+        val way = start.propagator.predicted(legs(vehicle).map(plotted(vehicle, _)))
+        all += Note.Predict(vehicle, atNs * 1e-9, looks(vehicle), start.reading, way)
+        looks(vehicle))
+    predicted
+
+  override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: Grounds): Unit =
+    val seen = upon.forecast match
+      case Some(forecast) => predict(forecast, atNs)
+      case None           => viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
+    def ageS(of: Int) = (atNs - upon.validAtNs(of)) * 1e-9
+    def aheadS        = upon.forecast.fold(-1.0): forecast =>
+      val now = Instant.ofNanos(atNs)
+      forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
+    val opponent = Option.when(vehicles == 2)(1 - vehicle)
+    all += Note.Decide(
+      vehicle,
+      atNs * 1e-9,
+      seen,
+      decisions(vehicle),
+      elapsed,
+      opponent.fold(0)(upon.sentDecision),
+      opponent.fold(0.0)(_ => ageS(vehicle)),
+      opponent.fold(0.0)(ageS),
+      Option.when(eyes.contains(vehicle))(aheadS)
+    )
+    decisions(vehicle) += 1
+
+  /** Of each vehicle's images. */
+  private val orders = Array.fill(vehicles)(ImageOrder())
+
+  override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
+    val seen = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
+    all += Note.Expose(
+      vehicle,
+      atNs * 1e-9,
+      seen,
+      number,
+      SensorModel.normal(image.bearing),
+      SensorModel.normal(image.range),
+      image.found < eyes(vehicle).detection
+    )
+    orders(vehicle).taken(number, atNs)
+
+  override def recognised(vehicle: Int, image: Int, atNs: Long): Unit =
+    val order = orders(vehicle)
+    order.known(image)
+    all += Note.Join(vehicle, atNs * 1e-9, image, order.isOlder, order.last)
+
+  override def commanded(
+      vehicle: Int,
+      number: Int,
+      atNs: Long,
+      headingRad: Double,
+      speedMps: Double
+  ): Unit = decisionOf(vehicle) += decisions(vehicle)
+
+  override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
+    all += Note.Act(vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
+
+  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+    placed(vehicle) = look(vehicle, timeS)
+    if vehicle == vehicles - 1 then all += Note.Score(timeS, viewOf(placed.clone))
+
+/** A reading in the forecast.
+  *
+  * @param propagator for what is predicted from it
+  */
+private final case class Entered(reading: Int, validAtNs: Long, propagator: Propagator)

@@ -1,0 +1,42 @@
+package skein.lanes.timetable
+
+import java.util.Arrays
+import skein.forward.Duelist
+import skein.lanes.plant.{PlantLanes, StagedFlight}
+import skein.lanes.policy.Directions
+
+/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock tells how many steps end before a moment, and
+  * by the numbers of [[skein.lanes.plant.PlantStages]] how long it is after the last of these. The scalar
+  * reference is `skein.forward.PlantVehicle`.
+  */
+private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
+    extends TimetableVehicles(duelist):
+  import TimetableVehicles.WORLDS
+  private val flight      = StagedFlight(lanes, duelist.speed, startX, startY)
+  private val resting     = lanes.resting
+  private var isCommanded = false
+
+  def start(worlds: Int): Unit =
+    flight.use(worlds)
+    isCommanded = false
+
+  def rest(world: Int): Unit = flight.rest(world)
+
+  def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
+    if isCommanded then
+      flight.flyTo(times, at)
+      flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
+    else
+      for world <- 0 until WORLDS do
+        seenX(into + world) = startX(world) + resting.northM.toFloat
+        seenY(into + world) = startY(world) + resting.eastM.toFloat
+      Arrays.fill(seenVx, into, into + WORLDS, resting.northMps.toFloat)
+      Arrays.fill(seenVy, into, into + WORLDS, resting.eastMps.toFloat)
+
+  def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
+    if isCommanded then
+      flight.flyTo(times, at)
+      flight.act(commanded, from)
+    else
+      flight.begin(commanded, from)
+      isCommanded = true

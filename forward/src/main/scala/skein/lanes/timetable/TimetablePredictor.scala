@@ -1,0 +1,17 @@
+package skein.lanes.timetable
+
+import skein.forward.Duelist
+
+/** A kind of model that carries readings forward by [[Timetable]]s. */
+private[skein] trait TimetablePredictor:
+  /** Of one vehicle at its first reading. */
+  def propagator: Propagator
+
+  /** All worlds' predictions of one vehicle. */
+  def vehicles(duelist: Duelist): PredictedVehicles
+
+  /** Whether readings do not tell all that is known of a vehicle. */
+  def remembers: Boolean = false
+
+  /** From a command's arrival until a vehicle is taken to follow it, s. */
+  def deadTimeS: Double

@@ -1,0 +1,73 @@
+package skein.lanes.timetable
+
+import skein.formula.Trace
+import skein.forward.Duelist
+import skein.lanes.plant.LaneQuadrotors
+import skein.lanes.policy.Directions
+import skein.simd.{BoundFunction, LaneCall}
+
+/** Quadrotors with their flight controllers: they fly in whole steps, a command acts from the first step
+  * after it on, and between two steps a vehicle is carried on at constant acceleration. Their clock tells how
+  * many steps there are until a moment, and how long it is after the last of them. Positions are kept in
+  * frames with their origin at the start, where floats are finest. The scalar reference is
+  * `skein.forward.QuadrotorVehicle`.
+  */
+private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuadrotors)
+    extends TimetableVehicles(duelist):
+  import TimetableQuadrotors.*
+  import TimetableVehicles.WORLDS
+  private val hold     = flown.holdingAt(duelist.altitudeDownM)
+  private val carried  = Array.ofDim[Float](2)
+  private val position = LaneCall(placed, carried)
+  private val velocity = LaneCall(moved, carried)
+
+  def start(worlds: Int): Unit =
+    flown.use(worlds)
+    position.use(worlds)
+    velocity.use(worlds)
+    for world <- 0 until WORLDS do rest(world)
+
+  def rest(world: Int): Unit = flown.hover(world, hold)
+
+  def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
+    flown.fly(times(at).toInt)
+    val sinceS = times(at + 1)
+    carried(0) = sinceS
+    carried(1) = sinceS * sinceS / 2
+    look(flown.X, flown.VX, flown.AX, startX, seenX, into)
+    look(flown.Y, flown.VY, flown.AY, startY, seenY, into)
+    if withVelocity then
+      lookAtVelocity(flown.VX, flown.AX, seenVx, into)
+      lookAtVelocity(flown.VY, flown.AY, seenVy, into)
+
+  private def look(x: Int, v: Int, a: Int, start: Array[Float], seen: Array[Float], into: Int): Unit =
+    position.input(0, flown.state, a)
+    position.input(1, flown.state, v)
+    position.input(2, flown.state, x)
+    position.input(3, start, 0)
+    position.output(0, seen, into)
+    position()
+
+  private def lookAtVelocity(v: Int, a: Int, seen: Array[Float], into: Int): Unit =
+    velocity.input(0, flown.state, a)
+    velocity.input(1, flown.state, v)
+    velocity.output(0, seen, into)
+    velocity()
+
+  def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
+    flown.fly(times(at).toInt)
+    flown.command(commanded, from, duelist.speed.toFloat, duelist.altitudeDownM.toFloat)
+
+private[lanes] object TimetableQuadrotors:
+  private val trace = Trace()
+  import trace.{add, input, mul, param}
+
+  /** Acceleration, velocity, place and start; parameters are the time since the last step and half its
+    * square.
+    */
+  val placed: BoundFunction = BoundFunction.of(
+    Vector(add(add(add(mul(input(0), param(1)), mul(input(1), param(0))), input(2)), input(3)))
+  )
+
+  /** Acceleration and velocity. */
+  val moved: BoundFunction = BoundFunction.of(Vector(add(mul(input(0), param(0)), input(1))))

@@ -1,0 +1,44 @@
+package skein.lanes.timetable
+
+import skein.lanes.policy.LaneObservation
+import skein.simd.{BoundFunction, LaneCall, LaneFunction}
+
+/** A function of what a view shows, and of other numbers that stay where they are.
+  *
+  * @param parameters read at each call
+  */
+private[lanes] final class ViewCall(
+    bound: BoundFunction,
+    lanes: Int => Option[(Int, Int)],
+    parameters: Array[Float] = Array.emptyFloatArray
+):
+  val call: LaneCall = LaneCall(bound, parameters)
+
+  // The function's inputs that are read from views, with the vehicle and the field.
+  private val (places, vehicles, fields) =
+    bound.inputs.zipWithIndex
+      .flatMap((input, place) => lanes(input).map((vehicle, field) => (place, vehicle, field)))
+      .unzip3
+
+  /** What a vehicle shows of a field stands here from now on. */
+  def show(vehicle: Int, field: Int, array: Array[Float], from: Int): Unit =
+    for i <- places.indices if vehicles(i) == vehicle && fields(i) == field do
+      call.input(places(i), array, from)
+
+  /** The same of all fields, one behind the other. */
+  def show(vehicle: Int, array: Array[Float], from: Int): Unit =
+    for field <- 0 until LaneObservation.READ do
+      show(vehicle, field, array, from + field * LaneFunction.COUNT)
+
+  def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
+    var i = 0
+    while i < places.length do
+      val vehicle = vehicles(i)
+      val body    = all(vehicle).vehicles
+      val from    = fields(i) match
+        case 0 => body.seenX
+        case 1 => body.seenY
+        case 2 => body.seenVx
+        case _ => body.seenVy
+      call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
+      i += 1

@@ -1,0 +1,47 @@
+package skein.simd
+
+import java.util.{Collections, WeakHashMap}
+import java.util.concurrent.CopyOnWriteArrayList
+import skein.formula.Untraceable
+
+/** What things of one kind were compiled to: each form once, for all threads.
+  *
+  * @param fits whether a thing is of a form
+  * @param mostRefused so many things are refused, and none accepted, before the next are refused unseen: to
+  *   compile takes milliseconds
+  * @param compile a thing's form, or why it has none
+  */
+private[skein] final class Forms[Of, Form](fits: (Form, Of) => Boolean, mostRefused: Int = Int.MaxValue)(
+    compile: Of => Either[Untraceable, Form]
+):
+  private val known = CopyOnWriteArrayList[Form]()
+
+  /** Of what was refused, a form is not known: something else of the same class may be a formula. */
+  private val refused  = Collections.synchronizedMap(WeakHashMap[Of, Untraceable]())
+  private var refusals = 0
+  private var last     = Option.empty[Untraceable]
+
+  def apply(of: Of): Either[Untraceable, Form] =
+    find(of).getOrElse(known.synchronized(find(of).orElse(refusedUnseen).getOrElse {
+      val made =
+        try compile(of)
+        catch case why: Untraceable => Left(why)
+      made match
+        case Right(form) => known.add(form): Unit
+        case Left(why)   =>
+          refusals += 1
+          last = Some(why)
+          refused.put(of, why): Unit
+      made
+    }))
+
+  private def refusedUnseen: Option[Either[Untraceable, Form]] =
+    last.filter(_ => refusals >= mostRefused && known.isEmpty).map(Left(_))
+
+  private def find(of: Of): Option[Either[Untraceable, Form]] =
+    var i = 0
+    while i < known.size do
+      val form = known.get(i)
+      if fits(form, of) then return Some(Right(form))
+      i += 1
+    Option(refused.get(of)).map(Left(_))
