@@ -4,8 +4,8 @@ import skein.measure.{Distribution, FlightSet, FlightSummary}
 import skein.plot.*
 
 /** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a
-  * panel stand mean and range of the last 10 s for each loop: ours as a coloured disc, the paper's as a black
-  * diamond.
+  * panel stand mean and range of the last 10 s for each curve in the legend's order: ours as a coloured disc,
+  * the paper's as a black diamond.
   */
 object DistanceFigure:
   private val plotWidth  = 830.0
@@ -15,13 +15,14 @@ object DistanceFigure:
   def apply(set: FlightSet): Option[Drawing] =
     val linksOfNote = set.links.filter(link => set.over(link).exists(flight => !set.truth.contains(flight)))
     val links       = if linksOfNote.nonEmpty then linksOfNote else set.links
+    val strokes     = FlightTheme.curves(set.flights)
     val panels      = links
       .map(link => (set.truth.toVector ++ set.over(link)).distinct.filter(_.distance.nonEmpty))
       .zip(links)
-      .collect { case (flights, link) if flights.nonEmpty => panel(link, flights) }
+      .collect { case (flights, link) if flights.nonEmpty => panel(link, flights, strokes) }
     Option.when(panels.nonEmpty)(Drawing.stacked(panels*))
 
-  private def panel(link: String, flights: Vector[FlightSummary]): Drawing =
+  private def panel(link: String, flights: Vector[FlightSummary], strokes: Map[String, Stroke]): Drawing =
     val curves    = flights.flatMap(summary => summary.distance.map(summary -> _))
     val published =
       flights.flatMap(summary => summary.published.flatMap(_.distance))
@@ -35,7 +36,7 @@ object DistanceFigure:
       plotHeight
     )
     val lines =
-      curves.map((summary, curve) => panel.curve(curve.points, FlightTheme.of(summary)))
+      curves.map((summary, curve) => panel.curve(curve.points, strokes(summary.name)))
     val stripsLeft  = panel.right + 17
     val stripsWidth = curves.size.max(5) * slotWidth
     val strips      = curves.zipWithIndex.flatMap:
@@ -52,7 +53,7 @@ object DistanceFigure:
       stripsLeft + stripsWidth + 50,
       plotHeight + 84,
       (title +: panel.axes) ++ heading ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++
-        lines ++ strips ++ legend(panel, flights)
+        lines ++ strips ++ Legend.above(panel, FlightTheme.names(flights, strokes)*)
     )
 
   private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Mark] =
@@ -71,6 +72,3 @@ object DistanceFigure:
         FlightTheme.diamond(Point(x + 5, panel.atY(published.mean)))
       )
     ours ++ paper
-
-  private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Mark] =
-    Legend.above(panel, FlightTheme.names(flights)*)

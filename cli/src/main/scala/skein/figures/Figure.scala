@@ -32,7 +32,7 @@ object Figure:
         "Prediction error",
         "Distance between where a vehicle was predicted to be and where it then was, " +
           "by how far its reading was carried forward, in bins of " +
-          s"${PredictionErrors.BinMs} ms; full lines are medians, dashed ones 95 % quantiles; " +
+          s"${PredictionErrors.BinMs} ms: medians and 95 % quantiles; " +
           s"bins with fewer than ${PredictionErrors.Fewest} predictions are left out.",
         drawing
       )
@@ -45,7 +45,7 @@ object Figure:
         "Distance over time",
         "Horizontal distance between pursuer and evader at equal instants of the " +
           "simulator's clock. Right of each panel, mean and range over the last 10 " +
-          "s: ours as coloured discs, the paper's as black diamonds.",
+          "s in the legend's order: ours as coloured discs, the paper's as black diamonds.",
         drawing
       )
 

@@ -22,14 +22,17 @@ object FlightTheme:
   val halo: Colour      = Colour(0xffffff)
   val evader: Colour    = Colour(0x8c8c8c)
 
-  /** A flight's curve: dashed where it was not flown with the paper's policies. */
-  def of(flight: FlightSummary, width: Double = 1.4): Stroke =
-    val solid = line(of(flight.flight.loop), width)
-    if flight.policy.isEmpty then solid else solid.copy(dash = Vector(6, 3))
+  /** The curves of flights that stand in one picture, by the flights' names: in the colours of their loops,
+    * each with dashes of its own, so that they are told apart without colours too.
+    */
+  def curves(flights: Vector[FlightSummary]): Map[String, Stroke] =
+    flights.distinctBy(_.name).zipWithIndex
+      .map((flight, index) => flight.name -> line(of(flight.flight.loop)).dashed(index))
+      .toMap
 
   /** Of flights' curves, each name once. */
-  def names(flights: Vector[FlightSummary]): Vector[Legend.Item] =
-    flights.distinctBy(_.name).map(flight => Legend.line(flight.name, of(flight, 2.2)))
+  def names(flights: Vector[FlightSummary], curves: Map[String, Stroke]): Vector[Legend.Item] =
+    flights.map(_.name).distinct.map(name => Legend.line(name, curves(name).copy(width = 2.2)))
 
   def line(colour: Colour, width: Double = 1.4): Stroke = Stroke(colour, width)
 

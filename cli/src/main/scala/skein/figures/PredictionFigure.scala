@@ -3,9 +3,9 @@ package skein.figures
 import skein.measure.{Distribution, PredictionErrors, PredictionGroup}
 import skein.plot.*
 
-/** Prediction error by how far readings were carried forward, a panel per loop and link: medians as full
-  * lines, 95 % quantiles dashed; of the deciding vehicle itself in colour, of others in grey. A line ends
-  * where nothing was measured, and what stands alone is a disc, of a 95 % quantile a hollow one.
+/** Prediction error by how far readings were carried forward, a panel per loop and link: medians and 95 %
+  * quantiles, each with dashes of its own; of the deciding vehicle itself in colour, of others in grey. A
+  * line ends where nothing was measured, and what stands alone is a disc, of a 95 % quantile a hollow one.
   */
 object PredictionFigure:
   val name = "prediction"
@@ -19,12 +19,17 @@ object PredictionFigure:
     ))
 
   /** Whose predictions. */
-  private final case class Kind(name: String, colour: Colour, of: PredictionGroup => PredictionErrors)
+  private final case class Kind(
+      name: String,
+      colour: Colour,
+      dashes: Int,
+      of: PredictionGroup => PredictionErrors
+  )
 
   /** In the order in which they are painted. */
   private val kinds = Vector(
-    Kind("others", FlightTheme.evader, _.others),
-    Kind("own vehicle", FlightTheme.of("predictive"), _.own)
+    Kind("others", FlightTheme.evader, 2, _.others),
+    Kind("own vehicle", FlightTheme.of("predictive"), 0, _.own)
   )
 
   /** What is drawn of the errors of one age. */
@@ -32,12 +37,14 @@ object PredictionFigure:
       name: String,
       ofM: Distribution => Double,
       width: Double,
-      dash: Vector[Double]
-  )
+      dashes: Int,
+      isHollow: Boolean
+  ):
+    def stroke(kind: Kind): Stroke = Stroke(kind.colour, width).dashed(kind.dashes + dashes)
 
   private val shares = Vector(
-    Share("median", _.median, 1.8, Vector.empty),
-    Share("95 %", _.quantile(0.95), 1.4, Vector(4.0, 2.5))
+    Share("median", _.median, 1.8, 0, isHollow = false),
+    Share("95 %", _.quantile(0.95), 1.4, 1, isHollow = true)
   )
 
   private def panel(group: PredictionGroup): Drawing =
@@ -59,17 +66,22 @@ object PredictionFigure:
       yield line(
         panel,
         stretch.map((age, errors) => (age.toDouble, 1000 * share.ofM(errors))),
-        Stroke(kind.colour, share.width, share.dash)
+        share.stroke(kind),
+        share.isHollow
       )
     val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
-  private def line(panel: Panel, points: Vector[(Double, Double)], stroke: Stroke): Mark = points match
-    case Vector((x, y)) if stroke.dash.isEmpty =>
-      Mark.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour))
-    case Vector((x, y)) =>
+  private def line(
+      panel: Panel,
+      points: Vector[(Double, Double)],
+      stroke: Stroke,
+      isHollow: Boolean
+  ): Mark = points match
+    case Vector((x, y)) if isHollow =>
       Mark.Disc(panel.at(x, y), 2.6, Some(Stroke(stroke.colour, 1.2)), Some(FlightTheme.halo))
-    case several => panel.curve(several, stroke)
+    case Vector((x, y)) => Mark.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour))
+    case several        => panel.curve(several, stroke)
 
   /** A row for each, so that it is no wider than a panel. */
   private def legend(kinds: Vector[Kind]): Drawing = Drawing.stacked(
@@ -77,7 +89,7 @@ object PredictionFigure:
       Legend(
         52,
         shares.map(share =>
-          Legend.line(s"${kind.name}, ${share.name}", Stroke(kind.colour, share.width, share.dash))
+          Legend.line(s"${kind.name}, ${share.name}", share.stroke(kind))
         )*
       )
     )*

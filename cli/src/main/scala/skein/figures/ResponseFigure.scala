@@ -5,16 +5,16 @@ import skein.plot.*
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** How a fitted model follows what was measured: per vehicle the velocity north and east, measured as dots
-  * and modelled as a line, and below what remains. The model flies from the first reading to the last, told
-  * nothing but the commands.
+  * and modelled as a line, east's dashed, and below what remains. The model flies from the first reading to
+  * the last, told nothing but the commands.
   */
 object ResponseFigure:
   private val width    = 620.0
   private val height   = 150.0
   private val residual = 70.0
 
-  private val north = Colour(0x0072b2)
-  private val east  = Colour(0xd55e00)
+  private val north = Stroke(Colour(0x0072b2), 1.1)
+  private val east  = Stroke(Colour(0xd55e00), 1.1).dashed(1)
 
   def apply(model: ObservedPlant[?], flights: Vector[TimeHistory]): Drawing =
     val panels = flights.filter(_.samples.sizeIs > 1).map(panel(model, _))
@@ -41,15 +41,15 @@ object ResponseFigure:
       Panel(time, PlotAxis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
     val shapes =
       for
-        (colour, measured, model) <- Vector(
+        (stroke, measured, model) <- Vector(
           (north, samples.map(_.vx), modelled.map(_._1)),
           (east, samples.map(_.vy), modelled.map(_._2))
         )
-        shape <- dots(top, samples.map(_.atS).zip(measured), colour) ++ Vector(
-          top.curve(samples.map(_.atS).zip(model), Stroke(colour, 1.1)),
+        shape <- dots(top, samples.map(_.atS).zip(measured), stroke.colour) ++ Vector(
+          top.curve(samples.map(_.atS).zip(model), stroke),
           below.curve(
             samples.map(_.atS).zip(measured.zip(model).map(_ - _)),
-            Stroke(colour.faded(0.8), 0.9)
+            stroke.copy(colour = stroke.colour.faded(0.8), width = 0.9)
           )
         )
       yield shape
@@ -79,8 +79,8 @@ object ResponseFigure:
       Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
     Legend(
       52,
-      dot("north, measured", north),
-      Legend.line("north, modelled", Stroke(north, 1.6)),
-      dot("east, measured", east),
-      Legend.line("east, modelled", Stroke(east, 1.6))
+      dot("north, measured", north.colour),
+      Legend.line("north, modelled", north.copy(width = 1.6)),
+      dot("east, measured", east.colour),
+      Legend.line("east, modelled", east.copy(width = 1.6))
     )

@@ -92,15 +92,22 @@ object ScenarioFigure:
     val links = flown.flights.filter(!flown.truth.contains(_)).map(_.summary.flight.link).distinct match
       case Vector() => flown.flights.map(_.summary.flight.link).distinct
       case others   => others
-    val panels = links.map: link =>
+    val strokes = FlightTheme.curves(flown.flights.map(_.summary))
+    val panels  = links.map: link =>
       panel(
         link,
         (flown.truth.toVector ++ flown.flights.filter(_.summary.flight.link == link)).distinct,
-        index
+        index,
+        strokes
       )
     Drawing.stacked(panels*)
 
-  private def panel(link: String, flights: Vector[ScenarioFlights.Flown], index: Int): Drawing =
+  private def panel(
+      link: String,
+      flights: Vector[ScenarioFlights.Flown],
+      index: Int,
+      strokes: Map[String, Stroke]
+  ): Drawing =
     def drawn(flight: ScenarioFlights.Flown): (Series, Curve) = flight.result.curves(index)
     val series                                                = drawn(flights.head)._1
     val bound                                                 = series.bound
@@ -116,7 +123,7 @@ object ScenarioFigure:
       plotHeight
     )
     val lines = flights.flatMap: flight =>
-      val stroke    = FlightTheme.of(flight.summary)
+      val stroke    = strokes(flight.summary.name)
       val stretches = drawn(flight)._2.stretches
       (stretches.headOption.map(_.dropWhile(_._2 > panel.y.to)) ++ stretches.drop(1))
         .filter(_.nonEmpty)
@@ -125,7 +132,9 @@ object ScenarioFigure:
           case several        => panel.curve(several, stroke)
     val held  = bound.map(bound => panel.level(bound.value, boundLine))
     val items =
-      FlightTheme.names(flights.map(_.summary)) ++ bound.map(bound => Legend.line(bound.name, boundLine))
+      FlightTheme.names(flights.map(_.summary), strokes) ++ bound.map(bound =>
+        Legend.line(bound.name, boundLine)
+      )
     Drawing(
       plotWidth + 76,
       plotHeight + 84,

@@ -7,15 +7,12 @@ import skein.scenario.Scenario
   */
 object VehicleTheme:
   /** Okabe and Ito's, as for the loops, and two of Tol's: here by what a vehicle is to the others. */
-  private val colours = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9).map(Colour(_))
-  private val lead    = Colour(0x404040)
-  private val dashes  =
-    Vector(Nil, Seq(7, 3), Seq(2, 2), Seq(8, 2, 2, 2), Seq(12, 4), Seq(6, 2, 2, 2, 2, 2))
-      .map(_.map(_.toDouble).toVector)
+  private val colours   = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9).map(Colour(_))
+  private val lead      = Colour(0x404040)
   private val lightness = Vector(1.0, 0.65, 0.4)
 
   /** As many lines as differ. */
-  private[figures] val Most: Int = colours.size * dashes.size * lightness.size
+  private[figures] val Most: Int = colours.size * Stroke.Dashes.size * lightness.size
 
   /** By vehicle. Grey is the first that is alone in its role among others; the rest take colours in turn,
     * then the colours again with dashes, then lighter.
@@ -32,7 +29,6 @@ object VehicleTheme:
   private def numbered(index: Int, width: Double): Stroke =
     val dash = index / colours.size
     Stroke(
-      colours(index % colours.size).tinted(lightness(dash / dashes.size % lightness.size)),
-      width,
-      dashes(dash % dashes.size)
-    )
+      colours(index % colours.size).tinted(lightness(dash / Stroke.Dashes.size % lightness.size)),
+      width
+    ).dashed(dash)

@@ -51,7 +51,23 @@ final case class Colour(rgb: Int, opacity: Double = 1):
   * @param width in the drawing's units
   * @param dash lengths of dash and gap; empty for a solid line
   */
-final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty)
+final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty):
+
+  /** With the dashes of this number; no two of [[Stroke.Dashes]] look alike without colours either. */
+  def dashed(number: Int): Stroke = copy(dash = Stroke.Dashes(number % Stroke.Dashes.size))
+
+object Stroke:
+  /** Solid first. */
+  val Dashes: Vector[Vector[Double]] = Vector(
+    Nil,
+    Seq(7, 3),
+    Seq(2, 2),
+    Seq(8, 2, 2, 2),
+    Seq(14, 4),
+    Seq(6, 2, 2, 2, 2, 2),
+    Seq(2, 5),
+    Seq(12, 3, 5, 3)
+  ).map(_.map(_.toDouble).toVector)
 
 /** The looks that all pictures share. */
 object Theme:

@@ -12,8 +12,10 @@ object Legend:
     */
   final case class Item(label: String, width: Double, mark: Point => Vector[Mark])
 
+  /** Dashed lines are as long as it takes to tell them apart. */
   def line(label: String, stroke: Stroke): Item =
-    Item(label, 20, at => Vector(Mark.line(at, at.moved(20, 0), stroke)))
+    val long = if stroke.dash.isEmpty then 20.0 else 30.0
+    Item(label, long, at => Vector(Mark.line(at, at.moved(long, 0), stroke)))
 
   def box(label: String, fill: Colour): Item =
     Item(label, 12, at => Vector(Mark.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))

@@ -30,18 +30,18 @@ object LearningCurve:
     val bands = scores.map: (_, colour, curve) =>
       val outline = curve.map(point(_, 1)) ++ curve.reverse.map(point(_, -1))
       Mark.Path(outline, None, Some(colour.faded(0.2)), closed = true)
-    val curves = scores.map: (_, colour, curve) =>
-      curve match
-        // A line would have no length.
-        case Vector(one) => Mark.Disc(point(one, 0), 4, None, Some(colour))
-        case several => panel.curve(several.map(score => (score.steps / 1e3, score.mean)), Stroke(colour, 2))
-    def dashed(colour: Colour) = Stroke(colour, 1.6, Vector(5, 3))
-    val lines                  = levels.map: (_, colour, level) =>
-      Mark.line(Point(panel.left, panel.atY(level)), Point(panel.right, panel.atY(level)), dashed(colour))
+    val strokes = (scores.map(_._2) ++ levels.map(_._2)).zipWithIndex
+      .map((colour, index) => Stroke(colour, 2).dashed(index))
+    val curves = scores.zip(strokes).map:
+      // A line would have no length.
+      case ((_, colour, Vector(one)), _) => Mark.Disc(point(one, 0), 4, None, Some(colour))
+      case ((_, _, several), stroke)     =>
+        panel.curve(several.map(score => (score.steps / 1e3, score.mean)), stroke)
+    val lines = levels.zip(strokes.drop(scores.size)).map:
+      case ((_, _, level), stroke) => panel.level(level, stroke)
     val legend = Legend(
       panel.left,
-      (scores.map((name, colour, _) => Legend.line(name, Stroke(colour, 2))) ++
-        levels.map((name, colour, _) => Legend.line(name, dashed(colour))))*
+      (scores.map(_._1) ++ levels.map(_._1)).zip(strokes).map(Legend.line(_, _))*
     )
     Drawing(
       panel.right + 40,

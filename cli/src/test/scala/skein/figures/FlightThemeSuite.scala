@@ -2,6 +2,7 @@ package skein.figures
 
 import skein.loop.LoopKind
 import skein.measure.{FlightSet, FlightSummary}
+import skein.plot.{Mark, Point}
 import skein.report.DuelReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
@@ -13,6 +14,16 @@ class FlightThemeSuite extends munit.FunSuite:
     val colours =
       LoopKind.values.toVector.map(loop => FlightTheme.of(loop.label)) :+ FlightTheme.of("a loop to come")
     assertEquals(colours.distinct.size, LoopKind.values.length + 1)
+
+  test("curves are told apart without colours: each has dashes of its own, the legend's are the same"):
+    val flights = LoopKind.values.toVector.map: loop =>
+      FlightSummary.of(SyntheticFlight(loop.label, "vpn", seed = 1, seconds = 12))
+    val all    = flights ++ flights.takeRight(2).map(_.copy(policy = Some("pure-pursuit")))
+    val curves = FlightTheme.curves(all)
+    assertEquals(all.map(flight => curves(flight.name).dash).distinct.size, 8)
+    val shown = FlightTheme.names(all, curves).flatMap(_.mark(Point(0, 0))).collect:
+      case Mark.Path(_, Some(stroke), _, _) => stroke.dash
+    assertEquals(shown, all.map(flight => curves(flight.name).dash))
 
   test("flights stand in the order of the loops, whatever order they came in"):
     val flights = LoopKind.values.reverse.toVector.filter(_ != LoopKind.Paused).map: loop =>
