@@ -1,6 +1,6 @@
 package skein.plot
 
-import java.util.Locale
+import skein.units.Decimals.fixed
 
 /** One axis: what it shows, from where to where, and where its marks stand. */
 final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector[Double]):
@@ -14,7 +14,7 @@ final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector
     val step     = if ticks.sizeIs > 1 then ticks(1) - ticks(0) else 1
     val decimals = math.ceil(-math.log10(step) - 1e-9).toInt.max(0)
     // Avoids a minus before zero.
-    String.format(Locale.ROOT, s"%.${decimals}f", if math.abs(tick) < step / 1e6 then 0.0 else tick)
+    (if math.abs(tick) < step / 1e6 then 0.0 else tick).fixed(decimals)
 
 object PlotAxis:
 

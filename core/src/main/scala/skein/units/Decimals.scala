@@ -4,6 +4,10 @@ import java.util.Locale
 
 /** Numbers in what Skein says: the same digits and the same point in every locale. */
 object Decimals:
+  /** From here on, and below the least, numbers are told as powers of ten. */
+  private[units] val MostInFull = 1e12
+  private val LeastInFull       = 1e-9
+
   /** `1 flight`, `2 flights`.
     *
     * @param one of them
@@ -11,21 +15,29 @@ object Decimals:
   def counted(count: Long, one: String): String = if count == 1 then s"1 $one" else s"$count ${one}s"
 
   extension (number: Double)
-    /** With so many digits behind the point. */
-    def fixed(decimals: Int): String = String.format(Locale.ROOT, s"%.${decimals}f", number)
+    /** With so many digits behind the point; very large numbers, of up to 309 digits, as powers of ten. */
+    def fixed(decimals: Int): String =
+      if number.abs < MostInFull then String.format(Locale.ROOT, s"%.${decimals}f", number)
+      else significant(4)
 
     /** The same, at least so wide, for columns. */
     def fixed(decimals: Int, width: Int): String =
-      String.format(Locale.ROOT, s"%${width}.${decimals}f", number)
+      val text = fixed(decimals)
+      " " * (width - text.length) + text
 
-    /** With its sign, and so many digits behind the point. */
-    def signed(decimals: Int): String = String.format(Locale.ROOT, s"%+.${decimals}f", number)
+    /** The same, with its sign. */
+    def signed(decimals: Int): String =
+      val text = fixed(decimals)
+      if number.isNaN || text.startsWith("-") then text else s"+$text"
 
     /** Ten and more without decimals, less with one, small ones with two. */
     def brief: String =
       number.fixed(if number.abs >= 9.95 || number == 0 then 0 else if number.abs >= 0.95 then 1 else 2)
 
-    /** With so many significant digits at most. */
+    /** With so many significant digits at most; very large and very small numbers as powers of ten. */
     def significant(digits: Int): String =
       if number == 0 || !number.isFinite then number.toString
-      else java.math.BigDecimal(number).round(java.math.MathContext(digits)).stripTrailingZeros.toPlainString
+      else
+        val rounded = java.math.BigDecimal(number).round(java.math.MathContext(digits)).stripTrailingZeros
+        if number.abs < MostInFull && number.abs > LeastInFull then rounded.toPlainString
+        else rounded.toString.replace("E+", "e").replace("E", "e")

@@ -9,11 +9,12 @@ final case class Interval(mean: String, half: String):
 
 object Interval:
   /** The half width with two significant digits, the mean to the same decimal place. Where the half width is
-    * 0 or not a number, the mean has up to four significant digits.
+    * 0 or not a number, or either is very large, the mean has up to four significant digits.
     */
   def of(mean: Double, half: Double): Interval =
     if half == 0 then Interval(mean.significant(4), "0")
-    else if !mean.isFinite || !half.isFinite then Interval(mean.significant(4), half.significant(2))
+    else if !(mean.abs < Decimals.MostInFull && half < Decimals.MostInFull) then
+      Interval(mean.significant(4), half.significant(2))
     else
       val rounded  = BigDecimal(half).round(twoDigits)
       val decimals = rounded.scale + 2 - rounded.precision

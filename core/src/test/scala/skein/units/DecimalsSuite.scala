@@ -1,6 +1,6 @@
 package skein.units
 
-import skein.units.Decimals.{brief, signed}
+import skein.units.Decimals.{brief, fixed, significant, signed}
 
 class DecimalsSuite extends munit.FunSuite:
 
@@ -15,4 +15,21 @@ class DecimalsSuite extends munit.FunSuite:
     assertEquals(Seq(9.95, 0.95, -9.95, -0.95).map(_.brief), Seq("10", "1.0", "-10", "-1.0"))
 
   test("signed numbers say their sign"):
-    assertEquals(Seq(1.25, 0.0, -3.04).map(_.signed(1)), Seq("+1.3", "+0.0", "-3.0"))
+    assertEquals(
+      Seq(1.25, 0.0, -0.0, -3.04, Double.NaN).map(_.signed(1)),
+      Seq("+1.3", "+0.0", "-0.0", "-3.0", "NaN")
+    )
+
+  test("numbers of hundreds of digits are powers of ten"):
+    assertEquals(
+      Seq(1.23456e300, -2.5e12, 999e9).map(_.fixed(2)),
+      Seq("1.235e300", "-2.5e12", "999000000000.00")
+    )
+    assertEquals(Seq(1e300, 0.0).map(_.fixed(0, width = 7)), Seq("  1e300", "      0"))
+    assertEquals((1e300.signed(1), (-1e300).signed(1), 1e300.brief), ("+1e300", "-1e300", "1e300"))
+    val numbers = Seq(1e300, 1.23456e300, -4e12, 2e-300, 3e-9, 250000, 0)
+    assertEquals(
+      numbers.map(_.significant(3)),
+      Seq("1e300", "1.23e300", "-4e12", "2e-300", "0.000000003", "250000", "0.0")
+    )
+    assertEquals(Seq(Double.NaN, Double.NegativeInfinity).map(_.fixed(2)), Seq("NaN", "-Infinity"))

@@ -27,7 +27,8 @@ class IntervalSuite extends munit.FunSuite:
       )
     )
 
-  test("without a half width, or with none that is finite, the mean has up to four digits"):
+  test("without a half width, or with none that is finite, or a huge one, the mean has up to four digits"):
+    assertEquals(Interval.of(8.31649e300, 1.25e298).text, "8.316e300 ± 1.3e298")
     assertEquals(Interval.of(8.31049, 0).text, "8.31 ± 0")
     assertEquals(Interval.of(8.31649, Double.PositiveInfinity).text, "8.316 ± Infinity")
     assertEquals(Interval.of(Double.NaN, 1.25).text, "NaN ± 1.3")
