@@ -1,6 +1,6 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSummary}
+import skein.measure.{DistanceCurve, Distribution, FlightSummary, Truth}
 import skein.units.Decimals.{fixed, signed}
 
 /** How much a loop's result varies from flight to flight. */
@@ -8,18 +8,12 @@ object SpreadTable:
 
   /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of
     * the mean distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the
-    * closest approach, in how many flights it was a capture, and the deviation from the paused truth of the
-    * same policies where it was flown too. Where a loop and link gave no distance, since a vehicle was never
-    * read, the flights are counted alone.
+    * closest approach, in how many flights it was a capture, and the mean deviation from the [[Truth]]. Where
+    * a loop and link gave no distance, since a vehicle was never read, the flights are counted alone.
     */
   def of(flights: Seq[FlightSummary]): TextTable =
     val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
     val order  = flights.map(summary => (summary.name, summary.flight.link)).distinct
-    val truths =
-      for
-        (policy, paused) <- flights.filter(_.flight.isPaused).groupBy(_.policy)
-        distance         <- meanDistance(paused)
-      yield policy -> distance.mean
     TextTable(
       Vector(
         "<loop",
@@ -52,9 +46,8 @@ object SpreadTable:
           metres(within, _.mean),
           metres(closest, _.mean),
           closest.fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString),
-          (mean zip truths.get(groups(group).head.policy)).fold("")((distance, truth) =>
-            s"${(100 * (distance.mean / truth - 1)).signed(1)} %"
-          )
+          Distribution.of(groups(group).flatMap(Truth.deviation(_, flights)))
+            .fold("")(share => s"${(100 * share.mean).signed(1)} %")
         )
     )
 
