@@ -45,7 +45,29 @@ final case class ColourScale(
       .map(tick => text(tick, axis.text(tick)))
     boxes ++ ticks ++ ends.map(_._2) :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize)
 
+  /** An error bar for beside [[bar]], around its middle, no longer than it; none where all has one colour.
+    *
+    * @param off how far values are off to either side
+    */
+  def errorBar(x: Double, top: Double, bottom: Double, off: Double, stroke: Stroke): Vector[Mark] =
+    if !(to > from) then Vector.empty
+    else
+      ColourScale.errorBar(
+        Point(x, (top + bottom) / 2),
+        (bottom - top) * (off / (to - from)).min(0.5),
+        stroke
+      )
+
 object ColourScale:
+  /** An upright one.
+    *
+    * @param off half its length
+    */
+  def errorBar(middle: Point, off: Double, stroke: Stroke): Vector[Mark] =
+    def cap(at: Point) = Mark.line(at.moved(-3, 0), at.moved(3, 0), stroke)
+    val (low, high)    = (middle.moved(0, off), middle.moved(0, -off))
+    Vector(Mark.line(low, high, stroke), cap(low), cap(high))
+
   enum End:
     case Low, High
 

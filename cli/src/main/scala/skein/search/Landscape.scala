@@ -1,5 +1,6 @@
 package skein.search
 
+import skein.measure.Distribution
 import skein.optimise.{Evaluator, RunningStats}
 import skein.policy.SearchSpace
 
@@ -18,6 +19,13 @@ final case class Landscape(
     ys: Vector[Double],
     cells: Vector[Vector[RunningStats]]
 ):
+
+  /** The median of the cells' standard errors: so much do means differ by chance alone, or less where their
+    * episodes' chances move them alike.
+    */
+  def standardError: Double =
+    Distribution.of(cells.flatten.map(tally => tally.sd / math.sqrt(tally.count)).filter(_.isFinite))
+      .fold(0.0)(_.median)
 
   /** One row per cell; a header with the axes' names. */
   def csv: String =

@@ -5,7 +5,8 @@ import skein.plot.*
 import skein.units.Decimals.significant
 
 /** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found
-  * candidate marked, and the defaults.
+  * candidate marked, and the defaults. Beside a map's colours stands the standard error of a cell, since pure
+  * noise has all the colours too.
   */
 object LandscapeFigure:
   private val width  = 560.0
@@ -13,6 +14,7 @@ object LandscapeFigure:
   private val line   = Colour(0x0072b2)
   private val found  = Colour(0xd55e00)
   private val plain  = Colour(0x111111)
+  private val error  = Stroke(plain, 1.2)
 
   /** @param value what the objective is, with its unit, for the axis or the scale
     * @param direction where the objective is to go
@@ -90,7 +92,8 @@ object LandscapeFigure:
     val legend = Legend(
       panel.left,
       named("found", found),
-      named("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain)
+      named("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain),
+      Legend.Item("± standard error", 6, at => ColourScale.errorBar(at.moved(3, 0), 6, error))
     )
     Drawing(
       panel.right + 120,
@@ -100,6 +103,7 @@ object LandscapeFigure:
         legend.shapes.map(_.moved(0, panel.top - 30)) ++
         heat.cells(panel, scale) ++
         scale.bar(panel.right + 24, panel.top, panel.bottom, value) ++
+        scale.errorBar(panel.right + 16, panel.top, panel.bottom, landscape.standardError, error) ++
         panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
     )
 

@@ -1,7 +1,7 @@
 package skein.search
 
 import skein.optimise.{Direction, Evaluator, RunningStats}
-import skein.plot.{ColourScale, Mark}
+import skein.plot.{Colour, ColourScale, Mark, Stroke}
 import skein.policy.{Axis, SearchSpace}
 import skein.testing.Optimised
 
@@ -60,6 +60,26 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assert(
       Set("title", "turn rate, rad/s", "lead", "at the best: capture radius = 1.5 m").subsetOf(texts.toSet),
       texts
+    )
+
+  test("beside a map's colours stands the standard error: of pure noise a good part of the scale"):
+    val random = java.util.SplittableRandom(1)
+    val noise  = at(2).copy(
+      xs = Vector.tabulate(21)(_ / 10.0),
+      ys = Vector.tabulate(21)(_ / 10.0),
+      cells = Vector.fill(21, 21)(RunningStats.of(16)(Vector.fill(16)(random.nextDouble())))
+    )
+    // A uniform number's standard deviation is 1/√12, and a quarter of it that of the mean of 16.
+    assertEqualsDouble(noise.standardError, 1 / math.sqrt(12) / 4, 0.002)
+    val scale  = LandscapeScale.of(noise.cells.flatten.map(_.mean), Direction.Minimise)
+    val height = scale.errorBar(0, 0, 300, noise.standardError, Stroke(Colour(0), 1)).head match
+      case Mark.Path(Vector(low, high), _, _, _) => low.y - high.y
+      case other                                 => fail(s"expected a line, came $other")
+    assertEqualsDouble(height, 300 * 2 * noise.standardError / (scale.to - scale.from), 1e-9)
+    assert(height > 75, height)
+    assertEquals(
+      LandscapeScale.of(Vector(1, 1), Direction.Minimise).errorBar(0, 0, 9, 1, Stroke(Colour(0), 1)),
+      Vector.empty
     )
 
   test("parameters are called what they are, with their units"):
