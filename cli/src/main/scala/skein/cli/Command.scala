@@ -1,6 +1,7 @@
 package skein.cli
 
 import mainargs.{ArgSig, ParserForClass, Result, Util}
+import skein.policy.OwnFailure
 import skein.record.{ClockKind, LoopKind}
 import skein.report.TextTable
 
@@ -68,11 +69,17 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
           Console.err.println(s"skein $name: --help tells the options")
           2
         case Result.Success(options) =>
-          OutFolder.unlessRefused(execute(options)) match
+          OutFolder.unlessRefused(done(options)) match
             case Right(())    => 0
             case Left(reason) =>
               Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
               1
+
+  /** What code of the user's own threw is bad input. */
+  private def done(options: A): Either[String, Unit] =
+    try execute(options)
+    catch
+      case error: Throwable => Left(OwnFailure.behind(error).fold(throw error)(_.getMessage))
 
   /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the
     * first word without a dash for such words.

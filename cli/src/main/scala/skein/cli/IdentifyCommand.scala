@@ -6,6 +6,7 @@ import skein.forecast.Structure
 import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.{FlownVehicles, RecordedSeeing}
+import skein.policy.OwnFailure
 import skein.record.{Digest, Recording, RecordingReader}
 import skein.report.{Section, TextTable, Typed}
 import skein.scenario.{PaperDuel, Scenarios}
@@ -148,9 +149,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
     try Identification.of(flights, structure, horizonS)
     catch
       case failed: RuntimeException if !Structure.ours.contains(structure) =>
-        Left(
-          s"its plant failed: $failed, at ${failed.getStackTrace.headOption.getOrElse("an unknown place")}"
-        )
+        Left(s"its plant failed: ${OwnFailure.text(failed)}")
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =

@@ -1,9 +1,10 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
+import skein.policy.Agent
 import skein.record.MemoryRecorder
 import skein.report.DuelReport
-import skein.scenario.Scenarios
+import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
 import skein.testing.TemporaryFolders
 
 /** What is wrong is told in a line, before anything long is begun. */
@@ -31,6 +32,19 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     for command <- commands do
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
+
+  folder.test("what a scenario's own code throws is told in a line, and leaves no folder"): path =>
+    final case class Broken(where: String = "") extends Scenario:
+      def agents: Vector[Agent] =
+        if where == "agents" then throw IllegalStateException("nobody") else PaperDuel().agents
+    object Program extends SkeinApp(ScenarioKind(Broken()))
+    val ran = Ran.of(Program.run(Seq("fly", "--set", "where=agents", "--out", s"$path/out")))
+    assertEquals(ran.status, 1)
+    assert(clue(ran.said).matches(
+      "skein fly: the scenario broken failed: java.lang.IllegalStateException: nobody " +
+        "\\(BadInputSuite.scala:\\d+\\)\n"
+    ))
+    assert(Files.notExists(path.resolve("out")))
 
   test("a folder of certificates without a name is refused, and so are more flights than can be kept"):
     assertRefused(ClusterCommand, Seq("certificates", ""), "certificates: expected a folder, came ''")

@@ -22,7 +22,9 @@ final case class Result(
       .value
 
 object Result:
-  def of(scenario: Scenario, tracks: Tracks): Result = Result(
+  /** @throws skein.policy.OwnFailure if the scenario's code throws
+    */
+  def of(scenario: Scenario, tracks: Tracks): Result = Scenario.told(scenario.name)(Result(
     scenario,
     tracks,
     scenario.measures.map(measure =>
@@ -30,7 +32,7 @@ object Result:
     ),
     scenario.series.map(series => (series, series.curve(tracks))),
     scenario.limits.flatMap(_.violations(tracks)).sortBy(_.fromS)
-  )
+  ))
 
 /** @param value absent where the flight has none
   * @param isTooShort whether the flight has no part that the measure is of, and so no value

@@ -1,7 +1,7 @@
 package skein.scenario
 
 import java.util.Locale
-import skein.policy.{Agent, Fleet, Seen}
+import skein.policy.{Agent, Fleet, OwnFailure, Seen}
 import skein.units.*
 
 /** A task for a fleet: who flies, what may not happen, what is measured, and when it ends. A case class; its
@@ -80,6 +80,12 @@ object Scenario:
   /** `OverTheRidge` as `over-the-ridge`. */
   private[scenario] def worded(name: String): String =
     name.replaceAll("(?<=.)([A-Z])", "-$1").toLowerCase(Locale.ROOT)
+
+  /** What a scenario's code answers, its mistakes told by its name.
+    *
+    * @throws OwnFailure if it throws
+    */
+  private[skein] def told[A](name: String)(answer: => A): A = OwnFailure.told(s"the scenario $name")(answer)
 
   /** Vehicles that no simulator can have, and no recording could hold. */
   private[scenario] def mistakeOfAgents(scenario: Scenario): Option[String] =

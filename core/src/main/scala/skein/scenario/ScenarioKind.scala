@@ -21,6 +21,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
   private val readers = settings.zip(standard.productIterator.map(Reader.of(name, _)))
 
   /** @param values settings by name; those that are missing have their defaults
+    * @throws skein.policy.OwnFailure if the scenario's code throws
     * @return or every mistake: what was expected, and what came
     */
   def read(values: Map[String, String]): Either[Seq[String], Scenario] =
@@ -37,10 +38,20 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
       .partitionMap(identity)
     if unknown.nonEmpty || wrong.nonEmpty then Left(unknown ++ wrong)
     else
-      val scenario = mirror.fromProduct(Tuple.fromArray(right.toArray))
-      val mistakes =
-        if scenario.mistakes.isEmpty then Scenario.mistakeOfAgents(scenario).toSeq else scenario.mistakes
-      Either.cond(mistakes.isEmpty, scenario, mistakes)
+      Scenario.told(name):
+        val scenario = mirror.fromProduct(Tuple.fromArray(right.toArray))
+        val mistakes =
+          if scenario.mistakes.isEmpty then Scenario.mistakeOfAgents(scenario).toSeq else scenario.mistakes
+        if mistakes.isEmpty then askedBeforeFlight(scenario)
+        Either.cond(mistakes.isEmpty, scenario, mistakes)
+
+  /** What fails shall fail before the flight. */
+  private def askedBeforeFlight(scenario: Scenario): Unit =
+    val _ = scenario.equipment
+    val _ = scenario.eyes
+    val _ = scenario.limits
+    val _ = scenario.series
+    val _ = scenario.measures
 
   /** @param parameters of a recording, by name. A setting that it does not have was added since, and takes its
     *   default

@@ -1,6 +1,6 @@
 package skein.scenario
 
-import skein.policy.{Agent, Role}
+import skein.policy.{Agent, OwnFailure, Role}
 import skein.units.*
 
 class ScenarioKindSuite extends munit.FunSuite:
@@ -80,6 +80,32 @@ class ScenarioKindSuite extends munit.FunSuite:
       mistake("north", "NaN"),
       Left("agents: expected finite numbers as a start, came NaN, 0.0, -10.0, of B")
     )
+
+  test("what a scenario's own code throws is told with its name and its line"):
+    final case class Broken(where: String = "") extends Scenario:
+      require(where != "constructor", "no such place")
+      private def mayFail(place: String): Unit = if where == place then sys.error(s"in $place")
+      private val apart         = Series("apart", "m")(_ => instant => { mayFail("series"); instant })
+      def agents: Vector[Agent] = { mayFail("agents"); PaperDuel().agents }
+      override def limits: Vector[Limit]     = { mayFail("limits"); Vector.empty }
+      override def series: Vector[Series]    = Vector(apart)
+      override def measures: Vector[Measure] = Vector(Measure("own", "")(_ => { mayFail("measure"); None }))
+    val broken                              = ScenarioKind(Broken())
+    def told(failing: => Any)               = intercept[OwnFailure](failing).getMessage
+    def isOf(text: String, mistake: String) =
+      assert(clue(
+        text
+      ).matches(s"the scenario broken failed: java.lang.$mistake \\(ScenarioKindSuite.scala:\\d+\\)"))
+    for place <- Seq("agents", "limits") do
+      isOf(told(broken.read(Map("where" -> place))), s"RuntimeException: in $place")
+    isOf(
+      told(broken.read(Map("where" -> "constructor"))),
+      "IllegalArgumentException: requirement failed: no such place"
+    )
+    val still  = Seq(Instant.Epoch, Instant.Epoch + Span.ofSeconds(1)).map((_, Vector3.Zero)).toVector
+    val tracks = Tracks.of(Vector(Track.ofPositions("One", "Scout", still))).get
+    for place <- Seq("series", "measure") do
+      isOf(told(Result.of(Broken(place), tracks)), s"RuntimeException: in $place")
 
   test("what cannot be flown is named by its setting"):
     assertEquals(

@@ -28,7 +28,10 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
       case reading: ReadingRow   => val _ = heard.updateAndGet(_.read(reading.vehicle, reading.state))
       case decision: DecisionRow =>
         val now = heard.updateAndGet(_.begun(decision.decidedAt))
-        for known <- now.known(names, decision.decidedAt, isPaused) if scenario.isOver(known) do
+        for
+          known <- now.known(names, decision.decidedAt, isPaused)
+          if Scenario.told(scenario.name)(scenario.isOver(known))
+        do
           val _ = over.trySuccess(())
       case _ => ()
 

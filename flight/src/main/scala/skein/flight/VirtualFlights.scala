@@ -8,6 +8,7 @@ import scala.concurrent.duration.*
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
 import skein.loop.{AnyLoop, FlightOutcome, LoopKind}
 import skein.measure.RecordedTracks
+import skein.policy.OwnFailure
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
@@ -171,8 +172,10 @@ object NotFlown:
   def message(missing: Seq[NotFlown], planned: Int): String =
     (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
 
-  /** What was thrown and where, and what caused it. */
-  private[skein] def trace(error: Throwable): String =
-    val text = StringWriter()
-    error.printStackTrace(PrintWriter(text))
-    text.toString.linesIterator.take(TraceLines).mkString("\n")
+  /** What was thrown and where, and what caused it; of code of the user's own in a line. */
+  private[skein] def trace(error: Throwable): String = OwnFailure.behind(error) match
+    case Some(failure) => failure.getMessage
+    case None          =>
+      val text = StringWriter()
+      error.printStackTrace(PrintWriter(text))
+      text.toString.linesIterator.take(TraceLines).mkString("\n")

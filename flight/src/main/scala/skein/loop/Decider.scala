@@ -23,7 +23,8 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
 
   /** Decides from a complete view.
     *
-    * @throws PolicyFailure if the policy throws, or answers with nothing that a vehicle could be told
+    * @throws skein.policy.OwnFailure if the policy throws, or answers with nothing that a vehicle could be
+    *   told
     * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
@@ -32,13 +33,13 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
     policy match
       case planar: PlanarPolicy =>
         val (chosen, held) =
-          PolicyFailure.told(agent)(planar.planar(seen, memory.held.asInstanceOf[planar.Memory]))
+          PolicyAnswer.of(agent)(planar.planar(seen, memory.held.asInstanceOf[planar.Memory]))
         val (next, decision) = decided(memory, view, now, chosen.heading.value, chosen.speed)
         (next.copy(held = held), decision)
       case _ =>
         val (action, held) =
-          PolicyFailure.told(agent)(policy.choose(seen, memory.held.asInstanceOf[policy.Memory]))
-        PolicyFailure.expectAction(agent, action)
+          PolicyAnswer.of(agent)(policy.choose(seen, memory.held.asInstanceOf[policy.Memory]))
+        PolicyAnswer.expectAction(agent, action)
         val (next, decision) =
           decided(
             memory,

@@ -63,8 +63,8 @@ private final class TeamPlanning(
     )
 
   private def placeWanted(request: TeamObservation, aheadS: Double): (Double, Double) =
-    val place = PolicyFailure.told(agent)(policy.wanted(request, aheadS))
-    PolicyFailure.expectAction(agent, place)
+    val place = PolicyAnswer.of(agent)(policy.wanted(request, aheadS))
+    PolicyAnswer.expectAction(agent, place)
     place
 
   /** After a longer pause the first turn is no sharper. */

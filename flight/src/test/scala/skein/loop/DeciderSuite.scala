@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, AgentPolicy, Observation, Yaw}
+import skein.policy.{Action, AgentPolicy, Observation, OwnFailure, Yaw}
 import skein.scenario.PaperDuel
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -57,7 +57,7 @@ class DeciderSuite extends munit.FunSuite:
       def start: Unit                                             = ()
       def choose(seen: Observation, memory: Unit): (Action, Unit) = (action, ())
     val decider = Decider(scenario, 1, Broken)
-    intercept[PolicyFailure](decider.decide(decider.start, view, millis(200))).getMessage
+    intercept[OwnFailure](decider.decide(decider.start, view, millis(200))).getMessage
 
   test("no vehicle is told an action with a number that is not finite"):
     val actions = Seq(

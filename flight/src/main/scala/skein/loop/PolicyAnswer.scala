@@ -1,0 +1,26 @@
+package skein.loop
+
+import skein.policy.{Agent, OwnFailure}
+
+/** What a vehicle's policy answers. */
+private object PolicyAnswer:
+
+  /** @throws OwnFailure if the policy throws, or answers null
+    */
+  def of[A](agent: Agent)(answer: => A): A =
+    Option(OwnFailure.told(whose(agent))(answer)).getOrElse(throw OwnFailure(whose(agent), "answered null"))
+
+  /** @param action or a place
+    * @throws OwnFailure if there is none, or a number in it is not finite
+    */
+  def expectAction(agent: Agent, action: Any): Unit =
+    if !isFinite(action) then
+      throw OwnFailure(whose(agent), s"decided for what no vehicle can do: $action")
+
+  private def whose(agent: Agent) = s"the policy of ${agent.name}"
+
+  private def isFinite(part: Any): Boolean = part match
+    case null           => false
+    case number: Double => number.isFinite
+    case parts: Product => parts.productIterator.forall(isFinite)
+    case _              => true
