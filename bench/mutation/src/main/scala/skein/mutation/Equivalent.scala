@@ -56,13 +56,6 @@ object Equivalent:
       "the sum of squares less the mean's is the same sum"
     ),
     Equivalent(
-      "SpreadTable.scala",
-      "truths.get(groups(group).head.policy)",
-      "head",
-      "last",
-      "a group's flights share their policy, which is in its name"
-    ),
-    Equivalent(
       "ScenarioTables.scala",
       "measures.head.measure.isCount",
       "head",
