@@ -4,6 +4,7 @@ import java.util.concurrent.ConcurrentLinkedDeque
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
+import skein.policy.OwnFailure
 
 /** Where a command's main thread waits for what runs asynchronously. */
 private[cli] object Edge:
@@ -18,11 +19,25 @@ private[cli] object Edge:
   def isInterrupted: Boolean = interrupted
 
   /** Runs `body`; if the program is ended from outside meanwhile, says so, and how far it was. */
-  def tellingIfCut[A](progress: => String)(body: => A): A =
-    val hook = Thread(() => Console.err.println(s"skein: ended from outside; $progress"))
+  def tellingIfCut[A](progress: => String)(body: => A): A = hooked(body):
+    val how = if exitedAt.isEmpty then "ended from outside; " else ""
+    Console.err.println(s"skein: $how$progress")
+
+  /** Runs `body`; if code of the user's own ends the program meanwhile, says so: nothing else would. */
+  def tellingExit[A](body: => A): A = hooked(body):
+    exitedAt.foreach(at => Console.err.println(s"skein: ended by System.exit in $at"))
+
+  private def hooked[A](body: => A)(atEnd: => Unit): A =
+    val hook = Thread(() => atEnd)
     val _    = added(hook)
     try body
     finally removeHook(hook)
+
+  /** Where a thread waits in `System.exit`, if one does: then nobody has ended the program from outside. */
+  private def exitedAt: Option[String] =
+    Thread.getAllStackTraces.asScala.values
+      .find(_.exists(frame => frame.getClassName == "java.lang.Runtime" && frame.getMethodName == "exit"))
+      .flatMap(OwnFailure.line(_))
 
   private val stops = ConcurrentLinkedDeque[() => Unit]()
 

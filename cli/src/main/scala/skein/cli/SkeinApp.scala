@@ -69,7 +69,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   )
 
   final def main(arguments: Array[String]): Unit =
-    val status = run(arguments.toSeq)
+    val status = Edge.tellingExit(run(arguments.toSeq))
     if !Edge.isInterrupted then
       sys.exit(if status == 0 then written(System.out, FileOutputStream(FileDescriptor.out)) else status)
 

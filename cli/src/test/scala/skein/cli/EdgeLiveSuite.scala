@@ -1,0 +1,21 @@
+package skein.cli
+
+import java.nio.file.Path
+
+/** Programs that end while they run: in other processes. */
+class EdgeLiveSuite extends munit.FunSuite:
+
+  test("where code of the user's own ends the program, that is said, and how far it was"):
+    val java    = Path.of(sys.props("java.home"), "bin", "java").toString
+    val words   = Seq(java, "-cp", sys.props("java.class.path"), "skein.cli.endsItself")
+    val process = ProcessBuilder(words*).redirectErrorStream(true).start()
+    val said    = String(process.getInputStream.readAllBytes()).linesIterator.toSet
+    assertEquals(process.waitFor(), 3)
+    assert(
+      clue(said).exists(_.matches("skein: ended by System.exit in EdgeLiveSuite.scala:\\d+")) &&
+        said.contains("skein: 1 of 2 flights have landed")
+    )
+    assertEquals(said.size, 2)
+
+@main def endsItself(): Unit =
+  Edge.tellingExit(Edge.tellingIfCut("1 of 2 flights have landed")(sys.exit(3)))
