@@ -47,10 +47,10 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
          |printf '"-javaagent:$agent"' >target/launch
          |""".stripMargin
     )
-    def builds(project: Path): Int =
-      val log = folder.resolve("log").toFile
-      val _   =
-        ProcessBuilder(s"$project/skein").redirectErrorStream(true).redirectOutput(log).start().waitFor()
+    def builds(project: Path, through: Option[Path] = None): Int =
+      val log     = folder.resolve("log").toFile
+      val started = through.getOrElse(project.resolve("skein"))
+      val _ = ProcessBuilder(started.toString).redirectErrorStream(true).redirectOutput(log).start().waitFor()
       Files.readAllLines(project.resolve("target/builds")).size
     def age(file: Path): Unit =
       val _ = Files.setLastModifiedTime(file, FileTime.from(Instant.now.minusSeconds(60)))
@@ -62,8 +62,13 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     val _ = Files.move(first, moved)
     assertEquals(builds(moved), 2)
     assertEquals(builds(moved), 2)
+    // It is known through links to links, too.
+    val links = Files.createDirectories(folder.resolve("links"))
+    Files.createSymbolicLink(links.resolve("one"), Path.of("../moved here/skein"))
+    Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))
+    age(moved.resolve("target/launch"))
     save(moved.resolve("src/main/scala/ridgewatch/RidgeWatch.scala"))
-    assertEquals(builds(moved), 3)
+    assertEquals(builds(moved, Some(links.resolve("two"))), 3)
     save(agent)
     // An installed library keeps the time at which it was built.
     age(agent)
