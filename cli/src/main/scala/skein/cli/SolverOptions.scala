@@ -40,7 +40,7 @@ private[cli] object SolverOptions:
       case SolverChoice.Tcp(at) =>
         val transport = TcpTransport(certificates = secured.certificates)
         Right(
-          if secured.certificates.isDefined then TcpLink(transport, at, perhaps = HasTls)
+          if secured.certificates.isDefined then TcpLink(transport, at, () => lacksTls(at), HasTls)
           else TcpLink(transport, at, () => wantsTls(at))
         )
       case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)(secured.kafka)))
@@ -54,6 +54,15 @@ private[cli] object SolverOptions:
       .map(Option.when(_)(
         s"the solver at $at asks for certificates; expected --tls FOLDER with this machine's"
       ))(using system.dispatcher)
+
+  /** Why one closes a connection with certificates, where it knows no TLS. */
+  private[cli] def lacksTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
+    Future(blocking(TlsProbe.isRefused(at)))(using system.dispatcher)
+      .map(Option.when(_)(
+        s"the solver at $at does not speak TLS; expected ./skein decide with --tls there, too"
+      ))(
+        using system.dispatcher
+      )
 
   private[cli] val HasTls = "; has ./skein decide there --tls, too?"
 

@@ -117,11 +117,25 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
       assert(clue(why).contains(s"the solver at $at asks for certificates; expected --tls FOLDER"))
 
-  test("a flight with certificates is told what its solver may lack"):
+  test("a flight with certificates is told what its solver lacks so long before its patience ends"):
     val server = Await.result(SolverServer.start(loopback, transport(None), SolvedFlight.desk()), 20.seconds)
     try
       val at     = server.address
-      val link   = TcpLink(transport(Some(own)), at, perhaps = SolverOptions.HasTls)
+      val link   = TcpLink(transport(Some(own)), at, () => SolverOptions.lacksTls(at))
+      val flight = SolvedFlight(SolverChoice.Tcp(at), link, patience = Span.ofSeconds(600))
+      val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
+      assert(clue(why).contains(s"the solver at $at does not speak TLS; expected ./skein decide with --tls"))
+    finally Await.result(server.close(), 20.seconds): Unit
+
+  test("a flight with certificates that nothing is known of asks whether its solver has them, too"):
+    // A link whose other side is not there.
+    val closing = transport(None).listen(loopback).to(Sink.foreach(
+      _.flow.join(Flow.fromSinkAndSource(Sink.cancelled, Source.empty)).run(): Unit
+    ))
+    val server = Await.result(closing.run(), 20.seconds)
+    try
+      val at     = server.address
+      val link   = TcpLink(transport(Some(own)), at, () => SolverOptions.lacksTls(at), SolverOptions.HasTls)
       val flight = SolvedFlight(SolverChoice.Tcp(at), link, patience = Span.ofSeconds(3))
       val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
       assert(clue(why).endsWith("; has ./skein decide there --tls, too?"))

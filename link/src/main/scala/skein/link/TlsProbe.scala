@@ -1,7 +1,7 @@
 package skein.link
 
 import java.io.IOException
-import java.net.{InetSocketAddress, Socket}
+import java.net.{InetSocketAddress, Socket, SocketException, SocketTimeoutException}
 import java.nio.ByteBuffer
 import javax.net.ssl.SSLContext
 import scala.util.Using
@@ -21,15 +21,33 @@ private[skein] object TlsProbe:
     * and so long again for the answer.
     */
   def answers(at: Address, within: Span = Within): Boolean =
+    tried(at, within)(greeted).exists: answer =>
+      answer.length == 2 && (answer(0) == Alert || answer(0) == Handshake) && answer(1) == Version
+
+  /** Whether who listens there ends a connection that begins by TLS, and none that says nothing yet: so does
+    * who waits for other words. A link whose other side is not there ends both, or none. Blocks for three
+    * times `within` at most.
+    */
+  def isRefused(at: Address, within: Span = Within): Boolean =
+    tried(at, within)(greeted).exists(_.isEmpty) && tried(at, within): socket =>
+      try socket.getInputStream.read() >= 0
+      catch case _: SocketTimeoutException => true
+    .contains(true)
+
+  private def greeted(socket: Socket): Array[Byte] =
+    socket.getOutputStream.write(greeting)
+    try socket.getInputStream.readNBytes(2)
+    // The other side may end it before it has read all.
+    catch case _: SocketException => Array.emptyByteArray
+
+  private def tried[A](at: Address, within: Span)(ask: Socket => A): Option[A] =
     try
       Using.resource(Socket()): socket =>
         val millis = within.toMillis.toInt
         socket.connect(InetSocketAddress(at.host, at.port), millis)
         socket.setSoTimeout(millis)
-        socket.getOutputStream.write(greeting)
-        val answer = socket.getInputStream.readNBytes(2)
-        answer.length == 2 && (answer(0) == Alert || answer(0) == Handshake) && answer(1) == Version
-    catch case _: IOException => false
+        Some(ask(socket))
+    catch case _: IOException => None
 
   private def greeting: Array[Byte] =
     val engine = SSLContext.getDefault.createSSLEngine()

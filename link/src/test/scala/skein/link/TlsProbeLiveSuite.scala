@@ -1,5 +1,6 @@
 package skein.link
 
+import java.io.IOException
 import java.net.{InetAddress, ServerSocket}
 import java.util.concurrent.FutureTask
 import scala.util.Using
@@ -24,6 +25,25 @@ class TlsProbeLiveSuite extends munit.FunSuite:
   test("who goes on with the handshake speaks TLS, and so does who refuses it"):
     assert(asked(22, 3, 3, 0, 2, 0, 0))
     assert(asked(21, 3, 3, 0, 2, 2, 70))
+
+  /** Whether each connection's bytes are waited for before it is ended. */
+  private def refused(waits: Boolean): Boolean =
+    Using.resource(ServerSocket(0, 1, InetAddress.getLoopbackAddress)): server =>
+      Thread.ofPlatform().daemon().start: () =>
+        try
+          while true do
+            Using.resource(server.accept()): socket =>
+              if waits then socket.getInputStream.read(): Unit
+        catch case _: IOException => ()
+      TlsProbe.isRefused(Address("127.0.0.1", server.getLocalPort), Span.ofSeconds(1))
+
+  test(
+    "who ends a connection for what it says, and not before, refuses TLS; a link without other side does not"
+  ):
+    assert(refused(waits = true))
+    assert(!refused(waits = false))
+    val free = Using.resource(ServerSocket(0))(_.getLocalPort)
+    assert(!TlsProbe.isRefused(Address("127.0.0.1", free), Span.ofSeconds(1)))
 
   test("who says nothing, something else, or is not there, does not"):
     assert(!asked())
