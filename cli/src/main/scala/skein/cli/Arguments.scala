@@ -2,20 +2,12 @@ package skein.cli
 
 import java.util.Locale
 import mainargs.Flag
-import skein.link.Address
 import skein.settings.{ConfigKeys, TextFile}
 import skein.signal.LatencyProfile
 import skein.units.Expect
 
 /** What several commands read from their options. */
 private[cli] object Arguments:
-
-  /** `HOST:PORT`. */
-  def address(text: String): Either[String, Address] =
-    text.split(':') match
-      case Array(host, port) if host.nonEmpty && port.toIntOption.exists(p => p >= 0 && p <= 65535) =>
-        Right(Address(host, port.toInt))
-      case _ => Left(s"expected HOST:PORT, for example 127.0.0.1:41451, came '$text'")
 
   /** Settings of a scenario, `NAME=VALUE` each, by their keys, each once; or every mistake. */
   def settings(texts: Seq[String]): Either[String, Seq[(String, String)]] =

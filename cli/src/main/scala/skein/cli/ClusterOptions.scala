@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.cluster.{Endpoint, Tls}
+import skein.link.Address
 import skein.search.SearchBlock
 import skein.units.Expect
 
@@ -71,9 +72,11 @@ object ClusterOptions:
   val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
 
   private def portOrEndpoint(text: String): Either[String, Endpoint] =
-    endpoint("--metrics", if text.contains(':') then text else s"${Loopback.host}:$text")
-      .left
-      .map(_ => s"--metrics: expected a port, 0 to 65535, or HOST:PORT, came '$text'")
+    if text.contains(':') then endpoint("--metrics", text)
+    else
+      endpoint("--metrics", s"${Loopback.host}:$text").left.map(_ =>
+        s"--metrics: expected a port, 0 to 65535, or HOST:PORT, came '$text'"
+      )
 
   def endpoint(option: String, text: String): Either[String, Endpoint] =
-    Arguments.address(text).map(address => Endpoint(address.host, address.port)).left.map(s"$option: " + _)
+    Address.parse(text).map(address => Endpoint(address.host, address.port)).left.map(s"$option: " + _)

@@ -5,7 +5,7 @@ import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
-import skein.link.TcpTransport
+import skein.link.{Address, TcpTransport}
 import skein.loop.{AnyLoop, FlightOutcome}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections, Typed}
@@ -61,7 +61,8 @@ final class FlyCommand(using Scenarios)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))
       simulator <- options.simulator
         .map(_.stripPrefix(FlyCommand.Tcp))
-        .fold(Right(None))(Arguments.address(_).map(Some(_)))
+        .fold(Right(None))(Address.parse(_).map(Some(_)))
+        .left.map("--simulator: " + _)
       _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
         s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's wire is TCP as it is"
       _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):

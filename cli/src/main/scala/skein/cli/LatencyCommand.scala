@@ -44,7 +44,7 @@ object LatencyCommand
 
   protected def execute(options: LatencyOptions): Either[String, Unit] =
     for
-      simulator <- Arguments.address(options.simulator).left.map("--simulator: " + _)
+      simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
       profile   <- Arguments.latency(options.link).left.map("--link: " + _)
       period    <- Span.parse(options.period).left.map("--period: " + _)
       _         <- Expect.that(period > Span.Zero)(s"--period: expected more than 0, came ${options.period}")

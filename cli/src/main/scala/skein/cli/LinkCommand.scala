@@ -53,8 +53,8 @@ object LinkCommand
 
   protected def execute(options: LinkOptions): Either[String, Unit] =
     for
-      listenAt <- Arguments.address(options.listen).left.map("--listen: " + _)
-      to       <- Arguments.address(options.to).left.map("--to: " + _)
+      listenAt <- Address.parse(options.listen).left.map("--listen: " + _)
+      to       <- Address.parse(options.to).left.map("--to: " + _)
       profile  <- profileOf(options)
       _        <- serve(listenAt, to, profile, options)
     yield ()

@@ -44,7 +44,7 @@ private[cli] object MetricsServer:
         .recover(error => Left(s"--metrics: cannot listen at $listen: ${error.getMessage}"))
       try
         Edge.await(serving).flatMap: binding =>
-          say(s"metrics at http://${listen.host}:${binding.localAddress.getPort}/metrics")
+          say(s"metrics at http://${listen.copy(port = binding.localAddress.getPort)}/metrics")
           try body
           finally Edge.await(binding.unbind()): Unit
       finally Edge.await(ended(system)): Unit

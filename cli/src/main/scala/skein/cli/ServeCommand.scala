@@ -6,7 +6,7 @@ import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotKind
-import skein.link.{ControlThreads, TcpTransport, TransportError}
+import skein.link.{Address, ControlThreads, TcpTransport, TransportError}
 import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
 import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
@@ -65,7 +65,7 @@ object ServeCommand
 
   protected def execute(options: ServeOptions): Either[String, Unit] =
     for
-      address  <- Arguments.address(options.listen)
+      address  <- Address.parse(options.listen).left.map("--listen: " + _)
       overload <- overloadOf(options.workers)
       _        <- Expect.that(options.speed > 0 && options.speed <= MostSpeed):
         s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"

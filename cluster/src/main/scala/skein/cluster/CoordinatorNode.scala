@@ -33,7 +33,7 @@ final class CoordinatorNode private (
   /** Where workers join. */
   val address: Endpoint =
     val own = CoordinatorNode.addressOf(system)
-    Endpoint(own.host.get, own.port.get)
+    Endpoint(own.host.get.stripPrefix("[").stripSuffix("]"), own.port.get)
 
   def progress: ClusterProgress = latest.get
 

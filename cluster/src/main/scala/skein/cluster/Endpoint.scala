@@ -2,10 +2,14 @@ package skein.cluster
 
 import java.net.InetAddress
 import scala.util.Try
+import skein.link.Address
 
 /** Where a node listens. */
 final case class Endpoint(host: String, port: Int):
-  override def toString: String = s"$host:$port"
+  override def toString: String = Address(host, port).toString
+
+  /** As a URI has it: an IPv6 address in brackets. */
+  private[cluster] def uriHost: String = if host.contains(':') then s"[$host]" else host
 
   /** Whether nobody from another machine gets there. */
   def isLoopback: Boolean = Try(InetAddress.getByName(host).isLoopbackAddress).getOrElse(false)

@@ -53,7 +53,7 @@ private[cluster] object NodeConfig:
       remote {
         warn-about-direct-use = off
         artery {
-          canonical.hostname = ${ConfigUtil.quoteString(listen.host)}
+          canonical.hostname = ${ConfigUtil.quoteString(listen.uriHost)}
           canonical.port = ${listen.port}
           # On a machine that has much else to do, 3 s are not enough.
           bind.bind-timeout = 30 s

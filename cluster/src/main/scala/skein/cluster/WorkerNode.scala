@@ -109,7 +109,7 @@ final class WorkerNode(
     if stopped then promise.trySuccess(End.Finished): Unit
     val system = ActorSystem(NodeConfig.System, config)
     try
-      val seed = Address("pekko", NodeConfig.System, coordinator.host, coordinator.port)
+      val seed = Address("pekko", NodeConfig.System, coordinator.uriHost, coordinator.port)
       system.whenTerminated.onComplete(_ => promise.trySuccess(End.Lost))(using
         scala.concurrent.ExecutionContext.parasitic
       )

@@ -1,5 +1,6 @@
 package skein.cluster
 
+import java.net.{InetAddress, ServerSocket}
 import java.nio.file.{Files, Path}
 import java.util.concurrent.atomic.AtomicInteger
 import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch, Semaphore, TimeUnit}
@@ -7,7 +8,7 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
-import scala.util.Using
+import scala.util.{Try, Using}
 import skein.blocks.Ledger
 import skein.cluster.jars.{Acceptance, Fetched, JarStore, Sha256, Shipment}
 import skein.testing.{TemporaryFolders, Unhurried}
@@ -44,6 +45,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private final class Coordinating(
       val folder: Path,
       port: Int = 0,
+      host: String = loopback.host,
       tls: Option[Tls] = None,
       shipment: Option[Shipment] = None
   ) extends AutoCloseable:
@@ -51,7 +53,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
-      .start(loopback.copy(port = port), tls, question, ledger, "one", shipment)(heard)
+      .start(Endpoint(host, port), tls, question, ledger, "one", shipment)(heard)
       .fold(fail(_), identity)
 
     private def heard(one: WorkerEvent): Unit =
@@ -111,6 +113,15 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(coordinator.ledger.size, works.size)
       coordinator.node.close(): Unit
       for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(None))
+
+  test("workers join where an IPv6 address is listened at"):
+    val address = Try(ServerSocket(0, 1, InetAddress.ofLiteral("::1"))).map(_.close())
+    assume(address.isSuccess, "this machine has no IPv6")
+    Using.resource(Coordinating(temporaryFolder(), host = "::1")): coordinator =>
+      val (anna, _, _) = worker(coordinator.node.address, "anna", Reversing())
+      assertEquals(computed(coordinator.node), answers)
+      assert(coordinator.node.address.toString.startsWith("[::1]:"))
+      anna.stop()
 
   test("a worker that is not ready yet when all is done is told so, and ends at once"):
     val asked = CountDownLatch(1)

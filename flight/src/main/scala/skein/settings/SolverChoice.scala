@@ -42,7 +42,4 @@ object SolverChoice:
     case _ => Left(s"expected $Expected, came '$text'")
 
   private def address(text: String, whole: String): Either[String, Address] =
-    text.split(':') match
-      case Array(host, port) if host.nonEmpty && port.toIntOption.exists(p => p >= 0 && p <= 65535) =>
-        Right(Address(host, port.toInt))
-      case _ => Left(s"expected $Expected, came '$whole'")
+    Address.parse(text).left.map(why => s"expected $Expected, came '$whole': $why")

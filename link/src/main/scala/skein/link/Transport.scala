@@ -1,13 +1,37 @@
 package skein.link
 
+import java.net.InetAddress
 import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import org.apache.pekko.util.ByteString
 import org.apache.pekko.{Done, NotUsed}
 import scala.concurrent.Future
+import scala.util.Try
 
-/** A host and port. */
+/** A host and port.
+  *
+  * @param host a name, or an address, of IPv6 without brackets
+  */
 final case class Address(host: String, port: Int):
-  override def toString: String = s"$host:$port"
+  /** As [[Address.parse]] reads it. */
+  override def toString: String = if host.contains(':') then s"[$host]:$port" else s"$host:$port"
+
+object Address:
+  private val Plain = raw"([^:\[\]]+):(\d{1,5})".r
+  private val IPv6  = raw"\[([^\[\]]*:[^\[\]]*)\]:(\d{1,5})".r
+
+  /** `HOST:PORT`, of an IPv6 address `[ADDRESS]:PORT`.
+    *
+    * @return or what was expected and came
+    */
+  def parse(text: String): Either[String, Address] = text match
+    case Plain(host, port) if isPort(port) => Right(Address(host, port.toInt))
+    case IPv6(host, port) if isPort(port) && Try(InetAddress.ofLiteral(host)).isSuccess =>
+      Right(Address(host, port.toInt))
+    case _ =>
+      val example = if text.count(_ == ':') > 1 then "[::1]:41451 of an IPv6 address" else "127.0.0.1:41451"
+      Left(s"expected HOST:PORT, for example $example, came '$text'")
+
+  private def isPort(digits: String) = digits.toInt <= 65535
 
 /** Where connections come from: TCP in live flight, the in-memory network in virtual time. Everything above
   * it works on byte streams and is the same for both.

@@ -1,0 +1,30 @@
+package skein.link
+
+class AddressSuite extends munit.FunSuite:
+
+  test("a host and a port are read, of an IPv6 address in brackets, and told likewise"):
+    for
+      (text, host) <- Seq(
+        "127.0.0.1:41451"   -> "127.0.0.1",
+        "lab-2:41451"       -> "lab-2",
+        "[::1]:41451"       -> "::1",
+        "[fe80::1:2]:41451" -> "fe80::1:2"
+      )
+    do
+      val read = Address.parse(text)
+      assertEquals(read, Right(Address(host, 41451)))
+      assertEquals(read.map(_.toString), Right(text))
+
+  test("what is none is refused, and an IPv6 address without brackets is told how it is written"):
+    for text <-
+        Seq("", "here", ":80", "here:", "here:65536", "here:99999", "here:-1", "[here]:80", "here:80 ")
+    do
+      assertEquals(
+        Address.parse(text),
+        Left(s"expected HOST:PORT, for example 127.0.0.1:41451, came '$text'")
+      )
+    for text <- Seq("::1:41451", "::1", "[::1]", "[::1]41451", "[::1::2]:80", "1:2:3") do
+      assertEquals(
+        Address.parse(text),
+        Left(s"expected HOST:PORT, for example [::1]:41451 of an IPv6 address, came '$text'")
+      )
