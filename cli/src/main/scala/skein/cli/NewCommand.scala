@@ -3,6 +3,7 @@ package skein.cli
 import java.io.IOException
 import java.nio.file.attribute.PosixFilePermissions
 import java.nio.file.{FileSystems, Files, Path}
+import java.util.Comparator
 import mainargs.{Leftover, ParserForClass, arg}
 import scala.util.Using
 import skein.report.Typed
@@ -33,6 +34,7 @@ object NewCommand
         folder = Path.of(options.out.getOrElse(name))
         _ <-
           Expect.that(!Files.exists(folder))(s"expected a folder that is not there yet, came '$folder'")
+        _ <- OutFolder.made("--out", folder.toString)
         _ <- write(folder, name)
       yield
         Console.out.println(s"written: $folder")
@@ -93,7 +95,17 @@ object NewCommand
         if executable(to) && FileSystems.getDefault.supportedFileAttributeViews.contains("posix") then
           val _ = Files.setPosixFilePermissions(file, PosixFilePermissions.fromString("rwxr-xr-x"))
       Right(())
-    catch case failed: IOException => Left(s"cannot write $folder: $failed")
+    catch
+      case failed: IOException =>
+        emptied(folder)
+        Left(s"cannot write into the folder $folder: ${OutFolder.reason(failed)}")
+
+  /** Half a project would be in the way of the next try. */
+  private def emptied(folder: Path): Unit =
+    try
+      Using.resource(Files.walk(folder)): all =>
+        all.sorted(Comparator.reverseOrder()).filter(_ != folder).forEach(Files.delete(_))
+    catch case _: IOException => ()
 
   private val executable = Set("sbtw", "skein")
 

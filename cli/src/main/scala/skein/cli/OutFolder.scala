@@ -45,10 +45,8 @@ private[cli] object OutFolder:
         Files.delete(Files.createTempFile(folder, ".skein", ""))
         Right(folder)
       catch
-        case failed: FileSystemException =>
-          Left(s"$option: cannot write into the folder $folder: ${reason(failed)}")
         case failed: IOException =>
-          Left(s"$option: cannot write into the folder $folder: ${failed.getMessage}")
+          Left(s"$option: cannot write into the folder $folder: ${reason(failed)}")
 
   /** A name that is new every second. */
   def dated(parent: String): String =
@@ -71,7 +69,7 @@ private[cli] object OutFolder:
         Option(channel.tryLock()).fold(other)(_ => body)
     catch
       case _: OverlappingFileLockException => other
-      case failed: IOException             => Left(s"cannot write into $folder: $failed")
+      case failed: IOException             => Left(s"cannot write into $folder: ${reason(failed)}")
 
   /** Writes files by their names.
     *
@@ -79,7 +77,7 @@ private[cli] object OutFolder:
     */
   def write(folder: Path, files: Seq[(String, Array[Byte])]): Either[String, Vector[Path]] =
     try Right(files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes)))
-    catch case failed: IOException => Left(s"cannot write into $folder: $failed")
+    catch case failed: IOException => Left(s"cannot write into $folder: ${reason(failed)}")
 
   def text(name: String, text: String): (String, Array[Byte]) = (name, text.getBytes(UTF_8))
 
@@ -97,9 +95,12 @@ private[cli] object OutFolder:
     painted.left.foreach(reason => Console.err.println(s"no PNG: $reason"))
     text(s"$name.svg", Svg.file(drawing, title)) +: painted.toOption.map(s"$name.png" -> _).toVector
 
-  private def reason(failed: FileSystemException): String =
-    val what = Option(failed.getReason).getOrElse:
-      failed.getClass.getSimpleName.stripSuffix("Exception").replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(
-        java.util.Locale.ROOT
-      )
-    s"$what (${failed.getFile})"
+  /** Why a file could not be written, without the names of Java's classes. */
+  def reason(failed: IOException): String = failed match
+    case failed: FileSystemException =>
+      val what = Option(failed.getReason).getOrElse:
+        failed.getClass.getSimpleName.stripSuffix("Exception").replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(
+          java.util.Locale.ROOT
+        )
+      s"$what (${failed.getFile})"
+    case other => other.getMessage

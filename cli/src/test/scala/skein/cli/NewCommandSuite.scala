@@ -79,6 +79,20 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assertNotEquals(status, 0)
     assert(told.contains("expected a folder that is not there yet"), told)
 
+  folder.test("a folder that cannot be made is told, and nothing of it is left"): folder =>
+    val file           = Files.createFile(folder.resolve("file"))
+    val (status, told) = run("ridge-watch", "--out", s"$file/in/it")
+    assertEquals(
+      (status, told),
+      (1, s"skein new: --out: cannot write into the folder $file/in/it: Not a directory ($file/in)\n")
+    )
+    // Its name is short enough for a folder, and its files' paths are too long.
+    val deep         = s"$folder/" + (1 to 19).map(_ => "d" * 210).mkString("/")
+    val (again, why) = run("ridge-watch", "--out", deep)
+    assertEquals(again, 1)
+    assert(clue(why).startsWith("skein new: "))
+    assertEquals(folder.toFile.list.toSeq, Seq("file"))
+
   test("a name that would not compile is refused, and one is proposed that would"):
     for name <- Seq("object", "scenario", "agent", "scala", "skein", "vector3", "corners", "main", "type") do
       val (status, told) = run(name)
