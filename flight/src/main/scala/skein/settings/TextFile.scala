@@ -11,11 +11,15 @@ import scala.util.Using
 object TextFile:
   private val MostBytes = 64 << 20
 
+  /** Not from a configuration's folder, nor from that in which a flight was recorded. */
+  private def sought(file: Path): String =
+    if file.isAbsolute then "" else s", sought from ${Path.of("").toAbsolutePath}"
+
   /** The file's text, or why it cannot be read. */
   def read(path: String): Either[String, String] =
     val file = Path.of(path)
     if path.isEmpty then Left("expected the name of a file, came ''")
-    else if !Files.exists(file) then Left(s"there is no file $path")
+    else if !Files.exists(file) then Left(s"there is no file $path${sought(file)}")
     else if Files.isDirectory(file) then Left(s"expected a file, came the folder $path")
     else
       try

@@ -1,7 +1,7 @@
 package skein.settings
 
 import java.io.RandomAccessFile
-import java.nio.file.Files
+import java.nio.file.{Files, Path}
 import skein.testing.TemporaryFolders
 
 class TextFileSuite extends munit.FunSuite, TemporaryFolders:
@@ -24,4 +24,6 @@ class TextFileSuite extends munit.FunSuite, TemporaryFolders:
     Files.write(file, Array[Byte](-1, -2))
     assert(TextFile.read(file.toString).left.exists(_.contains("no text in UTF-8")))
     assert(TextFile.read(folder.toString).left.exists(_.contains("came the folder")))
-    assert(TextFile.read(s"$file-not").left.exists(_.contains("there is no file")))
+    assertEquals(TextFile.read(s"$file-not"), Left(s"there is no file $file-not"))
+    val here = Path.of("").toAbsolutePath
+    assertEquals(TextFile.read("no/such.conf"), Left(s"there is no file no/such.conf, sought from $here"))
