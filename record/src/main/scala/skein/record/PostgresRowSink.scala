@@ -183,7 +183,9 @@ private[record] final case class PostgresAddress(jdbc: String, user: String, pas
 private[record] object PostgresAddress:
   private val ConnectSeconds = "5"
 
-  private val Form = """postgres(?:ql)?://([^:@/]+)(?::([^@/]*))?@([^:/@]+)(?::(\d{1,5}))?/([^/?#]+)""".r
+  /** An IPv6 address stands in brackets. */
+  private val Form =
+    """postgres(?:ql)?://([^:@/]+)(?::([^@/]*))?@([^:/@]+|\[[^\]/@]+\])(?::(\d{1,5}))?/([^/?#]+)""".r
 
   def parse(url: String): Either[String, PostgresAddress] = url match
     case Form(user, password, host, port, database)

@@ -100,6 +100,12 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
       found.next(): Unit
       assertEquals(found.getInt(1), 0)
 
+  test("an IPv6 address stands in brackets"):
+    def shown(host: String) = PostgresAddress.parse(s"postgres://me:secret@$host/flights").map(_.shown)
+    assertEquals(shown("[::1]"), Right("[::1]:5432/flights"))
+    assertEquals(shown("[::1]:7000"), Right("[::1]:7000/flights"))
+    assert(shown("::1").isLeft)
+
   test("letters that an address has for itself stand in user and password as percent and two digits"):
     val read = PostgresAddress.parse("postgres://m%40e:a%3Ab%2Fc+%25@db/flights").fold(fail(_), identity)
     assertEquals((read.user, read.password, read.shown), ("m@e", "a:b/c+%", "db:5432/flights"))
