@@ -14,7 +14,7 @@ object OwnFailure:
     *
     * @throws OwnFailure if it throws
     */
-  def told[A](whose: String)(answer: => A): A =
+  def told[A](whose: => String)(answer: => A): A =
     // Not `NonFatal`: a recursion without end and a class that is missing are mistakes of the user's too.
     try answer
     catch

@@ -85,7 +85,8 @@ object Scenario:
     *
     * @throws OwnFailure if it throws
     */
-  private[skein] def told[A](name: String)(answer: => A): A = OwnFailure.told(s"the scenario $name")(answer)
+  private[skein] def told[A](name: => String)(answer: => A): A =
+    OwnFailure.told(s"the scenario $name")(answer)
 
   /** Vehicles that no simulator can have, and no recording could hold. */
   private[scenario] def mistakeOfAgents(scenario: Scenario): Option[String] =

@@ -19,7 +19,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
 
   def this(fleet: Fleet, self: Int) = this(fleet, self, fleet.agents(self).policy)
 
-  val start: Memory = Memory(agent.startHeading.value, None, 0, policy.start)
+  val start: Memory = Memory(agent.startHeading.value, None, 0, PolicyAnswer.first(agent)(policy.start))
 
   /** Decides from a complete view.
     *
@@ -54,7 +54,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
     * as it was.
     */
   def decideInstead(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
-    val (next, decision) = decide(memory.copy(held = policy.start), view, now)
+    val (next, decision) = decide(memory.copy(held = PolicyAnswer.first(agent)(policy.start)), view, now)
     (next.copy(held = memory.held), decision)
 
   def regardsTeam: Boolean = !policy.isAgainstOne

@@ -5,6 +5,12 @@ import skein.policy.{Agent, OwnFailure}
 /** What a vehicle's policy answers. */
 private object PolicyAnswer:
 
+  /** What it remembers before its first decision.
+    *
+    * @throws OwnFailure if the policy throws
+    */
+  def first[A](agent: Agent)(memory: => A): A = OwnFailure.told(whose(agent))(memory)
+
   /** @throws OwnFailure if the policy throws, or answers null
     */
   def of[A](agent: Agent)(answer: => A): A =

@@ -82,6 +82,16 @@ class DeciderSuite extends munit.FunSuite:
       assert(clue(failure).startsWith(s"the policy of Pursuer failed: $told"))
       assert(clue(failure).matches(".* \\(DeciderSuite.scala:\\d+\\)"))
 
+  test("what a policy throws instead of what it remembers first is told likewise"):
+    object Broken extends AgentPolicy:
+      type Memory = Unit
+      def start: Unit                                             = throw IllegalStateException("no memory")
+      def choose(seen: Observation, memory: Unit): (Action, Unit) = (Action.Hover, ())
+    val failure = intercept[OwnFailure](Decider(scenario, 1, Broken)).getMessage
+    assert(
+      clue(failure).startsWith("the policy of Pursuer failed: java.lang.IllegalStateException: no memory")
+    )
+
   test("both deciders see the evader in the pursuer's frame"):
     val heading  = math.Pi / 2
     val ofEvader =
