@@ -1,7 +1,7 @@
 package skein.lanes;
 
 import java.util.Arrays;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.timetable.Timetable;
@@ -31,21 +31,21 @@ final class DuelAgents extends TimetableAgents {
    */
   DuelAgents(
       int self,
-      Duelist duelist,
+      RolloutAgent agent,
       LaneDynamics model,
       LanePolicy policy,
       float[] effort,
       LaneObservation observation,
       boolean isTold,
       TimetableEye eye) {
-    super(model.vehicles(duelist));
+    super(model.vehicles(agent));
     this.isTold = isTold;
     this.eye = eye;
     this.self = self;
     this.policy = policy;
     this.effort = effort;
     this.observation = observation;
-    startHeading = (float) duelist.startHeadingRad();
+    startHeading = (float) agent.startHeadingRad();
   }
 
   @Override

@@ -10,7 +10,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.loop.LaneAgents;
 import skein.lanes.loop.LaneOffers;
 import skein.lanes.loop.LaneVectors;
@@ -41,12 +41,12 @@ final class LoopDuelAgents extends LaneAgents {
    * @param effort where the sums of the decided headings' changes go, rad
    */
   LoopDuelAgents(
-      int self, Duelist duelist, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
-    super(self, loop, model.deadTimeS(), model.flights(duelist, loop));
+      int self, RolloutAgent agent, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
+    super(self, loop, model.deadTimeS(), model.flights(agent, loop));
     this.policy = policy;
     this.effort = effort;
-    startHeading = (float) duelist.startHeadingRad();
-    loop.carryForward(self, duelist, vehicles);
+    startHeading = (float) agent.startHeadingRad();
+    loop.carryForward(self, agent, vehicles);
   }
 
   /** From now on it knows of its opponent by this alone. */

@@ -1,7 +1,7 @@
 package skein.forward
 
 /** A loop that asks every vehicle periodically and goes by the newest reading of each. Mutable. */
-private[skein] abstract class AskingRun(protected val world: DuelWorld, periodS: Double, asking: Asking)
+private[skein] abstract class AskingRun(protected val world: RolloutWorld, periodS: Double, asking: Asking)
     extends LoopRun,
       PeriodicQuestions.Seen:
 

@@ -10,7 +10,7 @@ import skein.units.*
   * @param opponent whom it looks for
   */
 private[skein] final class CameraTracker(
-    world: DuelWorld,
+    world: RolloutWorld,
     agent: Int,
     opponent: Int,
     model: SensorModel,

@@ -9,7 +9,7 @@ import skein.units.Instant
   *
   * @see `skein.loop.TeamView`, which the live loops hold
   */
-private[skein] final class DuelObservation(count: Int) extends Grounds:
+private[skein] final class RolloutView(count: Int) extends Grounds:
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
 
   /** Headings sent last, rad. */
@@ -27,7 +27,7 @@ private[skein] final class DuelObservation(count: Int) extends Grounds:
   /** What the readings are to be replaced by when it is decided. */
   var forecast: Option[Forecast] = None
 
-  def copyFrom(other: DuelObservation): Unit =
+  def copyFrom(other: RolloutView): Unit =
     for vehicle <- 0 until count do
       x(vehicle) = other.x(vehicle); y(vehicle) = other.y(vehicle)
       vx(vehicle) = other.vx(vehicle); vy(vehicle) = other.vy(vehicle)
@@ -36,7 +36,7 @@ private[skein] final class DuelObservation(count: Int) extends Grounds:
       validAtNs(vehicle) = other.validAtNs(vehicle)
     forecast = other.forecast
 
-  def take(world: DuelWorld, vehicle: Int, question: Int): Unit =
+  def take(world: RolloutWorld, vehicle: Int, question: Int): Unit =
     val slot = world.slot(vehicle, question)
     x(vehicle) = world.x(slot); y(vehicle) = world.y(slot)
     vx(vehicle) = world.vx(slot); vy(vehicle) = world.vy(slot)
@@ -57,19 +57,19 @@ private[skein] final class DuelObservation(count: Int) extends Grounds:
   * @param decidesFirst decides at every observation; then what waits is the decision
   */
 private[skein] final class Controller(
-    world: DuelWorld,
+    world: RolloutWorld,
     agent: Int,
     steering: Steering,
     intervalNs: Long,
     decidesFirst: Boolean,
     onSent: Controller.OnSent
 ):
-  import DuelWorld.*
+  import RolloutWorld.*
 
   private val policy     = world.agents(agent).policy
   private val minNs      = Nanos.of(steering.minIntervalS)
   private val handoverNs = Nanos.of(steering.handoverS)
-  private val held       = DuelObservation(world.count)
+  private val held       = RolloutView(world.count)
 
   private var outstanding   = 0
   private var mayCommandAt  = 0L
@@ -116,7 +116,7 @@ private[skein] final class Controller(
     made = 0; unused = 0; turned = 0
     goOn()
 
-  def offer(observation: DuelObservation): Unit =
+  def offer(observation: RolloutView): Unit =
     if holds then unused += 1
     holds = true
     held.copyFrom(observation)
@@ -148,7 +148,7 @@ private[skein] final class Controller(
   /** And how fast it is to fly, m/s. */
   def decidedSpeed: Double = speed
 
-  def decide(observation: DuelObservation): Unit =
+  def decide(observation: RolloutView): Unit =
     val now     = world.nowNs
     val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
     val before  = decided
@@ -164,7 +164,7 @@ private[skein] final class Controller(
     made += 1
     world.decided(agent, elapsed, observation)
 
-  private def heading(policy: Policy, observation: DuelObservation, elapsedS: Double): Double =
+  private def heading(policy: Policy, observation: RolloutView, elapsedS: Double): Double =
     upon = observation
     val other = world.assignment.opponentOf(agent, distance)
     world.views(agent) match
@@ -200,7 +200,7 @@ private[skein] final class Controller(
     val now = Instant.ofNanos(world.nowNs)
     forecast.whenActing(now).get(agent).predictedFor.since(now).toSeconds.max(0)
 
-  private def ageS(observation: DuelObservation, vehicle: Int) =
+  private def ageS(observation: RolloutView, vehicle: Int) =
     (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
 
   /** What a policy chooses whose opponent is there, flies so, was told this heading, and was known so long
@@ -208,7 +208,7 @@ private[skein] final class Controller(
     */
   private def chosen(
       policy: Policy,
-      observation: DuelObservation,
+      observation: RolloutView,
       elapsedS: Double,
       x: Double,
       y: Double,
@@ -228,7 +228,7 @@ private[skein] final class Controller(
         answer.headingRad
       case _ => policy.heading(dx, dy, dvx, dvy, decided, sentRad, elapsedS)
 
-  private def seen(observation: DuelObservation, elapsedS: Double): TeamObservation = TeamObservation(
+  private def seen(observation: RolloutView, elapsedS: Double): TeamObservation = TeamObservation(
     agent,
     IArray.from(observation.x),
     IArray.from(observation.y),
@@ -239,7 +239,7 @@ private[skein] final class Controller(
   )
 
   /** Puts where the vehicles will be in the place of where they were read. */
-  private def ahead(observation: DuelObservation, forecast: Forecast): Unit =
+  private def ahead(observation: RolloutView, forecast: Forecast): Unit =
     val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
     for vehicle <- 0 until world.count do
       val kinematics = estimates(vehicle).kinematics

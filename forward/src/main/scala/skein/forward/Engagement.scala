@@ -9,7 +9,7 @@ import skein.policy.{Assignment, Fleet, Role}
   * @param roles of the agents, in the order in which a loop asks them
   */
 final case class Engagement(
-    agents: Vector[Duelist],
+    agents: Vector[RolloutAgent],
     roles: Vector[Role],
     assignment: Assignment,
     durationS: Double = 60.0
@@ -45,7 +45,7 @@ object Engagement:
   /** The agents of a scenario, under its own assignment. */
   def of(fleet: Fleet, durationS: Double = 60.0): Engagement =
     Engagement(
-      fleet.agents.map(Duelist.of),
+      fleet.agents.map(RolloutAgent.of),
       fleet.agents.map(_.role),
       fleet.assignment,
       durationS

@@ -1,11 +1,11 @@
 package skein.forward
 
 /** [[LoopTiming.Futures]]. */
-private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val world: DuelWorld)
+private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val most                   = world.count * timing.asking.window
-  private val observation            = DuelObservation(world.count)
+  private val observation            = RolloutView(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
@@ -20,10 +20,10 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
 
   def start(): Unit =
     next = world.count; waiting = FuturesRun.Nothing; underWay = 0
-    world.schedule(0, DuelWorld.Tick, 0, 0)
+    world.schedule(0, RolloutWorld.Tick, 0, 0)
 
   def tick(vehicle: Int, number: Int): Unit =
-    world.schedule((number + 1) * periodNs, DuelWorld.Tick, 0, number + 1)
+    world.schedule((number + 1) * periodNs, RolloutWorld.Tick, 0, number + 1)
     if waiting == FuturesRun.Nothing then waiting = number
     begin()
 

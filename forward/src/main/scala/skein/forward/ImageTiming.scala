@@ -6,7 +6,7 @@ import skein.simd.WorldRandom
 /** When a vehicle's images are taken, and when it is known what they show, as `skein.flow.Frames` and
   * `Recognise` have it. Nothing of that depends on where the vehicles are. Mutable.
   */
-private[skein] abstract class ImageTiming(world: DuelWorld, agent: Int, model: SensorModel, link: Delays):
+private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model: SensorModel, link: Delays):
   import ImageTiming.*
 
   private val periodNs   = Nanos.of(model.everyS)
@@ -20,7 +20,7 @@ private[skein] abstract class ImageTiming(world: DuelWorld, agent: Int, model: S
   def start(worldKey: Int): Unit =
     key = WorldRandom.key(worldKey, Stream, agent)
     onTheWay = 0; busy = 0; newest = -1; waiting = -1; reported = -1
-    if !world.standsStill then world.schedule(0, DuelWorld.Look, agent, 0)
+    if !world.standsStill then world.schedule(0, RolloutWorld.Look, agent, 0)
 
   /** An image is taken now. */
   protected def taken(number: Int): Unit
@@ -30,25 +30,25 @@ private[skein] abstract class ImageTiming(world: DuelWorld, agent: Int, model: S
 
   /** Handles an event of an image.
     *
-    * @param kind of [[DuelWorld]]
+    * @param kind of [[RolloutWorld]]
     */
   final def handle(kind: Int, number: Int): Unit = kind match
-    case DuelWorld.Look          => look(number)
-    case DuelWorld.Exposed       => exposed(number)
-    case DuelWorld.ImageReceived => received(number)
-    case DuelWorld.Recognised    => recognised(number)
+    case RolloutWorld.Look          => look(number)
+    case RolloutWorld.Exposed       => exposed(number)
+    case RolloutWorld.ImageReceived => received(number)
+    case RolloutWorld.Recognised    => recognised(number)
 
   private def look(number: Int): Unit =
-    world.schedule((number + 1) * periodNs, DuelWorld.Look, agent, number + 1)
+    world.schedule((number + 1) * periodNs, RolloutWorld.Look, agent, number + 1)
     if onTheWay < MostOnTheWay then
       onTheWay += 1
       val delay = link.delayNs(key, Delays.question(0, agent), number, number, world.nowNs)
-      world.schedule(world.nowNs + delay, DuelWorld.Exposed, agent, number)
+      world.schedule(world.nowNs + delay, RolloutWorld.Exposed, agent, number)
 
   private def exposed(number: Int): Unit =
     taken(number)
     val delay = link.delayNs(key, Delays.answer(0, agent), number, number, world.nowNs)
-    world.schedule(world.nowNs + delay, DuelWorld.ImageReceived, agent, number)
+    world.schedule(world.nowNs + delay, RolloutWorld.ImageReceived, agent, number)
 
   /** The newest image waits for whoever recognises. */
   private def received(number: Int): Unit =
@@ -59,7 +59,7 @@ private[skein] abstract class ImageTiming(world: DuelWorld, agent: Int, model: S
 
   private def recognise(number: Int): Unit =
     busy += 1
-    world.schedule(world.nowNs + takesNs(number), DuelWorld.Recognised, agent, number)
+    world.schedule(world.nowNs + takesNs(number), RolloutWorld.Recognised, agent, number)
 
   private def recognised(number: Int): Unit =
     busy -= 1

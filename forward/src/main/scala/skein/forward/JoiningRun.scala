@@ -2,14 +2,14 @@ package skein.forward
 
 /** Joins the newest readings to views, as `skein.flow.JoinLatest` does, under [[LoopTiming.Stream]]. Mutable.
   */
-private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: DuelWorld)
+private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: RolloutWorld)
     extends AskingRun(world, timing.periodS, timing.asking):
   import JoiningRun.NoEnd
 
   private val patienceNs = Nanos.of(timing.patienceS)
 
   /** The view. */
-  protected val observation: DuelObservation = DuelObservation(world.count)
+  protected val observation: RolloutView = RolloutView(world.count)
 
   /** Whose reading was not renewed since the view before. */
   protected val waiting: Array[Boolean] = Array.ofDim(world.count)
@@ -28,7 +28,7 @@ private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: DuelW
       if !waiting.contains(true) || patienceNs <= 0 then join()
       else if patienceEnds == NoEnd then
         patienceEnds = world.nowNs + patienceNs
-        world.schedule(patienceEnds, DuelWorld.Patience, 0, 0)
+        world.schedule(patienceEnds, RolloutWorld.Patience, 0, 0)
 
   override def patienceOver(): Unit = if patienceEnds == world.nowNs then join()
 

@@ -2,9 +2,9 @@ package skein.forward
 
 /** A loop while it flies: what it does when something happens. One case of [[LoopTiming]] each. Mutable. */
 private[skein] trait LoopRun extends Controller.OnSent:
-  import DuelWorld.*
+  import RolloutWorld.*
 
-  protected def world: DuelWorld
+  protected def world: RolloutWorld
 
   def controllers: Array[Controller]
 

@@ -1,7 +1,7 @@
 package skein.forward
 
 private[skein] object LoopRuns:
-  def of(timing: LoopTiming, world: DuelWorld): LoopRun = timing match
+  def of(timing: LoopTiming, world: RolloutWorld): LoopRun = timing match
     case paused: LoopTiming.Paused         => PausedRun(paused, world)
     case sequential: LoopTiming.Sequential => SequentialRun(sequential, world)
     case futures: LoopTiming.Futures       => FuturesRun(futures, world)

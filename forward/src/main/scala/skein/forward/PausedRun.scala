@@ -1,14 +1,14 @@
 package skein.forward
 
 /** [[LoopTiming.Paused]]. */
-private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val world: DuelWorld)
+private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val observation            = DuelObservation(world.count)
+  private val observation            = RolloutView(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
 
-  def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
+  def start(): Unit = world.schedule(0, RolloutWorld.Tick, 0, 0)
 
   def tick(vehicle: Int, number: Int): Unit =
     for vehicle <- world.vehicles.indices do
@@ -18,7 +18,7 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val wo
       controllers(agent).decide(observation)
       controllers(agent).sentNow()
       world.commandNow(agent, controllers(agent).decidedHeading, controllers(agent).decidedSpeed)
-    world.schedule((number + 1) * periodNs, DuelWorld.Tick, 0, number + 1)
+    world.schedule((number + 1) * periodNs, RolloutWorld.Tick, 0, number + 1)
 
   def answered(vehicle: Int, question: Int): Unit = ()
   def timedOut(vehicle: Int, question: Int): Unit = ()

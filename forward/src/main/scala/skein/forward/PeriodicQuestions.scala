@@ -5,13 +5,13 @@ package skein.forward
   * a later moment, or all wait for their turn.
   */
 private[skein] final class PeriodicQuestions(
-    world: DuelWorld,
+    world: RolloutWorld,
     vehicle: Int,
     periodNs: Long,
     asking: Asking,
     seen: PeriodicQuestions.Seen
 ):
-  import DuelWorld.Ring
+  import RolloutWorld.Ring
   import PeriodicQuestions.*
 
   private val offsetNs = Nanos.of(asking.spreadS) * vehicle / world.count
@@ -26,7 +26,7 @@ private[skein] final class PeriodicQuestions(
   /** Begins at a question, when all before have ended, if there were any. */
   def begin(question: Int): Unit =
     waits = false; asked = question; underWay = 0; newest = question - 1; told = newest; oldest = question
-    world.schedule(offsetNs + question * periodNs, DuelWorld.Tick, vehicle, question)
+    world.schedule(offsetNs + question * periodNs, RolloutWorld.Tick, vehicle, question)
 
   /** Whether this question was told last, as the newest, none before it is under way, and so many were asked
     * and none waits.
@@ -36,7 +36,7 @@ private[skein] final class PeriodicQuestions(
       this.asked == asked && !waits
 
   def tick(number: Int): Unit =
-    world.schedule(offsetNs + (number + 1) * periodNs, DuelWorld.Tick, vehicle, number + 1)
+    world.schedule(offsetNs + (number + 1) * periodNs, RolloutWorld.Tick, vehicle, number + 1)
     waits = true
     ask()
 

@@ -6,20 +6,20 @@ import skein.units.Instant
 import skein.vehicle.Setpoint
 
 /** [[LoopTiming.Predictive]]. The forecast is a value: this loop allocates. */
-private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorld)
+private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: RolloutWorld)
     extends AskingRun(world, timing.periodS, timing.asking):
 
   private val periodNs               = Nanos.of(timing.periodS)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = false, this))
 
-  private val observation = DuelObservation(world.count)
+  private val observation = RolloutView(world.count)
   private var forecast    = Forecast(Vector.empty)
 
   override def start(): Unit =
     forecast = Forecast(Vector.fill(world.count)(timing.predictor))
     super.start()
-    world.schedule(periodNs / 2, DuelWorld.Due, 0, 0)
+    world.schedule(periodNs / 2, RolloutWorld.Due, 0, 0)
 
   protected def renewed(vehicle: Int, question: Int): Unit =
     val at      = world.slot(vehicle, question)
@@ -41,7 +41,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
       )
 
   override def due(number: Int): Unit =
-    world.schedule(periodNs / 2 + (number + 1) * periodNs, DuelWorld.Due, 0, number + 1)
+    world.schedule(periodNs / 2 + (number + 1) * periodNs, RolloutWorld.Due, 0, number + 1)
     if !known.contains(false) then
       observation.takeSent(controllers)
       System.arraycopy(validAt, 0, observation.validAtNs, 0, world.count)

@@ -10,12 +10,12 @@ package skein.forward
   * @param link delays of questions, answers, commands and acknowledgements; `Paused` ignores it
   */
 final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse):
-  import DuelWorld.*
+  import RolloutWorld.*
 
   def this(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse) =
     this(Engagement.of(duel), timing, link, model)
 
-  private val world = DuelWorld(
+  private val world = RolloutWorld(
     engagement,
     link,
     model,

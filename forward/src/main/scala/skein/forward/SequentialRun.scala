@@ -1,14 +1,14 @@
 package skein.forward
 
 /** [[LoopTiming.Sequential]]. */
-private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protected val world: DuelWorld)
+private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val observation            = DuelObservation(world.count)
+  private val observation            = RolloutView(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
-  def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
+  def start(): Unit = world.schedule(0, RolloutWorld.Tick, 0, 0)
 
   def tick(vehicle: Int, number: Int): Unit =
     val _ = world.ask(0, 0, number)
@@ -25,4 +25,4 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protecte
 
   def timedOut(vehicle: Int, question: Int): Unit = goOn(world.stepOf(vehicle, question))
 
-  private def goOn(step: Int): Unit = world.schedule(world.nowNs + periodNs, DuelWorld.Tick, 0, step + 1)
+  private def goOn(step: Int): Unit = world.schedule(world.nowNs + periodNs, RolloutWorld.Tick, 0, step + 1)

@@ -1,7 +1,7 @@
 package skein.forward
 
 /** [[LoopTiming.Stream]]. */
-private[skein] final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
+private[skein] final class StreamRun(timing: LoopTiming.Stream, world: RolloutWorld)
     extends JoiningRun(timing, world):
 
   val controllers: Array[Controller] =

@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.forward.{
   Duel,
-  Duelist,
+  RolloutAgent,
   LoopTiming,
   Nanos,
   PlantResponse,
@@ -34,7 +34,7 @@ private[skein] trait LaneDynamics extends TimetableDynamics:
   def fliesAlone: Boolean = true
 
   /** All worlds' vehicles of one role, whose commands act at times of their own. */
-  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles
+  private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles
 
 private[skein] object LaneDynamics:
   /** @return or why this model does not fly by lanes
@@ -44,7 +44,7 @@ private[skein] object LaneDynamics:
 
   /** @return or why these do not fly by lanes with this model
     */
-  def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, LaneDynamics] = model match
+  def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, LaneDynamics] = model match
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
@@ -67,7 +67,7 @@ private[skein] object LaneDynamics:
   def under(
       timing: LoopTiming,
       model: VelocityResponse,
-      vehicles: Seq[Duelist]
+      vehicles: Seq[RolloutAgent]
   ): Either[String, LaneDynamics] =
     of(model, vehicles).flatMap: vehicles =>
       timing match
@@ -81,31 +81,31 @@ private[skein] object LaneDynamics:
 /** Vehicles whose readings are carried forward. */
 private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS, stepS}
-  override def fliesAlone: Boolean                   = model.fliesAlone
-  override def predictor: Option[TimetablePredictor] = Some(by)
-  def vehicles(duelist: Duelist): TimetableVehicles  =
-    val flown = model.vehicles(duelist)
-    flown.predicted = by.vehicles(duelist)
+  override def fliesAlone: Boolean                     = model.fliesAlone
+  override def predictor: Option[TimetablePredictor]   = Some(by)
+  def vehicles(agent: RolloutAgent): TimetableVehicles =
+    val flown = model.vehicles(agent)
+    flown.predicted = by.vehicles(agent)
     flown
 
 /** By [[TimetablePlants]] and [[PlantFlights]]; a lag alone also by [[LagVehicles]]. */
 private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
-  def stepS: Double                                 = lanes.plant.stepS
-  def deadTimeS: Double                             = lanes.plant.deadTimeS
-  def handoverS: Double                             = 0
-  def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
+  def stepS: Double                                    = lanes.plant.stepS
+  def deadTimeS: Double                                = lanes.plant.deadTimeS
+  def handoverS: Double                                = 0
+  def vehicles(agent: RolloutAgent): TimetableVehicles = TimetablePlants(agent, lanes)
 
   def clock(): EventClock = StepClock(lanes, lanes.stages.tell(lanes.plant))
 
-  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
+  private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles =
     (lanes.plant, loop.timing) match
       // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
       case (lag: ReducedModel, stream: LoopTiming.Stream)
           if lag.isLag && !loop.sees && stream.periodS >= PlantDynamics.LeastPeriodS &&
             LagVehicles.canFly(lag, loop.longestS) =>
         val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
-        LagVehicles(duelist, lag, stream.periodS, loop.longestS, earliestS)
-      case _ => PlantFlights(duelist, lanes, loop)
+        LagVehicles(agent, lag, stream.periodS, loop.longestS, earliestS)
+      case _ => PlantFlights(agent, lanes, loop)
 
 private object PlantDynamics:
   /** Below, too many periods' commands are under way for [[LagVehicles]]. */
@@ -116,13 +116,13 @@ private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: Quadrotor
   private val stepNs    = Nanos.of(model.quadrotor.stepS)
   private val hoveredNs = Nanos.of(model.hoveredS)
 
-  def stepS: Double                                 = model.quadrotor.stepS
-  def deadTimeS: Double                             = 0
-  def handoverS: Double                             = model.handoverS
-  def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist, LaneQuadrotors(lanes))
+  def stepS: Double                                    = model.quadrotor.stepS
+  def deadTimeS: Double                                = 0
+  def handoverS: Double                                = model.handoverS
+  def vehicles(agent: RolloutAgent): TimetableVehicles = TimetableQuadrotors(agent, LaneQuadrotors(lanes))
 
-  override def fliesAlone: Boolean                                            = false
-  private[lanes] def flights(duelist: Duelist, loop: LoopLanes): LaneVehicles =
+  override def fliesAlone: Boolean                                               = false
+  private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles =
     throw UnsupportedOperationException(
       "quadrotors of worlds with delays of their own fly by SteppedRollouts"
     )

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Duel, Duelist, TabledDelays}
+import skein.forward.{Duel, RolloutAgent, TabledDelays}
 import skein.lanes.loop.{LaneAgents, LoopEye, LoopKernel, LoopLanes}
 import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
 
@@ -45,5 +45,6 @@ private[lanes] final class LoopDuelKernel(
     kernel.fly(keys, links)
 
 private[lanes] object LoopDuelKernel:
-  /** Of an own and an opponent's duelist, and of the agents that fly as they. */
-  type NewEye = (CameraTrackerLanes.Forms, Duelist, Duelist, LoopLanes, LaneAgents, LaneAgents) => LoopEye
+  /** Of an own and an opponent's agent, and of the agents that fly as they. */
+  type NewEye =
+    (CameraTrackerLanes.Forms, RolloutAgent, RolloutAgent, LoopLanes, LaneAgents, LaneAgents) => LoopEye

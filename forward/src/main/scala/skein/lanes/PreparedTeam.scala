@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.lanes.policy.TeamLanes
 import skein.lanes.score.ScoreLanes
 import skein.policy.TeamPolicy
@@ -26,8 +26,8 @@ private[lanes] final class PreparedTeam(
     val form: Option[TeamForm],
     steps: => Boolean
 ):
-  lazy val isStepped: Boolean   = steps
-  def vehicles: Vector[Duelist] = candidate.engagement.agents
+  lazy val isStepped: Boolean        = steps
+  def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
   val ofPolicies: Vector[Array[Double]] = form.toVector.flatMap: form =>
     vehicles.zipWithIndex.map((agent, self) =>

@@ -89,7 +89,7 @@ private final class SteppedRollouts private (
 
 private object SteppedRollouts:
   /** For worlds of these vehicles; none where they are not stepped side by side. */
-  def of(model: VelocityResponse, vehicles: Seq[Duelist]): Option[SteppedRollouts] =
+  def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[SteppedRollouts] =
     val each = vehicles.size
     model match
       case stepped: SteppedResponse =>
@@ -111,7 +111,7 @@ private object SteppedRollouts:
       case _ => None
 
   /** What flies so, in a line for the user; none where nothing does. */
-  def told(model: VelocityResponse, vehicles: Seq[Duelist]): Option[String] =
+  def told(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[String] =
     (model match
       case _: SteppedResponse                                                => Some("vehicles side by side")
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
@@ -119,7 +119,7 @@ private object SteppedRollouts:
       case _ => None
     ).map(_ + "; their loops by the scalar engine")
 
-  private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[Duelist]) =
+  private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[RolloutAgent]) =
     LaneSupport.present.isRight && LaneDynamics.of(model, vehicles).isRight
 
   /** Whose state fits the nearest memory. */

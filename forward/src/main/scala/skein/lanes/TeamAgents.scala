@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.Arrays
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.lanes.loop.{LaneAgents, LaneOffers, LaneVectors, LoopLanes}
 import skein.lanes.policy.{Directions, TeamLanes}
 import skein.lanes.timetable.{Timetable, TimetableAgents, ViewCall}
@@ -120,20 +120,20 @@ private object TeamDecisions:
 /** One vehicle of a team in many worlds. */
 private[lanes] trait TeamMember:
   /** Takes where a world's vehicle starts, and the numbers of its policy, which must be of the form. */
-  def take(world: Int, duelist: Duelist, numbers: Array[Double]): Unit
+  def take(world: Int, agent: RolloutAgent, numbers: Array[Double]): Unit
 
 /** One that meets the same delays in all worlds. */
-private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: LaneDynamics, team: TeamViews)
-    extends TimetableAgents(model.vehicles(duelist.copy(speed = 1))),
+private[lanes] class TeamAgents(self: Int, agent: RolloutAgent, model: LaneDynamics, team: TeamViews)
+    extends TimetableAgents(model.vehicles(agent.copy(speed = 1))),
       TeamMember:
   import TimetableAgents.WORLDS
 
   private val decisions = TeamDecisions(self, team)
   private val elapsedS  = Array.ofDim[Float](WORLDS)
 
-  def take(world: Int, duelist: Duelist, numbers: Array[Double]): Unit =
-    vehicles.place(world, duelist)
-    decisions.take(world, duelist.startHeadingRad, numbers)
+  def take(world: Int, agent: RolloutAgent, numbers: Array[Double]): Unit =
+    vehicles.place(world, agent)
+    decisions.take(world, agent.startHeadingRad, numbers)
 
   override def start(timetable: Timetable, worlds: Int): Unit =
     super.start(timetable, worlds)
@@ -163,19 +163,19 @@ private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: LaneDynamics
 /** One whose worlds have delays of their own. */
 private[lanes] final class LoopTeamAgents private (
     self: Int,
-    duelist: Duelist,
+    agent: RolloutAgent,
     loop: LoopLanes,
     model: LaneDynamics,
     team: TeamViews
-) extends LaneAgents(self, loop, model.deadTimeS, model.flights(duelist.copy(speed = 1), loop)),
+) extends LaneAgents(self, loop, model.deadTimeS, model.flights(agent.copy(speed = 1), loop)),
       TeamMember:
 
   private val decisions = TeamDecisions(self, team)
-  loop.carryForward(self, duelist.copy(speed = 1), vehicles)
+  loop.carryForward(self, agent.copy(speed = 1), vehicles)
 
-  def take(world: Int, duelist: Duelist, numbers: Array[Double]): Unit =
-    vehicles.place(world, duelist)
-    decisions.take(world, duelist.startHeadingRad, numbers)
+  def take(world: Int, agent: RolloutAgent, numbers: Array[Double]): Unit =
+    vehicles.place(world, agent)
+    decisions.take(world, agent.startHeadingRad, numbers)
 
   override def start(): Unit =
     super.start()
@@ -199,7 +199,7 @@ private[lanes] final class LoopTeamAgents private (
 private[lanes] object LoopTeamAgents:
   /** All of a team, by number. */
   def of(
-      team: Vector[Duelist],
+      team: Vector[RolloutAgent],
       loop: LoopLanes,
       model: LaneDynamics,
       views: TeamViews

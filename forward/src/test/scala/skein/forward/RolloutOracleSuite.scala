@@ -55,9 +55,9 @@ class RolloutOracleSuite extends munit.FunSuite:
         assertClose(here, Seq(there(0), -there(1), there(2), -there(3)), 1e-6)
 
     test(s"${loop.productPrefix}: nothing changes when the world is turned and moved"):
-      val plain            = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
-      val (cos, sin)       = (math.cos(0.7), math.sin(0.7))
-      def turn(d: Duelist) = d.copy(
+      val plain                 = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
+      val (cos, sin)            = (math.cos(0.7), math.sin(0.7))
+      def turn(d: RolloutAgent) = d.copy(
         startX = 100 + d.startX * cos - d.startY * sin,
         startY = -50 + d.startX * sin + d.startY * cos,
         startHeadingRad = d.startHeadingRad + 0.7

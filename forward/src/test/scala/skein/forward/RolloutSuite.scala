@@ -40,10 +40,10 @@ class RolloutSuite extends munit.FunSuite:
 
     test(s"under $loop nothing changes when the world is turned and moved"):
       // Off the axis, since straight ahead the pursuer's turn hangs on the sign of a rounding error.
-      val offset           = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
-      val angle            = 0.7
-      val (cos, sin)       = (math.cos(angle), math.sin(angle))
-      def turn(d: Duelist) = d.copy(
+      val offset                = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
+      val angle                 = 0.7
+      val (cos, sin)            = (math.cos(angle), math.sin(angle))
+      def turn(d: RolloutAgent) = d.copy(
         startX = 100 + d.startX * cos - d.startY * sin,
         startY = -50 + d.startX * sin + d.startY * cos,
         startHeadingRad = d.startHeadingRad + angle

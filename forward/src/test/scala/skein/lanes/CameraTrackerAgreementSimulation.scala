@@ -227,7 +227,7 @@ private object CameraTrackerAgreementSimulation:
   private def inputs(axis: Double, ownX: Double, ownY: Double, x: Double, y: Double, down: Double) =
     Array(axis, ownX, ownY, down, x, y, down, 0.0, 0.0)
 
-  final class SharedEye(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist)
+  final class SharedEye(forms: CameraTrackerLanes.Forms, own: RolloutAgent, opponent: RolloutAgent)
       extends TimetableEye(forms, own, opponent):
     /** By image, then by world. */
     val looks: ArrayBuffer[Vector[Looked]] = ArrayBuffer.empty
@@ -261,8 +261,8 @@ private object CameraTrackerAgreementSimulation:
 
   final class OwnEye(
       forms: CameraTrackerLanes.Forms,
-      own: Duelist,
-      opponent: Duelist,
+      own: RolloutAgent,
+      opponent: RolloutAgent,
       loop: LoopLanes,
       ours: LaneAgents,
       theirs: LaneAgents

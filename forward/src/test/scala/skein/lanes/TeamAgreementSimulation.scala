@@ -3,7 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{
   DelayTable,
-  Duelist,
+  RolloutAgent,
   Engagement,
   Grounds,
   LoopObserver,
@@ -169,8 +169,8 @@ object TeamAgreementSimulation:
       all += ((vehicle, decisions(vehicle), atNs * 1e-9))
       decisions(vehicle) += 1
 
-  final class Logged(self: Int, duelist: Duelist, model: LaneDynamics, team: TeamViews)
-      extends TeamAgents(self, duelist, model, team):
+  final class Logged(self: Int, agent: RolloutAgent, model: LaneDynamics, team: TeamViews)
+      extends TeamAgents(self, agent, model, team):
     val made: ArrayBuffer[Made] = ArrayBuffer.empty
 
     override def decide(

@@ -21,7 +21,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.vehicle.FirstOrderLag;
 import skein.vehicle.ReducedModel;
@@ -108,14 +108,14 @@ public final class LagVehicles extends LaneVehicles {
    * @param earliestS no reading is taken so long before its row's begin
    */
   public LagVehicles(
-      Duelist duelist, ReducedModel model, double periodS, double longestS, double earliestS) {
-    super(duelist, NUMBERS);
+      RolloutAgent agent, ReducedModel model, double periodS, double longestS, double earliestS) {
+    super(agent, NUMBERS);
     this.periodS = periodS;
     this.earliestS = (float) earliestS;
     allocate(8);
     lag = new FirstOrderLag(model.lagS());
     lagS = (float) model.lagS();
-    speedMps = (float) (duelist.speed() * model.gain());
+    speedMps = (float) (agent.speed() * model.gain());
     periodDecay = (float) lag.remains(periodS);
     periodGain = (float) lag.carriesS(periodS);
     rowsS = new float[4 + (int) Math.ceil((longestS + earliestS) / periodS)];

@@ -12,7 +12,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 
 /**
@@ -60,8 +60,8 @@ public abstract class LaneFlights extends LaneVehicles {
    * @param numbers that a piece has
    * @param pieceS how long a piece lasts at most, no longer than {@link #MOST_PIECE_S}
    */
-  public LaneFlights(Duelist duelist, int numbers, double pieceS, LoopLanes loop) {
-    super(duelist, 0);
+  public LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop) {
+    super(agent, 0);
     size = numbers * WORLDS;
     keptRows = loop.keptRows();
     periodGrains = LaneViews.grains(loop.periodS());

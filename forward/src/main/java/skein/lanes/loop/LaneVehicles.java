@@ -9,7 +9,7 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
@@ -42,15 +42,15 @@ public abstract class LaneVehicles {
   /**
    * @param own numbers of each world that the kind of vehicle keeps from {@link #OWN} on
    */
-  public LaneVehicles(Duelist duelist, int own) {
+  public LaneVehicles(RolloutAgent agent, int own) {
     state = new float[OWN + own * WORLDS];
-    for (int world = 0; world < WORLDS; world++) place(world, duelist);
+    for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
 
   /** Takes where a world's vehicle starts from now on. */
-  public final void place(int world, Duelist duelist) {
-    startX[world] = (float) duelist.startX();
-    startY[world] = (float) duelist.startY();
+  public final void place(int world, RolloutAgent agent) {
+    startX[world] = (float) agent.startX();
+    startY[world] = (float) agent.startY();
   }
 
   /** Back to the start of an episode, where they rest. */

@@ -10,7 +10,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.forward.DelayTable;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.forward.ImageTiming;
 import skein.forward.Nanos;
 import skein.forward.TabledDelays;
@@ -84,8 +84,8 @@ public class LoopEye extends CameraTrackerLanes {
    */
   public LoopEye(
       CameraTrackerLanes.Forms forms,
-      Duelist own,
-      Duelist opponent,
+      RolloutAgent own,
+      RolloutAgent opponent,
       LoopLanes loop,
       LaneAgents ours,
       LaneAgents theirs) {

@@ -8,7 +8,7 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.plant.PlantLanes;
 import skein.lanes.plant.PlantPieces;
 import skein.lanes.policy.Directions;
@@ -31,13 +31,13 @@ public final class PlantFlights extends LaneFlights {
   /** The state flown to. */
   private final float[] reached;
 
-  public PlantFlights(Duelist duelist, PlantLanes lanes, LoopLanes loop) {
-    super(duelist, lanes.pieces().kept(), lanes.plant().stepS(), loop);
+  public PlantFlights(RolloutAgent agent, PlantLanes lanes, LoopLanes loop) {
+    super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop);
     PlantPieces pieces = lanes.pieces();
     this.lanes = lanes;
     starts = pieces.starts();
     reached = new float[lanes.count() * WORLDS];
-    float[] parameters = pieces.parametersOf(lanes.plant(), duelist.speed());
+    float[] parameters = pieces.parametersOf(lanes.plant(), agent.speed());
     flown = bound(pieces.flown(), parameters);
     flown.output(0, reached, 0, 0);
     position = bound(pieces.position(), parameters);

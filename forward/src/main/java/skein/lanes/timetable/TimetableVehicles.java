@@ -1,6 +1,6 @@
 package skein.lanes.timetable;
 
-import skein.forward.Duelist;
+import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
@@ -21,14 +21,14 @@ public abstract class TimetableVehicles {
   /** Where each world's vehicle starts, north and east, m. */
   public final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
-  public TimetableVehicles(Duelist duelist) {
-    for (int world = 0; world < WORLDS; world++) place(world, duelist);
+  public TimetableVehicles(RolloutAgent agent) {
+    for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
 
   /** A world's vehicle starts where this one does. */
-  public final void place(int world, Duelist duelist) {
-    startX[world] = (float) duelist.startX();
-    startY[world] = (float) duelist.startY();
+  public final void place(int world, RolloutAgent agent) {
+    startX[world] = (float) agent.startX();
+    startY[world] = (float) agent.startY();
   }
 
   /**

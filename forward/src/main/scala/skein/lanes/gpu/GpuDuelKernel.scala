@@ -27,9 +27,9 @@ private[lanes] final class GpuDuelKernel(
       forms.map(form => form.parameters + form.memories),
       ScoreLanes.ofDistance(DuelKernel.judged(duel.durationS, periodS, asked).map(_._2)*)
     ):
-  private val duelists = Vector(duel.evader, duel.pursuer)
-  private val judged   = DuelKernel.judged(duel.durationS, periodS, asked)
-  private val efforts  = Vector(DuelNumber.EvaderEffort, DuelNumber.PursuerEffort).map(asked)
+  private val agents  = Vector(duel.evader, duel.pursuer)
+  private val judged  = DuelKernel.judged(duel.durationS, periodS, asked)
+  private val efforts = Vector(DuelNumber.EvaderEffort, DuelNumber.PursuerEffort).map(asked)
 
   val outcomes: Int = scores.initial.size + efforts.count(identity)
 
@@ -48,11 +48,11 @@ private[lanes] final class GpuDuelKernel(
       (outcome.place, outcome(_))
 
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body = new Body:
-    val vehicles: Vector[GpuVehicle] = duelists.map: duelist =>
-      vehicle(code, duelist, code.constant(duelist.startX.toFloat), code.constant(duelist.startY.toFloat))
-    val predictions: Vector[GpuPrediction] = prediction.toVector.flatMap(of => duelists.map(of(code, _)))
+    val vehicles: Vector[GpuVehicle] = agents.map: agent =>
+      vehicle(code, agent, code.constant(agent.startX.toFloat), code.constant(agent.startY.toFloat))
+    val predictions: Vector[GpuPrediction] = prediction.toVector.flatMap(of => agents.map(of(code, _)))
     private val effort                     = Vector.fill(2)(Variables(code, Seq(0f)))
-    private val heading = duelists.map(each => Variables(code, Seq(each.startHeadingRad.toFloat)))
+    private val heading = agents.map(each => Variables(code, Seq(each.startHeadingRad.toFloat)))
     private val memory  = forms.map(form => Variables(code, Seq.fill(form.memories)(0f)))
     private val radius  = code.argument("limit")
 
@@ -62,7 +62,7 @@ private[lanes] final class GpuDuelKernel(
       memory(self).take(Vector.tabulate(forms(self).memories)(i => numbers(self)(forms(self).parameters + i)))
       // The timetable keeps the first heading at place 0.
       val at         = code.own(code.whole(layout.heading(self, 0)))
-      val headingRad = duelists(self).startHeadingRad.toFloat.toDouble
+      val headingRad = agents(self).startHeadingRad.toFloat.toDouble
       code.storeOwn(code.constant(StrictMath.cos(headingRad).toFloat), at, 0)
       code.storeOwn(code.constant(StrictMath.sin(headingRad).toFloat), at, 1)
 
@@ -97,7 +97,7 @@ private[lanes] final class GpuDuelKernel(
       memory(self).take(decided.slice(first, first + form.memories))
       if form.keepsHeading then heading(self).take(Seq(decided(first + form.memories)))
 
-    def altitude(vehicle: Int): Int                = code.constant(duelists(vehicle).altitudeDownM.toFloat)
+    def altitude(vehicle: Int): Int                = code.constant(agents(vehicle).altitudeDownM.toFloat)
     def quantity(number: Int, parameter: Int): Int =
       throw IllegalStateException("a distance has no parameters")
     def limit(number: Int): Int = radius

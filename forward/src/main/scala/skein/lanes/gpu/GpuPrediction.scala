@@ -1,6 +1,6 @@
 package skein.lanes.gpu
 
-import skein.forward.{Duelist, LoopTiming}
+import skein.forward.{RolloutAgent, LoopTiming}
 import skein.gpu.{Ptx, Variables}
 import skein.lanes.loop.{CoastPredictor, LagPredictor, LanePredictor, PlantPredictor}
 import skein.lanes.plant.PlantLanes
@@ -27,7 +27,7 @@ private[lanes] trait GpuPrediction:
   def end(now: GpuRecord): Vector[Int]
 
 private[lanes] object GpuPrediction:
-  type Kind = (Ptx, Duelist) => GpuPrediction
+  type Kind = (Ptx, RolloutAgent) => GpuPrediction
 
   /** What a loop predicts by, if it does.
     *
@@ -66,9 +66,9 @@ private[lanes] object GpuPrediction:
     for i <- 1 until of.perPart do tell(from + i - 1, of.numbers(part * of.perPart + i))
 
 /** By [[skein.lanes.timetable.PredictedLagVehicles]]. */
-private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) extends GpuPrediction:
+private final class GpuLagPrediction(code: Ptx, agent: RolloutAgent, gain: Double) extends GpuPrediction:
   private val predicted = Variables(code, Seq.fill(4)(0f))
-  private val speed     = code.constant((duelist.speed * gain).toFloat)
+  private val speed     = code.constant((agent.speed * gain).toFloat)
 
   def begin(now: GpuRecord, reading: Vector[Int]): Unit =
     val (carried, kept)      = (now.time(0), now.time(1))
@@ -88,9 +88,10 @@ private final class GpuLagPrediction(code: Ptx, duelist: Duelist, gain: Double) 
   def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
 
 /** By [[skein.lanes.timetable.PredictedPlants]], where the state is what is read. */
-private final class GpuPlantPrediction(code: Ptx, duelist: Duelist, lanes: PlantLanes) extends GpuPrediction:
+private final class GpuPlantPrediction(code: Ptx, agent: RolloutAgent, lanes: PlantLanes)
+    extends GpuPrediction:
   private val zero    = code.constant(0f)
-  private val flight  = GpuStages(code, lanes, duelist.speed, zero, zero)
+  private val flight  = GpuStages(code, lanes, agent.speed, zero, zero)
   private val state   = Variables(code, Seq.fill(lanes.count)(0f))
   private val isBegun = code.fresh()
 

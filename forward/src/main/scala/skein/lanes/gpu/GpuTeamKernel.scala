@@ -1,6 +1,6 @@
 package skein.lanes.gpu
 
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.gpu.{Gpu, Ptx, PtxExpressions}
 import skein.lanes.policy.TeamLanes
 import skein.lanes.score.{OfMoment, ScoreLanes}
@@ -13,7 +13,7 @@ import skein.simd.BoundFunction
   */
 private[lanes] final class GpuTeamKernel(
     gpu: Gpu,
-    vehicles: Vector[Duelist],
+    vehicles: Vector[RolloutAgent],
     vehicle: GpuVehicle.Kind,
     prediction: Option[GpuPrediction.Kind],
     team: TeamLanes,
@@ -35,8 +35,8 @@ private[lanes] final class GpuTeamKernel(
     private val first         = firstOf(team)
     private val firstQuantity = first.last
 
-    val vehicles: Vector[GpuVehicle] = GpuTeamKernel.this.vehicles.zipWithIndex.map: (duelist, self) =>
-      vehicle(code, duelist.copy(speed = 1), number(first(self)), number(first(self) + 1))
+    val vehicles: Vector[GpuVehicle] = GpuTeamKernel.this.vehicles.zipWithIndex.map: (agent, self) =>
+      vehicle(code, agent.copy(speed = 1), number(first(self)), number(first(self) + 1))
 
     val predictions: Vector[GpuPrediction] =
       prediction.toVector.flatMap(of =>
@@ -108,11 +108,11 @@ private object GpuTeamKernel:
     * @param ofQuantities by what is judged
     */
   def numbersOf(
-      vehicles: Vector[Duelist],
+      vehicles: Vector[RolloutAgent],
       ofPolicies: Vector[Array[Double]],
       ofQuantities: Vector[Array[Double]]
   ): Array[Float] =
-    val starts = vehicles.zip(ofPolicies).flatMap: (duelist, own) =>
-      val headingRad = duelist.startHeadingRad
-      Vector(duelist.startX, duelist.startY, StrictMath.cos(headingRad), StrictMath.sin(headingRad)) ++ own
+    val starts = vehicles.zip(ofPolicies).flatMap: (agent, own) =>
+      val headingRad = agent.startHeadingRad
+      Vector(agent.startX, agent.startY, StrictMath.cos(headingRad), StrictMath.sin(headingRad)) ++ own
     (starts ++ ofQuantities.flatten).map(_.toFloat).toArray

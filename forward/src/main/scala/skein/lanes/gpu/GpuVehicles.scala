@@ -1,7 +1,7 @@
 package skein.lanes.gpu
 
 import skein.forward.{
-  Duelist,
+  RolloutAgent,
   PlantResponse,
   QuadrotorResponse,
   VelocityResponse
@@ -28,7 +28,7 @@ private[lanes] object GpuVehicle:
     *
     * Takes the registers of where it starts, north and east, m.
     */
-  type Kind = (Ptx, Duelist, Int, Int) => GpuVehicle
+  type Kind = (Ptx, RolloutAgent, Int, Int) => GpuVehicle
 
   /** Those that respond so.
     *
@@ -41,9 +41,14 @@ private[lanes] object GpuVehicle:
     case _ => Left("the GPU does not know the vehicle")
 
 /** By [[PlantStages]]. */
-private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, startY: Int, lanes: PlantLanes)
-    extends GpuVehicle:
-  private val flight      = GpuStages(code, lanes, duelist.speed, startX, startY)
+private[lanes] final class GpuPlant(
+    code: Ptx,
+    agent: RolloutAgent,
+    startX: Int,
+    startY: Int,
+    lanes: PlantLanes
+) extends GpuVehicle:
+  private val flight      = GpuStages(code, lanes, agent.speed, startX, startY)
   private val isCommanded = code.fresh()
 
   def start(): Unit =
@@ -85,14 +90,14 @@ private[lanes] final class GpuPlant(code: Ptx, duelist: Duelist, startX: Int, st
 /** By the steps of [[QuadrotorLanes]], as [[TimetableQuadrotors]] are. */
 private[lanes] final class GpuQuadrotor(
     code: Ptx,
-    duelist: Duelist,
+    agent: RolloutAgent,
     startX: Int,
     startY: Int,
     lanes: QuadrotorLanes
 ) extends GpuVehicle:
-  private val hovering = lanes.numbersOf(lanes.quadrotor.hovering(lanes.holdingAt(duelist.altitudeDownM)))
+  private val hovering = lanes.numbersOf(lanes.quadrotor.hovering(lanes.holdingAt(agent.altitudeDownM)))
   private val state    = Variables(code, hovering.map(_.toFloat))
-  private val goal     = Variables(code, Seq(0f, 0f, lanes.holdingAt(duelist.altitudeDownM).z.toFloat))
+  private val goal     = Variables(code, Seq(0f, 0f, lanes.holdingAt(agent.altitudeDownM).z.toFloat))
 
   def start(): Unit =
     state.start()
@@ -117,11 +122,11 @@ private[lanes] final class GpuQuadrotor(
 
   def act(record: GpuRecord, north: Int, east: Int): Unit =
     fly(record)
-    val speed = code.constant(duelist.speed.toFloat)
+    val speed = code.constant(agent.speed.toFloat)
     goal.take(Seq(
       code.two("mul.rn", north, speed),
       code.two("mul.rn", east, speed),
-      code.constant(duelist.altitudeDownM.toFloat)
+      code.constant(agent.altitudeDownM.toFloat)
     ))
 
   private def fly(record: GpuRecord): Unit =

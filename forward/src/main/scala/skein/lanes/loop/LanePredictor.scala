@@ -1,6 +1,6 @@
 package skein.lanes.loop
 
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.lanes.plant.{PlantCorrection, PlantLanes}
 import skein.lanes.timetable.{
   CommandPropagator,
@@ -17,7 +17,7 @@ import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel,
 /** A kind of model that carries readings forward by lanes. */
 private[skein] trait LanePredictor extends TimetablePredictor:
   /** All worlds' predictions of one vehicle where every world has delays of its own. */
-  def alone(duelist: Duelist): ForecastVehicles
+  def alone(agent: RolloutAgent): ForecastVehicles
 
 private[skein] object LanePredictor:
   /** @return or why this model does not predict by lanes
@@ -34,8 +34,8 @@ private[skein] object LanePredictor:
 
 /** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
 private[lanes] object CoastPredictor extends LanePredictor, Propagator:
-  def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
-  def alone(duelist: Duelist): ForecastVehicles            = ForecastCoasting()
+  def vehicles(agent: RolloutAgent): PredictedVehicles     = PredictedLagVehicles(0)
+  def alone(agent: RolloutAgent): ForecastVehicles         = ForecastCoasting()
   def deadTimeS: Double                                    = 0
   def propagator: Propagator                               = this
   def next(legs: Vector[Propagator.Leg]): Propagator       = this
@@ -46,9 +46,9 @@ private[lanes] object CoastPredictor extends LanePredictor, Propagator:
   * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
   */
 private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePredictor:
-  def deadTimeS: Double                             = model.deadTimeS
-  def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
-  def alone(duelist: Duelist): ForecastVehicles = ForecastLagVehicles(duelist.speed * model.gain, model.lagS)
+  def deadTimeS: Double                                = model.deadTimeS
+  def vehicles(agent: RolloutAgent): PredictedVehicles = PredictedLagVehicles(agent.speed * model.gain)
+  def alone(agent: RolloutAgent): ForecastVehicles = ForecastLagVehicles(agent.speed * model.gain, model.lagS)
 
   def propagator: Propagator = CommandPropagator(model.deadTimeS, propagation)
 
@@ -65,10 +65,10 @@ private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction:
     extends LanePredictor:
   private val tell = lanes.stages.tell(lanes.plant)
 
-  override def remembers: Boolean                   = !correction.isTold
-  def deadTimeS: Double                             = lanes.plant.deadTimeS
-  def vehicles(duelist: Duelist): PredictedVehicles = PredictedPlants(lanes, correction, duelist.speed)
-  def alone(duelist: Duelist): ForecastVehicles     = ForecastPlants(lanes, correction, duelist.speed)
+  override def remembers: Boolean                      = !correction.isTold
+  def deadTimeS: Double                                = lanes.plant.deadTimeS
+  def vehicles(agent: RolloutAgent): PredictedVehicles = PredictedPlants(lanes, correction, agent.speed)
+  def alone(agent: RolloutAgent): ForecastVehicles     = ForecastPlants(lanes, correction, agent.speed)
 
   def propagator: Propagator =
     CommandPropagator(lanes.plant.deadTimeS, (flown, _) => propagation(flown))

@@ -1,7 +1,7 @@
 package skein.lanes.loop
 
 import scala.collection.mutable
-import skein.forward.{Delays, Duelist, LoopTiming, Steering, TabledDelays}
+import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
 
 /** A loop for worlds with delays of their own: what it offers to whom, how it lets commands go, and for how
   * long vehicles have to remember. Mutable as its offers are: one per kernel.
@@ -30,8 +30,8 @@ private[lanes] final class LoopLanes(
     predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS))
 
   /** From now on a vehicle's readings are carried forward, if the loop does. */
-  def carryForward(vehicle: Int, duelist: Duelist, read: LaneVehicles): Unit =
-    for by <- predictor do forecast.follow(vehicle, by.alone(duelist), read)
+  def carryForward(vehicle: Int, agent: RolloutAgent, read: LaneVehicles): Unit =
+    for by <- predictor do forecast.follow(vehicle, by.alone(agent), read)
 
   val offers: LaneOffers = timing match
     case stream: LoopTiming.Stream         => StreamOffers(stream, vehicles, durationS, maxDelayS, shortCut)

@@ -12,7 +12,7 @@ import skein.lanes.timetable.StandingStill
   */
 private[lanes] final class ViewSource private (
     timing: LoopTiming.Stream,
-    world: DuelWorld,
+    world: RolloutWorld,
     link: StandingStill.Link,
     durationS: Double,
     ahead: Int
@@ -100,7 +100,7 @@ private[lanes] object ViewSource:
   ): ViewSource =
     val link     = StandingStill.Link()
     val longestS = timing.asking.timeoutS.min(2 * maxDelayS)
-    val world    = DuelWorld(
+    val world    = RolloutWorld(
       StandingStill.engagement(vehicles, durationS),
       link,
       StandingStill.Response(),

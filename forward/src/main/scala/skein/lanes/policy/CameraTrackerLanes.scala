@@ -2,7 +2,7 @@ package skein.lanes.policy
 
 import java.util.Arrays
 import skein.formula.Untraceable
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.fusion.{SensorFormulas, SensorModel}
 import skein.simd.FixedFormula
 
@@ -13,8 +13,8 @@ import skein.simd.FixedFormula
   */
 private[lanes] abstract class CameraTrackerLanes(
     forms: CameraTrackerLanes.Forms,
-    own: Duelist,
-    opponent: Duelist
+    own: RolloutAgent,
+    opponent: RolloutAgent
 ):
   import CameraTrackerLanes.*
 

@@ -1,7 +1,7 @@
 package skein.lanes.score
 
 import java.util.Arrays
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
 import skein.scenario.Reduction
 
@@ -43,7 +43,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
           shown.call.input(place, parameters(number), parameter * worlds)
 
   /** Takes the numbers of what a world is judged by. */
-  def take(world: Int, vehicles: Vector[Duelist], numbers: Vector[Array[Double]]): Unit =
+  def take(world: Int, vehicles: Vector[RolloutAgent], numbers: Vector[Array[Double]]): Unit =
     for (vehicle, i) <- vehicles.zipWithIndex do altitudes(i * worlds + world) = vehicle.altitudeDownM.toFloat
     for (values, number) <- numbers.zipWithIndex; i <- values.indices do
       parameters(number)(i * worlds + world) = values(i).toFloat

@@ -1,6 +1,6 @@
 package skein.lanes.timetable
 
-import skein.forward.{Asking, DuelWorld, ImageTiming, LoopObserver, TabledDelays}
+import skein.forward.{Asking, RolloutWorld, ImageTiming, LoopObserver, TabledDelays}
 import skein.fusion.SensorModel
 
 /** What happens to the images of one world's vehicle, one thing after the other. Nothing of it depends on
@@ -9,7 +9,7 @@ import skein.fusion.SensorModel
 private[lanes] final class ImageSource private (
     model: SensorModel,
     agent: Int,
-    world: DuelWorld,
+    world: RolloutWorld,
     link: StandingStill.Link
 ) extends ImageTiming(world, agent, model, link):
   private var isTold = false
@@ -43,7 +43,7 @@ private[lanes] final class ImageSource private (
     isTold = false
     while !isTold do
       val event = world.next()
-      handle(DuelWorld.kindOf(event), DuelWorld.numberOf(event))
+      handle(RolloutWorld.kindOf(event), RolloutWorld.numberOf(event))
 
   private def tell(number: Int, taken: Boolean): Unit =
     image = number
@@ -67,7 +67,7 @@ private[lanes] object ImageSource:
   /** @param agent the vehicle whose images are told of, in a duel */
   def apply(model: SensorModel, agent: Int, durationS: Double): ImageSource =
     val link  = StandingStill.Link()
-    val world = DuelWorld(
+    val world = RolloutWorld(
       StandingStill.engagement(2, durationS),
       link,
       StandingStill.Response(),

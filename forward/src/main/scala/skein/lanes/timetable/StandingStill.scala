@@ -1,6 +1,6 @@
 package skein.lanes.timetable
 
-import skein.forward.{DelayTable, Delays, Duelist, Engagement, TabledDelays, Vehicle, VelocityResponse}
+import skein.forward.{DelayTable, Delays, RolloutAgent, Engagement, TabledDelays, Vehicle, VelocityResponse}
 import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
 
@@ -12,7 +12,7 @@ private[lanes] object StandingStill:
     */
   def engagement(vehicles: Int, durationS: Double, eyes: Map[Int, SensorModel] = Map.empty): Engagement =
     Engagement(
-      Vector.tabulate(vehicles)(self => Duelist(0, 0, 0, 0, 0, KeepHeading, eyes.get(self))),
+      Vector.tabulate(vehicles)(self => RolloutAgent(0, 0, 0, 0, 0, KeepHeading, eyes.get(self))),
       Role.Evader +: Vector.fill(vehicles - 1)(Role.Pursuer),
       Assignment(Vector.tabulate(vehicles)(self => Vector(if self == 0 then 1 else 0))),
       durationS

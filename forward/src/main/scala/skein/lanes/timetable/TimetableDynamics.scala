@@ -1,6 +1,6 @@
 package skein.lanes.timetable
 
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 
 /** How a kind of vehicle flies by [[Timetable]]s. */
 private[skein] trait TimetableDynamics:
@@ -15,9 +15,9 @@ private[skein] trait TimetableDynamics:
 
   /** All worlds' vehicles of one number; what differs between worlds is told to them.
     *
-    * @param duelist its speed is that of a direction of length 1
+    * @param agent its speed is that of a direction of length 1
     */
-  def vehicles(duelist: Duelist): TimetableVehicles
+  def vehicles(agent: RolloutAgent): TimetableVehicles
 
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None

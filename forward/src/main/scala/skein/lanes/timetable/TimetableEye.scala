@@ -1,12 +1,12 @@
 package skein.lanes.timetable
 
 import java.util.Arrays
-import skein.forward.{Duelist, ImageTiming}
+import skein.forward.{RolloutAgent, ImageTiming}
 import skein.lanes.policy.CameraTrackerLanes
 
 /** An eye in many worlds that take the same images at the same times, which a [[Timetable]] tells. Mutable.
   */
-private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist)
+private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutAgent, opponent: RolloutAgent)
     extends CameraTrackerLanes(forms, own, opponent):
   import CameraTrackerLanes.{Belief, Detection}
   import TimetableAgents.WORLDS

@@ -1,7 +1,7 @@
 package skein.lanes.timetable
 
 import java.util.Arrays
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.lanes.plant.{PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
@@ -9,10 +9,10 @@ import skein.lanes.policy.Directions
   * by the numbers of [[skein.lanes.plant.PlantStages]] how long it is after the last of these. The scalar
   * reference is `skein.forward.PlantVehicle`.
   */
-private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
-    extends TimetableVehicles(duelist):
+private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes)
+    extends TimetableVehicles(agent):
   import TimetableVehicles.WORLDS
-  private val flight      = StagedFlight(lanes, duelist.speed, startX, startY)
+  private val flight      = StagedFlight(lanes, agent.speed, startX, startY)
   private val resting     = lanes.resting
   private var isCommanded = false
 

@@ -1,6 +1,6 @@
 package skein.lanes.timetable
 
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 
 /** A kind of model that carries readings forward by [[Timetable]]s. */
 private[skein] trait TimetablePredictor:
@@ -8,7 +8,7 @@ private[skein] trait TimetablePredictor:
   def propagator: Propagator
 
   /** All worlds' predictions of one vehicle. */
-  def vehicles(duelist: Duelist): PredictedVehicles
+  def vehicles(agent: RolloutAgent): PredictedVehicles
 
   /** Whether readings do not tell all that is known of a vehicle. */
   def remembers: Boolean = false

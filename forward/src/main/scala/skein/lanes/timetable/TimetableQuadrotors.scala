@@ -1,7 +1,7 @@
 package skein.lanes.timetable
 
 import skein.formula.Trace
-import skein.forward.Duelist
+import skein.forward.RolloutAgent
 import skein.lanes.plant.LaneQuadrotors
 import skein.lanes.policy.Directions
 import skein.simd.{BoundFunction, LaneCall}
@@ -12,11 +12,11 @@ import skein.simd.{BoundFunction, LaneCall}
   * frames with their origin at the start, where floats are finest. The scalar reference is
   * `skein.forward.QuadrotorVehicle`.
   */
-private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuadrotors)
-    extends TimetableVehicles(duelist):
+private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQuadrotors)
+    extends TimetableVehicles(agent):
   import TimetableQuadrotors.*
   import TimetableVehicles.WORLDS
-  private val hold     = flown.holdingAt(duelist.altitudeDownM)
+  private val hold     = flown.holdingAt(agent.altitudeDownM)
   private val carried  = Array.ofDim[Float](2)
   private val position = LaneCall(placed, carried)
   private val velocity = LaneCall(moved, carried)
@@ -56,7 +56,7 @@ private[lanes] final class TimetableQuadrotors(duelist: Duelist, flown: LaneQuad
 
   def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
     flown.fly(times(at).toInt)
-    flown.command(commanded, from, duelist.speed.toFloat, duelist.altitudeDownM.toFloat)
+    flown.command(commanded, from, agent.speed.toFloat, agent.altitudeDownM.toFloat)
 
 private[lanes] object TimetableQuadrotors:
   private val trace = Trace()

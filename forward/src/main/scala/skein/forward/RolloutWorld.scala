@@ -7,9 +7,9 @@ import skein.signal.{Kinematics, Stamped}
   * way to and from the vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
   *
   * @param standsStill while it is decided
-  * @param ring [[DuelWorld.ringOf]]
+  * @param ring [[RolloutWorld.ringOf]]
   */
-private[skein] final class DuelWorld(
+private[skein] final class RolloutWorld(
     engagement: Engagement,
     link: Delays,
     model: VelocityResponse,
@@ -18,9 +18,9 @@ private[skein] final class DuelWorld(
     val standsStill: Boolean,
     val ring: Int
 ):
-  import DuelWorld.*
+  import RolloutWorld.*
 
-  val agents: Array[Duelist]         = engagement.agents.toArray
+  val agents: Array[RolloutAgent]    = engagement.agents.toArray
   val assignment: Assignment         = engagement.assignment
   val count: Int                     = agents.length
   val vehicles: Array[Vehicle]       = Array.fill(count)(model.create())
@@ -184,7 +184,7 @@ private[skein] final class DuelWorld(
     vehicles(agent).advance(nowS)
     vehicles(agent).command(speedMps * StrictMath.cos(headingRad), speedMps * StrictMath.sin(headingRad))
 
-private[skein] object DuelWorld:
+private[skein] object RolloutWorld:
   // Kinds of events.
   val ScoreNow      = 0
   val Tick          = 1
