@@ -59,6 +59,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       FloatVector end = FloatVector.fromArray(SPECIES, endS, i);
+      // The powers are written out: by LaneMath.powerOf2 the loop makes 0.83 of the steps a second.
       FloatVector exponent = end.mul(halvings).max(least);
       FloatVector rounded = exponent.add(round);
       FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);

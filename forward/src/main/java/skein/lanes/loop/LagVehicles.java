@@ -7,14 +7,9 @@ import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.LOG2_E;
 import static skein.simd.LaneMath.ONE;
-import static skein.simd.LaneMath.POWER_1;
-import static skein.simd.LaneMath.POWER_2;
-import static skein.simd.LaneMath.POWER_3;
-import static skein.simd.LaneMath.POWER_4;
-import static skein.simd.LaneMath.POWER_5;
-import static skein.simd.LaneMath.ROUND;
 import static skein.simd.LaneMath.SPECIES;
 import static skein.simd.LaneMath.ZERO;
+import static skein.simd.LaneMath.powerOf2;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
@@ -151,14 +146,7 @@ public final class LagVehicles extends LaneVehicles {
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         speed = FloatVector.broadcast(SPECIES, speedMps),
         doublings = FloatVector.broadcast(SPECIES, LOG2_E / lagS),
-        zero = FloatVector.broadcast(SPECIES, 0f),
-        one = FloatVector.broadcast(SPECIES, 1f),
-        round = FloatVector.broadcast(SPECIES, ROUND),
-        power1 = FloatVector.broadcast(SPECIES, POWER_1),
-        power2 = FloatVector.broadcast(SPECIES, POWER_2),
-        power3 = FloatVector.broadcast(SPECIES, POWER_3),
-        power4 = FloatVector.broadcast(SPECIES, POWER_4),
-        power5 = FloatVector.broadcast(SPECIES, POWER_5);
+        zero = FloatVector.broadcast(SPECIES, 0f);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector grains = IntVector.fromArray(INTS, acts, i);
@@ -169,16 +157,7 @@ public final class LagVehicles extends LaneVehicles {
       FloatVector at =
           zero.blend(((FloatVector) grains.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS), yes);
       at.intoArray(commands, slot + AT + i);
-      FloatVector exponent = at.mul(doublings);
-      FloatVector rounded = exponent.add(round);
-      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
-      rest.fma(power5, power4)
-          .fma(square, rest.fma(power3, power2))
-          .fma(square, rest.fma(power1, one))
-          .reinterpretAsInts()
-          .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
-          .reinterpretAsFloats()
-          .intoArray(commands, slot + GROWTH + i);
+      powerOf2(at.mul(doublings)).intoArray(commands, slot + GROWTH + i);
       FloatVector beforeX = FloatVector.fromArray(SPECIES, state, SENT_X + i),
           beforeY = FloatVector.fromArray(SPECIES, state, SENT_Y + i);
       FloatVector nowX = beforeX.blend(FloatVector.fromArray(SPECIES, cos, i).mul(speed), yes),
@@ -287,14 +266,7 @@ public final class LagVehicles extends LaneVehicles {
         minusLag = FloatVector.broadcast(SPECIES, -lagS),
         halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
         grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
-        zero = FloatVector.broadcast(SPECIES, 0f),
-        one = FloatVector.broadcast(SPECIES, 1f),
-        round = FloatVector.broadcast(SPECIES, ROUND),
-        power1 = FloatVector.broadcast(SPECIES, POWER_1),
-        power2 = FloatVector.broadcast(SPECIES, POWER_2),
-        power3 = FloatVector.broadcast(SPECIES, POWER_3),
-        power4 = FloatVector.broadcast(SPECIES, POWER_4),
-        power5 = FloatVector.broadcast(SPECIES, POWER_5);
+        zero = FloatVector.broadcast(SPECIES, 0f);
     for (int n = 0; n < vectors.count; n++) {
       int i = vectors.first[n];
       FloatVector end =
@@ -302,16 +274,7 @@ public final class LagVehicles extends LaneVehicles {
                   IntVector.fromArray(INTS, sampledAt, i)
                       .convertShape(VectorOperators.I2F, SPECIES, 0))
               .mul(grainS);
-      FloatVector exponent = end.mul(halvings);
-      FloatVector rounded = exponent.add(round);
-      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
-      FloatVector decay =
-          rest.fma(power5, power4)
-              .fma(square, rest.fma(power3, power2))
-              .fma(square, rest.fma(power1, one))
-              .reinterpretAsInts()
-              .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
-              .reinterpretAsFloats();
+      FloatVector decay = powerOf2(end.mul(halvings));
       FloatVector wantedX = FloatVector.fromArray(SPECIES, state, WANTED_X + i),
           wantedY = FloatVector.fromArray(SPECIES, state, WANTED_Y + i),
           lackX = FloatVector.fromArray(SPECIES, state, LACK_X + i),
