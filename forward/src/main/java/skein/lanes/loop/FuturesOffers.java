@@ -95,7 +95,7 @@ final class FuturesOffers extends LaneOffers {
   }
 
   @Override
-  public void start(int[] worldKeys, TabledDelays[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
     for (int[] each : latest) Arrays.fill(each, PAST);
     Arrays.fill(began, PAST);
@@ -166,7 +166,7 @@ final class FuturesOffers extends LaneOffers {
   }
 
   @Override
-  public void startRow(int number) {
+  void startRow(int number) {
     row = number;
     draw();
     while (oldest < row && isEmpty(end, oldest & ring - 1)) oldest++;
@@ -178,7 +178,7 @@ final class FuturesOffers extends LaneOffers {
   }
 
   @Override
-  public boolean nextBeat() {
+  boolean nextBeat() {
     boolean any = false;
     for (int[] each : soonest) any |= isBefore(each, periodGrains);
     if (!any) return false;

@@ -122,7 +122,7 @@ public final class LagVehicles extends LaneVehicles {
   }
 
   @Override
-  public void start() {
+  void start() {
     super.start();
     oldest = 0;
     first = 0;

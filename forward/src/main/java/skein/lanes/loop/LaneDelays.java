@@ -19,7 +19,7 @@ import skein.simd.WorldRandom;
  * other operations, which go on meanwhile. Where a link's table changes ({@link TabledDelays}), it
  * depends on when a message is sent; such worlds are looked after one by one.
  */
-public final class LaneDelays {
+final class LaneDelays {
   private static final int WORLDS = LanePolicy.WORLDS;
   /** Of a hash but for its last step, which does not change the upper bits, these are left out. */
   static final int DROP = DelayTable.Drop();
@@ -51,7 +51,7 @@ public final class LaneDelays {
 
   private final int[] sentAt = new int[WORLDS];
 
-  public void start(int[] worldKeys, TabledDelays[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     keys = worldKeys;
     starts++;
     tableCount = 0;
@@ -103,7 +103,7 @@ public final class LaneDelays {
   }
 
   /** Where the random numbers of a step begin. */
-  public static int placeOf(int step) {
+  static int placeOf(int step) {
     return step * Delays.Lines() * WorldRandom.STRIDE;
   }
 

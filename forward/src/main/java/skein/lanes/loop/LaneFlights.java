@@ -28,7 +28,7 @@ public abstract class LaneFlights extends LaneVehicles {
    * Where the numbers of a piece stand: the command's direction, north, then east; what follows, the kind
    * of vehicle says.
    */
-  public static final int ALONG_X = 0, ALONG_Y = WORLDS;
+  static final int ALONG_X = 0, ALONG_Y = WORLDS;
 
   /** The longest a piece may last, s: far less than times are told apart by. */
   public static final double MOST_PIECE_S = 1;
@@ -60,7 +60,7 @@ public abstract class LaneFlights extends LaneVehicles {
    * @param numbers that a piece has
    * @param pieceS how long a piece lasts at most, no longer than {@link #MOST_PIECE_S}
    */
-  public LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop) {
+  LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop) {
     super(agent, 0);
     size = numbers * WORLDS;
     keptRows = loop.keptRows();
@@ -73,7 +73,7 @@ public abstract class LaneFlights extends LaneVehicles {
   }
 
   @Override
-  public final void start() {
+  final void start() {
     super.start();
     Arrays.fill(begins, 0, WORLDS, 0);
     Arrays.fill(pieces, 0, size, 0f);

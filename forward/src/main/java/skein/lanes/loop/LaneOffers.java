@@ -20,20 +20,20 @@ import skein.lanes.policy.LanePolicy;
  * all worlds have one in every beat. Times are in {@link DelayTable#GrainNs} from the period's begin.
  */
 public abstract class LaneOffers {
-  public static final int WORLDS = LanePolicy.WORLDS;
+  static final int WORLDS = LanePolicy.WORLDS;
 
   /** In the place of a vehicle: everyone. */
-  public static final int ALL = -1;
+  static final int ALL = -1;
 
   /** In the place of a time: none. */
   public static final int NONE = LaneViews.NONE;
 
   final LaneDelays delays;
 
-  public final int vehicles;
+  final int vehicles;
 
   /** Whether every offer is made to all. */
-  public final boolean together;
+  final boolean together;
 
   /** So many periods behind the present one, a beat may have offers of. */
   final int rowsAhead;
@@ -48,15 +48,15 @@ public abstract class LaneOffers {
   public int[] joinedAt, nextAt;
 
   /** By vehicle: when it was read. */
-  public final int[][] sampledAt;
+  final int[][] sampledAt;
 
   /** By vehicle: 1 where the reading is another than before; null where they all are. */
-  public final int[][] fresh;
+  final int[][] fresh;
 
   /** By agent: the step that its command belongs to, in places of the random sequence from the period's. */
-  public final int[][] place;
+  final int[][] place;
 
-  public LaneOffers(int vehicles, LaneDelays delays, boolean together, int rowsAhead) {
+  LaneOffers(int vehicles, LaneDelays delays, boolean together, int rowsAhead) {
     this.vehicles = vehicles;
     sampledAt = new int[vehicles][];
     fresh = new int[vehicles][];
@@ -80,13 +80,13 @@ public abstract class LaneOffers {
     }
   }
 
-  public abstract void start(int[] worldKeys, TabledDelays[] links);
+  abstract void start(int[] worldKeys, TabledDelays[] links);
 
   /** To a period; they are taken in turn, from 0. */
-  public abstract void startRow(int row);
+  abstract void startRow(int row);
 
   /** To the next beat of the period, if it has one. */
-  public abstract boolean nextBeat();
+  abstract boolean nextBeat();
 
   /** Whether the beat's offers are made to a vehicle's controller. */
   final boolean isFor(int vehicle) {
@@ -94,7 +94,7 @@ public abstract class LaneOffers {
   }
 
   /** Whether no world has a time in a slot, of times by vehicle and slot. */
-  public static boolean isEmpty(int[][][] times, int slot) {
+  static boolean isEmpty(int[][][] times, int slot) {
     for (int[][] each : times) if (isBefore(each[slot], NONE)) return false;
     return true;
   }

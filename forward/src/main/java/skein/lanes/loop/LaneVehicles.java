@@ -26,7 +26,7 @@ public abstract class LaneVehicles {
    * velocity as read last, m and m/s; north, then east. The kind of vehicle may keep more from {@link
    * #OWN} on: passes over many arrays spend their time on their addresses.
    */
-  public static final int X = 0,
+  static final int X = 0,
       Y = WORLDS,
       SEEN_X = 2 * WORLDS,
       SEEN_Y = 3 * WORLDS,
@@ -42,7 +42,7 @@ public abstract class LaneVehicles {
   /**
    * @param own numbers of each world that the kind of vehicle keeps from {@link #OWN} on
    */
-  public LaneVehicles(RolloutAgent agent, int own) {
+  LaneVehicles(RolloutAgent agent, int own) {
     state = new float[OWN + own * WORLDS];
     for (int world = 0; world < WORLDS; world++) place(world, agent);
   }

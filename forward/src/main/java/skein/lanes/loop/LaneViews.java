@@ -30,8 +30,8 @@ import skein.simd.WorldRandom;
  * {@link Rollout} to the nanosecond.
  */
 public final class LaneViews {
-  public static final int WORLDS = LanePolicy.WORLDS;
-  public final int vehicles;
+  static final int WORLDS = LanePolicy.WORLDS;
+  final int vehicles;
 
   private static final int GRAIN_NS = DelayTable.GrainNs();
 
@@ -57,7 +57,7 @@ public final class LaneViews {
   private static final int MOST_AHEAD = 4;
 
   /** So many rows before its own a view may be told. */
-  public static final int ROWS_EARLY = 1;
+  static final int ROWS_EARLY = 1;
 
   private final int ahead;
 
@@ -77,7 +77,7 @@ public final class LaneViews {
   private int[] keys;
   private TabledDelays[] links;
 
-  public final LaneDelays delays = new LaneDelays();
+  final LaneDelays delays = new LaneDelays();
 
   // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and all
   // are back; the same of the next row's answers.
@@ -102,9 +102,9 @@ public final class LaneViews {
 
   // The beat's views: when each is joined, when the world's next one is; what its readings were
   // asked as, in places from the row's; when they were taken.
-  public int[] joinedAt, nextAt;
-  public final int[][] place;
-  public int[][] sampledAt;
+  int[] joinedAt, nextAt;
+  final int[][] place;
+  int[][] sampledAt;
 
   /** Whether a world has no view in this beat, or one with an old reading. */
   boolean hasOld;
@@ -113,7 +113,7 @@ public final class LaneViews {
   private boolean hasOther;
 
   /** 1 where the beat's view has a reading of the vehicle that the view before had not. */
-  public final int[][] isFresh;
+  final int[][] isFresh;
 
   private int row;
 
@@ -122,7 +122,7 @@ public final class LaneViews {
 
   private boolean more;
 
-  public LaneViews(
+  LaneViews(
       LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
     this.vehicles = vehicles;
     reached = new int[ROWS][vehicles][WORLDS];
@@ -147,7 +147,7 @@ public final class LaneViews {
   }
 
   /** Back to the start of an episode. */
-  public void start(int[] worldKeys, TabledDelays[] worldLinks) {
+  void start(int[] worldKeys, TabledDelays[] worldLinks) {
     keys = worldKeys;
     links = worldLinks;
     delays.start(worldKeys, worldLinks);
@@ -306,7 +306,7 @@ public final class LaneViews {
   }
 
   /** To the first beat of a row; rows are taken in turn, from 0. */
-  public void startRow(int number) {
+  void startRow(int number) {
     row = number;
     ask(row + ahead);
     int slot = row % ROWS;
@@ -324,7 +324,7 @@ public final class LaneViews {
   }
 
   /** To the next beat of the row, if it has one. */
-  public boolean nextBeat() {
+  boolean nextBeat() {
     if (!more) return false;
     Arrays.fill(joinedAt, NONE);
     for (int[] each : isFresh) Arrays.fill(each, 0);

@@ -96,7 +96,7 @@ final class PredictiveOffers extends LaneOffers {
   }
 
   @Override
-  public void start(int[] worldKeys, TabledDelays[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
     mayWait = false;
     for (TabledDelays link : links)
@@ -111,7 +111,7 @@ final class PredictiveOffers extends LaneOffers {
   }
 
   @Override
-  public void startRow(int number) {
+  void startRow(int number) {
     row = number;
     forecast.startRow(row);
     for (int v = 0; v < vehicles; v++) ask(v);
@@ -124,7 +124,7 @@ final class PredictiveOffers extends LaneOffers {
   }
 
   @Override
-  public boolean nextBeat() {
+  boolean nextBeat() {
     boolean first = more;
     more = false;
     return first;

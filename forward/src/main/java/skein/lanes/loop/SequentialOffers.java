@@ -57,7 +57,7 @@ final class SequentialOffers extends LaneOffers {
   }
 
   @Override
-  public void start(int[] worldKeys, TabledDelays[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     delays.start(worldKeys, links);
     Arrays.fill(tick, 0);
     Arrays.fill(tickPlace, 0);
@@ -68,7 +68,7 @@ final class SequentialOffers extends LaneOffers {
   }
 
   @Override
-  public void startRow(int number) {
+  void startRow(int number) {
     row = number;
     if (row > 0) {
       IntVector period = IntVector.broadcast(INTS, periodGrains), none = IntVector.broadcast(INTS, NONE);
@@ -86,7 +86,7 @@ final class SequentialOffers extends LaneOffers {
   }
 
   @Override
-  public boolean nextBeat() {
+  boolean nextBeat() {
     if (!isBefore(end, periodGrains)) return false;
     IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
         none = IntVector.broadcast(INTS, NONE),

@@ -4,14 +4,14 @@ import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
 /** The views of the {@code stream} loop, offered to all vehicles at once. */
-public final class StreamOffers extends LaneOffers {
+final class StreamOffers extends LaneOffers {
   private final LaneViews views;
   private boolean isFirst;
 
   /**
    * @param maxDelayS the longest one-way delay of any link
    */
-  public StreamOffers(
+  StreamOffers(
       LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
     this(new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut));
   }
@@ -22,18 +22,18 @@ public final class StreamOffers extends LaneOffers {
   }
 
   @Override
-  public void start(int[] worldKeys, TabledDelays[] links) {
+  void start(int[] worldKeys, TabledDelays[] links) {
     views.start(worldKeys, links);
   }
 
   @Override
-  public void startRow(int row) {
+  void startRow(int row) {
     views.startRow(row);
     isFirst = true;
   }
 
   @Override
-  public boolean nextBeat() {
+  boolean nextBeat() {
     if (!isFirst && !views.nextBeat()) return false;
     isFirst = false;
     joinedAt = views.joinedAt;

@@ -1,7 +1,6 @@
-package skein.lanes
+package skein.simd
 
 import skein.formula.Untraceable
-import skein.simd.Forms
 
 class FormsSuite extends munit.FunSuite:
   private def counted(mostRefused: Int, accepts: Int => Boolean) =

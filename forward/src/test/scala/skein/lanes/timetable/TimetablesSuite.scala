@@ -1,6 +1,4 @@
-package skein.lanes
-
-import skein.lanes.timetable.{Timetable, Timetables}
+package skein.lanes.timetable
 
 class TimetablesSuite extends munit.FunSuite:
   private def made(numbers: Int): Timetable =

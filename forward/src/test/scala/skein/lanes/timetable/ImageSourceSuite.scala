@@ -1,9 +1,8 @@
-package skein.lanes
+package skein.lanes.timetable
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.fusion.{Exposure, SensorModel}
-import skein.lanes.timetable.ImageSource
 import skein.optimise.LatencyBudget
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom

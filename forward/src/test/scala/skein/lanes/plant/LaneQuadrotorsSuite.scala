@@ -1,6 +1,5 @@
-package skein.lanes
+package skein.lanes.plant
 
-import skein.lanes.plant.LaneQuadrotors
 import skein.units.Vector3
 import skein.vehicle.{Airframe, CascadeGains, ControllerGains, Quadrotor, Setpoint}
 

@@ -1,8 +1,7 @@
-package skein.lanes
+package skein.lanes.loop
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{AlternatingDelays, DelayTable, LoopTiming, TabledDelays}
-import skein.lanes.loop.{LaneDelays, LaneOffers, LaneViews, StreamOffers}
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 
