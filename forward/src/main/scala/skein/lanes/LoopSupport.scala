@@ -9,7 +9,7 @@ import skein.units.Expect
 private[lanes] object LoopSupport:
   import LoopLanes.{MostS, readingS}
 
-  /** Of all questions of a round or task, each taking as long as it may. */
+  /** Of all questions of a round or task, each taking as long as the link lets it. */
   private val MostInTurnS = 3.5
 
   /** Why this loop does not fly over a link by lanes, for a person. */
@@ -35,7 +35,7 @@ private[lanes] object LoopSupport:
         yield Vector(stream.patienceS, stream.toleranceS)
       case _: LoopTiming.Sequential | _: LoopTiming.Futures =>
         Expect
-          .that(vehicles * timeoutS <= MostInTurnS):
+          .that(readingS(timing, vehicles, maxDelayS) <= MostInTurnS):
             s"$vehicles questions in turn may take longer than the lanes can count"
           .map(_ => Vector.empty)
       case predictive: LoopTiming.Predictive =>

@@ -181,6 +181,10 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       val draw = scenarios(0)._2
       agreeAlone(draw, timing, DelayTable.vpn, VelocityResponses.quadrotor(), 4e-3, 2)
 
+  for timing <- Seq(LoopTiming.Sequential(), LoopTiming.Futures()) do
+    test(s"fifteen, $timing, own delays over vpn: every world flies as by the scalar reference, 6 s to 2 mm"):
+      agreeAlone(random => Surround(15, within(random, 6, 12)), timing, DelayTable.vpn, lag, 2e-3, 6)
+
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
   private def agreeAlone(
