@@ -1,6 +1,7 @@
 package skein.lanes.loop;
 
 import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
@@ -113,7 +114,7 @@ final class ForecastPlants implements ForecastVehicles {
     Arrays.fill(forS, stepS);
     for (int turn = 0; turn < way.turns; turn++) {
       follow(vectors, way, turn);
-      while (goesOn(vectors, way)) {
+      while (goesOn(vectors, way, turn)) {
         step.apply();
         take(vectors);
       }
@@ -136,15 +137,18 @@ final class ForecastPlants implements ForecastVehicles {
   }
 
   /** Whether some way goes on under the command, and for how long in one step. */
-  private boolean goesOn(LaneVectors vectors, ForecastTrack way) {
+  private boolean goesOn(LaneVectors vectors, ForecastTrack way, int turn) {
     float[] turnS = way.turnS;
     boolean any = false;
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
           until = FloatVector.fromArray(SPECIES, untilS, i);
-      for (int turn = way.held; turn < way.turnsOf[i / LANES]; turn++) {
-        FloatVector told = FloatVector.fromArray(SPECIES, turnS, turn * WORLDS + i).sub(way.deadS);
+      // Of those that turn it later some arrive now, in their order. With no dead time they turn it at once.
+      int turns = way.deadS > 0 ? way.turnsOf[i / LANES] : 0;
+      for (int later = Math.max(turn + 1, way.held); later < turns; later++) {
+        FloatVector told = FloatVector.fromArray(SPECIES, turnS, later * WORLDS + i).sub(way.deadS);
+        if (!told.max(flown).compare(LT, until).anyTrue()) break;
         until = until.blend(until.min(told), told.compare(GT, flown));
       }
       until.intoArray(stopS, i);
