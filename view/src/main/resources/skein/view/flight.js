@@ -42,7 +42,8 @@ export class Flight {
         if (vehicle.trail.length > 1 && at - vehicle.trail.at(-2)[0] < trailEveryS) vehicle.trail.pop();
         vehicle.trail.push([at, vehicle.north, vehicle.east]);
         while (vehicle.trail.length && vehicle.trail[0][0] < at - trailS) vehicle.trail.shift();
-        this.series.roundTrip.put(at, this.line(vehicle), (row.receivedAtNs - row.sentAtNs) / 1e6);
+        // What a simulator shows of itself made no trip.
+        if (row.receivedAtNs > row.sentAtNs) this.series.roundTrip.put(at, this.line(vehicle), (row.receivedAtNs - row.sentAtNs) / 1e6);
         this.measure(at);
         break;
       }

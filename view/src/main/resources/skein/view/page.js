@@ -111,7 +111,8 @@ let drawn = 0, told = -1;
 function words() {
   const { heading } = flight;
   if (heading) find("what").textContent =
-    `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
+    heading.loop === "none" ? `${heading.scenario}, simulator at ${heading.simulator}`
+      : `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
   find("time").textContent = `${flight.now.toFixed(1)} s`;
   if (flight.ending) state(`${flight.ending.how}${flight.ending.reason ? `: ${flight.ending.reason}` : ""}`, flight.ending.how === "Failed");
   else if (find("state").textContent !== "not connected") state(flight.paused ? "paused: vehicles hover, nothing is decided" : "", flight.paused);

@@ -18,6 +18,7 @@ export class Plots {
   draw(flight) {
     const lines = flight.lines();
     const shown = kinds.filter(kind => flight.series[kind.series].buckets.length);
+    this.place.hidden = !shown.length;
     const key = JSON.stringify([shown.map(kind => kind.series), lines.map(line => line.name), this.place.clientWidth]);
     if (key !== this.names) {
       this.names = key;
@@ -39,7 +40,7 @@ export class Plots {
         scales: { x: { time: false, auto: false }, y: { range: (plot, low, high) => [0, Math.max(high ?? 1, 0.1) * 1.1] } },
         axes: [
           { stroke: "#667085", grid: { stroke: "#eef1f5" }, size: 26, font: "10px sans-serif", values: (plot, all) => all.map(value => `${value} s`) },
-          { stroke: "#667085", grid: { stroke: "#eef1f5" }, size: 42, space: 16, font: "10px sans-serif" },
+          { stroke: "#667085", grid: { stroke: "#eef1f5" }, size: 42, space: Math.max(16, height / 8), font: "10px sans-serif" },
         ],
         series: [{}, ...own.map(line => ({ label: line.name, stroke: line.colour, width: 1.5, spanGaps: true, points: { show: false } }))],
       }, [[], ...own.map(() => [])], this.place);
