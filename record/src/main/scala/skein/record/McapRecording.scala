@@ -142,7 +142,7 @@ object McapRecording:
     * the rows as text beside the recording meanwhile.
     */
   def read(file: Path, recording: Path): Either[RecordError, Unit] =
-    if Files.isDirectory(file) then Left(RecordError.NotARecording(file, "it is a folder"))
+    if Files.isDirectory(file) then Left(RecordError.NotAnExport(file, "it is a folder"))
     else if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
     else if Files.exists(recording) then Left(RecordError.AlreadyExists(recording))
     else
@@ -153,10 +153,10 @@ object McapRecording:
           for
             tables <- gather(file, folder)
             _ <- RecordingFile.filled(made)(connection => tables.foreach(insert(_, connection))).left.map:
-              case RecordError.CannotCreate(_, reason) => RecordError.NotARecording(file, reason)
+              case RecordError.CannotCreate(_, reason) => RecordError.NotAnExport(file, reason)
               case other                               => other
             _ <- RecordingReader.read(made).left.map:
-              case RecordError.NotARecording(_, reason) => RecordError.NotARecording(file, reason)
+              case RecordError.NotARecording(_, reason) => RecordError.NotAnExport(file, reason)
               case other                                => other
           yield
             val _ = Files.move(made, recording)
@@ -172,7 +172,7 @@ object McapRecording:
       val outs = mutable.LinkedHashMap.empty[String, RowsFile]
       // A row whose bytes have not come yet.
       var waiting              = Option.empty[(table: String, row: String)]
-      def refused(why: String) = Some(RecordError.NotARecording(file, why))
+      def refused(why: String) = Some(RecordError.NotAnExport(file, why))
       def lacking(row: String) = refused(s"an image or a cloud has no bytes behind its row: ${row.take(100)}")
       def out(table: String)   = outs.getOrElseUpdate(table, RowsFile(folder.resolve(s"$table.json")))
       def row(message: McapRecord.Message, topic: String) =

@@ -31,6 +31,10 @@ enum RecordError(val message: String):
   /** The file is no recording, or a damaged one. */
   case NotARecording(file: Path, reason: String) extends RecordError(s"$file is not a recording: $reason")
 
+  /** The file is no recording exported as MCAP, or a damaged one. */
+  case NotAnExport(file: Path, reason: String)
+      extends RecordError(s"$file is not an exported recording: $reason")
+
   /** The recording was written by a version with other tables. */
   case OtherVersion(file: Path, oldest: Int, newest: Int, found: Int)
       extends RecordError(

@@ -133,14 +133,14 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
       val error = McapRecording.read(mcap, again).left.map(_.message).swap.getOrElse("it was read")
       assertEquals(Files.list(folder).count(), 2L, error)
       error
-    assert(refused(_ => ()).endsWith("is not a recording: its table 'flight' is empty"))
+    assert(refused(_ => ()).endsWith("is not an exported recording: its table 'flight' is empty"))
     assert(
       refused(out => out.message(out.channel("/skein/x", "json"), 0, 0, 0, Bytes.empty))
         .endsWith("its topic /skein/x is none of a recording's tables")
     )
     val half =
       refused(out => out.message(out.channel("/skein/event", "json"), 0, 0, 0, Bytes.utf8("""{"row": 1}""")))
-    assert(half.contains("is not a recording: "), half)
+    assert(half.contains("is not an exported recording: "), half)
 
   folder.test("an export that is cut off says so"): folder =>
     val mcap = exported(folder)
