@@ -127,7 +127,7 @@ final case class FlightOptions(
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
     FlightOptions.configured(Seq(
       ("--loop", "loops", strings(chosenLoops)),
-      ("--wire", "wire", Option.when(mavlink.value)(Wire.Mavlink.label)),
+      ("--mavlink", "wire", Option.when(mavlink.value)(Wire.Mavlink.label)),
       ("--link", "links", strings(link)),
       ("--duration", "duration", duration),
       ("--period", "period", period),

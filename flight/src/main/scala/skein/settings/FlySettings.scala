@@ -248,8 +248,8 @@ object FlySettings:
           s"$MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
-        "wire: mavlink flies no loop paused, since its vehicles' " +
-          "time does not pass in steps; name other loops"
+        "wire: expected loops other than paused over MAVLink, since " +
+          "its vehicles' time does not pass in steps"
       ),
       settings.cars
         .find(_.startPositionNed.z != 0)
@@ -258,7 +258,7 @@ object FlySettings:
             s"m, came ${car.name} at ${-car.startPositionNed.z} m"
         ),
       settings.cars.find(_ => settings.wire == Wire.Mavlink).map(car =>
-        s"wire: expected airsim, came mavlink, which cars do not speak: ${car.name}"
+        s"wire: expected multirotors alone over MAVLink, came the car ${car.name}"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.images.nonEmpty)(
         "images: expected none with wire mavlink, which carries no images"
