@@ -32,7 +32,9 @@ private[cli] object ServerNews:
     Option.when(counts.nonEmpty || dropped.nonEmpty || ofPeers.nonEmpty):
       val clients = Option.when(counts.nonEmpty)(s"clients: ${counts.mkString(", ")}")
       val others  = Option.when(ofPeers.nonEmpty)(s"$called: ${ofPeers.mkString(", ")}")
-      s"${(clients ++ dropped ++ others).mkString("; ")}; at most ${mebibytes(stats.mostHeldBytes)} of " +
-        s"${mebibytes(limits.heldBytes)} MiB were held for clients at any time"
+      val memory  = Option.when(counts.nonEmpty || dropped.nonEmpty):
+        s"at most ${mebibytes(stats.mostHeldBytes)} of ${mebibytes(limits.heldBytes)} MiB were held for " +
+          "clients at any time"
+      (clients ++ dropped ++ others ++ memory).mkString("; ")
 
   private def mebibytes(bytes: Long): Long = (bytes + (1 << 20) - 1) >> 20

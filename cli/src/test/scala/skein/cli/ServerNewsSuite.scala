@@ -15,8 +15,6 @@ class ServerNewsSuite extends munit.FunSuite:
         calm,
         ServerLimits(),
         PeerStats(damaged = 3, dropped = 2, turnedAway = 1, ignored = 9)
-      ).map(
-        _.takeWhile(_ != ';')
       ),
       Some(
         "MAVLink: 3 damaged frames, 2 datagrams dropped for peers too slow, 1 peers turned away, " +
