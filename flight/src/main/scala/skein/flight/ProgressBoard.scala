@@ -62,6 +62,8 @@ object ProgressBoard:
       for furthest <- progress.map(_.flown).maxOption if furthest >= shownAt + every do
         shownAt = furthest
         val flights = progress.map(one => s"${one.id} ${one.text.trim}").mkString("; ")
-        out.println(s"${furthest.toSeconds.fixed(0)} s of ${duration.toSeconds.fixed(0)} s: $flights")
+        // Of flights that start one after another, the last still flies when the first has ended.
+        val flown = furthest.min(duration).toSeconds
+        out.println(s"${flown.fixed(0)} s of ${duration.toSeconds.fixed(0)} s: $flights")
 
     def close(): Unit = ()
