@@ -146,7 +146,7 @@ final class DecideCommand(using scenarios: Scenarios)
         val stats = desk.stats
         say(
           s"answered ${stats.answered} questions; refused " +
-            s"${stats.refused} flights; ${stats.garbled} messages were none"
+            s"${stats.refused} flights; ${stats.garbled} messages could not be read"
         )
         end
     finally Edge.await(system.terminate()): Unit

@@ -27,4 +27,4 @@ object LatencyError:
   /** What [[LatencyProfile.parse]] reads. */
   val forms: String =
     "none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, lognormal:36ms,0.3 " +
-      "or file:PATH (times are round trips), or one of them after correlated:250ms, or rate:50mbit,"
+      "or file:PATH (times are round trips), or one of them after 'correlated:250ms,' or 'rate:50mbit,'"

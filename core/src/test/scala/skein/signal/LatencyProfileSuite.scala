@@ -49,7 +49,7 @@ class LatencyProfileSuite extends munit.FunSuite:
       messageOf("dsl"),
       "unknown latency profile \"dsl\"; expected none, direct, vpn, vpn-mixed, constant:200ms, " +
         "uniform:10ms..40ms, lognormal:36ms,0.3 or file:PATH (times are round trips), " +
-        "or one of them after correlated:250ms, or rate:50mbit,"
+        "or one of them after 'correlated:250ms,' or 'rate:50mbit,'"
     )
 
   test("a mistake in a form is answered with what was expected there"):
