@@ -107,8 +107,16 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       cars,
       "--scenario convoy: expected multirotors, came cars"
     )
-    assertRefused(FlyCommand(), cars :+ "--mavlink", "--mavlink: expected multirotors alone over MAVLink, came the car Lead")
-    assertRefused(FlyCommand(), Seq("--mavlink", "--loop", "paused"), "--mavlink: expected loops other than paused")
+    assertRefused(
+      FlyCommand(),
+      cars :+ "--mavlink",
+      "--mavlink: expected multirotors alone over MAVLink, came the car Lead"
+    )
+    assertRefused(
+      FlyCommand(),
+      Seq("--mavlink", "--loop", "paused"),
+      "--mavlink: expected loops other than paused"
+    )
 
   test("what is for MAVLink alone is refused without it"):
     assertRefused(FlyCommand(), Seq("--simulator", "tcp://127.0.0.1:5760"), "tcp:// is for --mavlink alone")

@@ -121,7 +121,13 @@ object SceneFile:
         if tag != tag.toInt then fail(entry.getValue("tag"), "tag: expected a whole number")
         val side = number(entry, "side-m", Some(0.5), 0.001, 100)
         made(entry, s"Tag", index, Shape.Tag(tag.toInt, side), place(entry, 0), 0xffffff)
-      case _ => fail(entry, s"expected one of box, pole, wall or tag, came ${kinds.mkString(" and ")}".trim)
+      case _ =>
+        val came = if kinds.nonEmpty then kinds.mkString(" and ")
+        else entry.root.keySet.asScala.toVector.sorted.mkString(", ")
+        fail(
+          entry,
+          s"expected one of box, pole, wall or tag, came ${if came.isEmpty then "nothing" else came}"
+        )
 
   /** What stands upon the ground unless `at` has a third number. */
   private def standing(entry: Config, kind: String, index: Int, shape: Shape, halfM: Double): SceneObject =

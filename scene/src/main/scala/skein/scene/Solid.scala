@@ -76,16 +76,16 @@ private[skein] object Solid:
       corners.iterator.map(c => (c - place.position).norm).max
     )
 
-  /** A square of flat ground at z = 0 around this place, as far as `reachM` to each side. */
-  def ground(north: Double, east: Double, reachM: Double, rgb: Int): Solid =
+  /** A square of flat ground around this place, as far as `reachM` to each side. */
+  def ground(place: Vector3, reachM: Double, rgb: Int): Solid =
     val corners =
-      Array(-1, 1).flatMap(n => Array(n, -n).map(e => Vector3(north + n * reachM, east + e * reachM, 0)))
-    val face = Face(0, 0, -1, 0, Array(0, 1, 2, 3), rgb, null)
+      Array(-1, 1).flatMap(n => Array(n, -n).map(e => place + Vector3(n * reachM, e * reachM, 0)))
+    val face = Face(0, 0, -1, -place.z, Array(0, 1, 2, 3), rgb, null)
     new Solid(
       Item.Ground,
       corners.flatMap(c => Array(c.x, c.y, c.z)),
       Array(face),
-      Vector3(north, east, 0),
+      place,
       2 * reachM
     )
 

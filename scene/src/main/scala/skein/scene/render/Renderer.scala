@@ -85,7 +85,12 @@ object Renderer:
     def channel(value: Double) = ((value + 1) * 127.5 + 0.5).toInt
     channel(face.nx) << 16 | channel(face.ny) << 8 | channel(-face.nz)
 
-  /** A square around the place below the camera, as far as counts. */
-  private def ground(camera: Vector3, rgb: Int): Solid = Solid.ground(camera.x, camera.y, HorizonM, rgb)
+  /** A square around the place below the camera, as far as counts. Of a camera that stands on the ground it
+    * lies by a hair below it: seen from its edge it would be nothing, and the sky begin at one's feet.
+    */
+  private def ground(camera: Vector3, rgb: Int): Solid =
+    val stands = math.abs(camera.z) <= Moment.GroundToleranceM
+    val down   = if stands then camera.z + Moment.GroundToleranceM else 0.0
+    Solid.ground(Vector3(camera.x, camera.y, down), HorizonM, rgb)
 
   private val HorizonM = 20_000.0

@@ -1,6 +1,6 @@
 package skein.scene.render
 
-import skein.scene.Solid
+import skein.scene.{Item, Solid}
 import skein.units.Vector3
 
 /** The faces that a view may show, projected: for each the rows that it covers, where it begins and ends in
@@ -75,7 +75,7 @@ final private[render] class Surfaces(view: View):
     val normal = Vector3(face.nx, face.ny, face.nz)
     val inside = face.d - along(normal, place.position)
     if inside < 0 then
-      val corners = cut(face.loop)
+      val corners = cut(face.loop, if item == Item.Ground then Surfaces.GroundNearM else Surfaces.NearM)
       if corners >= 3 && trace(corners) then
         faces(count) = face
         items(count) = item
@@ -87,7 +87,7 @@ final private[render] class Surfaces(view: View):
   private def along(u: Vector3, v: Vector3): Double = u.x * v.x + u.y * v.y + u.z * v.z
 
   /** Projects what of a face lies before the near plane; the number of its corners. */
-  private def cut(loop: Array[Int]): Int =
+  private def cut(loop: Array[Int], nearM: Double): Int =
     var corners = 0
 
     def put(x: Double, y: Double, z: Double): Unit =
@@ -99,16 +99,16 @@ final private[render] class Surfaces(view: View):
     while i < loop.length do
       val from = loop(i)
       val to   = loop(if i + 1 < loop.length then i + 1 else 0)
-      val here = ahead(from) >= Surfaces.NearM
+      val here = ahead(from) >= nearM
       if here then put(ahead(from), right(from), down(from))
-      if here != ahead(to) >= Surfaces.NearM then
+      if here != ahead(to) >= nearM then
         // From the corner before the plane, whichever way the face goes: its neighbour meets it at the same
         // place.
         val near = if here then from else to
         val far  = if here then to else from
-        val t    = (ahead(near) - Surfaces.NearM) / (ahead(near) - ahead(far))
+        val t    = (ahead(near) - nearM) / (ahead(near) - ahead(far))
         put(
-          Surfaces.NearM,
+          nearM,
           right(near) + t * (right(far) - right(near)),
           down(near) + t * (down(far) - down(near))
         )
@@ -177,6 +177,9 @@ final private[render] class Surfaces(view: View):
 private[render] object Surfaces:
   /** What is nearer to the camera is not seen, m: AirSim's near plane. */
   val NearM = 0.1
+
+  /** The ground is seen from a camera that stands upon it, too. */
+  val GroundNearM = 1e-4
 
   /** Of a face, cut. */
   private val MostCorners = 32

@@ -88,6 +88,16 @@ class RendererSuite extends munit.FunSuite:
     assertEqualsDouble(with1(1).right - with1(1).left, 2 * half, 1.01)
     assertEqualsDouble(with1(1).bottom - with1(1).top, 2 * half, 1.01)
 
+  test("a camera that stands on the ground sees it in its lower half, wherever it looks"):
+    for z <- Seq(0.0, 0.001, -0.001, -0.02); pitchDeg <- Seq(0.0, -40.0, -90.0) do
+      val view   = View(Placement.turned(Vector3(3, 4, z), 0, pitchDeg, 30), 64, 36, 90)
+      val images = draw(Moment(Scene.Empty, Vector.empty), view, Kind.Infrared, Kind.DepthPlanar)
+      val ids    = bgr(images, Kind.Infrared)
+      val depth  = numbers(images, Kind.DepthPlanar)
+      for y <- view.height / 2 until view.height; x <- 0 until view.width; pixel = y * view.width + x do
+        assertEquals(ids(3 * pixel).toInt, 1, s"z = $z, pitch $pitchDeg, pixel $x, $y")
+        assert(depth(pixel) >= 0 && depth(pixel) < 3, s"${depth(pixel)}")
+
   test("a tag is drawn as its family has it, and the right way up"):
     val tag =
       SceneObject("T", Shape.Tag(3, 0.8), Placement.turned(Vector3(2, 0, -2), 0, 0, 180), 0xffffff, None)
