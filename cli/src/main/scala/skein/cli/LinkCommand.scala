@@ -61,23 +61,27 @@ object LinkCommand
 
   private def profileOf(options: LinkOptions): Either[String, LinkProfile] =
     for
-      toServer   <- latency(options.toServer, options)
-      toClient   <- latency(options.toClient, options)
+      toServer   <- latency("--to-server", options.toServer, options)
+      toClient   <- latency("--to-client", options.toClient, options)
       stallEvery <- every(options.stallEvery).left.map("--stall-every: " + _)
       stallLasts <- Span.parse(options.stallLasts).left.map("--stall-lasts: " + _)
       resetEvery <- every(options.resetEvery).left.map("--reset-every: " + _)
       faults = Faults(stallEvery = stallEvery, stallLasts = stallLasts, resetEvery = resetEvery)
     yield LinkProfile(toServer, toClient, faults)
 
-  private def latency(own: Option[String], options: LinkOptions): Either[String, LatencyProfile] =
-    val profile = own.getOrElse(options.profile)
-    options.rate match
-      case None       => Arguments.latency(profile)
-      case Some(rate) =>
-        for
-          _       <- Bandwidth.parse(rate).left.map("--rate: " + _)
-          limited <- Arguments.latency(s"rate:$rate,$profile")
-        yield limited
+  private def latency(
+      flag: String,
+      own: Option[String],
+      options: LinkOptions
+  ): Either[String, LatencyProfile] =
+    val (told, profile) = own.fold(("--profile", options.profile))((flag, _))
+    for
+      _       <- options.rate.fold[Either[String, Any]](Right(()))(Bandwidth.parse).left.map("--rate: " + _)
+      limited <- Arguments
+        .latency(options.rate.fold("")(rate => s"rate:$rate,") + profile)
+        .left
+        .map(s"$told: " + _)
+    yield limited
 
   private def every(text: Option[String]): Either[String, Option[Span]] = text match
     case None       => Right(None)

@@ -99,6 +99,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       "skein fly: --duration: expected two periods (120000.0 ms) or more, came 90000.0 ms"
     )
     assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
+    assertRefused(FlyCommand(), Seq("--scenario", "convoi"), "skein fly: --scenario: expected duel, ")
 
   test("what follows multirotors alone refuses a scenario with cars, and says so"):
     val cars = Seq("--scenario", "convoy")

@@ -50,15 +50,10 @@ class LinkCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
       run(LinkCommand, "--listen", "here", "--to", "127.0.0.1:41451")._3.trim,
       "skein link: --listen: expected HOST:PORT, for example 127.0.0.1:41451, came 'here'"
     )
-    assert(run(
-      LinkCommand,
-      "--listen",
-      "127.0.0.1:0",
-      "--to",
-      "127.0.0.1:1",
-      "--profile",
-      "dsl"
-    )._3.contains("vpn-mixed"))
+    val between = Seq("--listen", "127.0.0.1:0", "--to", "127.0.0.1:1")
+    for (option, more) <- Seq("--profile" -> Nil, "--to-client" -> Seq("--rate", "50mbit")) do
+      val told = run(LinkCommand, between ++ Seq(option, "dsl") ++ more*)._3
+      assert(told.startsWith(s"skein link: $option: ") && told.contains("vpn-mixed"), told)
 
   test("a port that is taken is called that"):
     val (status, _, told) = run(LinkCommand, "--listen", s"${server.address}", "--to", "127.0.0.1:1")

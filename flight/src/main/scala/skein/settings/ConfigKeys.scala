@@ -1,6 +1,13 @@
 package skein.settings
 
-import com.typesafe.config.{Config, ConfigFactory, ConfigObject, ConfigValue, ConfigValueFactory}
+import com.typesafe.config.{
+  Config,
+  ConfigFactory,
+  ConfigObject,
+  ConfigOrigin,
+  ConfigValue,
+  ConfigValueFactory
+}
 import java.util.Locale
 import pureconfig.generic.derivation.{
   ConfigReaderDerivation,
@@ -26,6 +33,10 @@ private[skein] object ConfigKeys:
   def ofMistake(mistake: String): String =
     val (name, rest) = mistake.splitAt(mistake.indexOf(':'))
     ofField(name) + rest
+
+  /** The option that a value came from, if one did. */
+  def optionOf(origin: ConfigOrigin): Option[String] =
+    Some(origin.description).filter(_.startsWith("--"))
 
   /** Reads a case class from an object with a key for each field. */
   inline def reader[A](using inline mirror: Mirror.Of[A]): ConfigReader[A] =

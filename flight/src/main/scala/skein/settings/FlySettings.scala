@@ -1,6 +1,6 @@
 package skein.settings
 
-import com.typesafe.config.{Config, ConfigFactory, ConfigOrigin, ConfigValueFactory}
+import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.{CannotConvert, ConfigReaderFailures, ConvertFailure}
@@ -214,14 +214,11 @@ object FlySettings:
 
   private val Duration = "skein.fly.duration"
 
-  /** The option that a value came from, if one did. */
-  private def optionOf(origin: ConfigOrigin): Option[String] =
-    Some(origin.description).filter(_.startsWith("--"))
-
   /** A value whose origin is an option is told by that, others by their place. */
   private def told(failures: ConfigReaderFailures): String =
     failures.toList.map:
-      case ConvertFailure(CannotConvert(_, _, because), Some(origin), _) if optionOf(origin).isDefined =>
+      case ConvertFailure(CannotConvert(_, _, because), Some(origin), _)
+          if ConfigKeys.optionOf(origin).isDefined =>
         s"${origin.description}: $because"
       case other => ConfigReaderFailures(other).prettyPrint()
     .mkString("\n")
@@ -301,7 +298,7 @@ object FlySettings:
   /** The option by which a key of `skein.fly` has its value, if one did. */
   private def optionAt(key: String, config: Config): Option[String] =
     val path = s"skein.fly.$key"
-    Option.when(config.hasPath(path))(config.getValue(path).origin).flatMap(optionOf)
+    Option.when(config.hasPath(path))(config.getValue(path).origin).flatMap(ConfigKeys.optionOf)
 
   /** `paused` waits with its simulator stopped. */
   def decidedElsewhere(loop: AnyLoop): Boolean = loop != LoopKind.Paused

@@ -40,7 +40,8 @@ object ScenarioSettings:
   /** Of which kind it is. */
   def kind(config: Config)(using scenarios: Scenarios): Either[String, ScenarioKind[?]] =
     val named = Option.when(config.hasPath(Name))(config.getString(Name)).getOrElse(scenarios.names.head)
-    scenarios.kind(named).left.map(mistake => s"$Name: $mistake")
+    def place = Option.when(config.hasPath(Name))(config.getValue(Name).origin).flatMap(ConfigKeys.optionOf)
+    scenarios.kind(named).left.map(mistake => s"${place.getOrElse(Name)}: $mistake")
 
   /** As a recording keeps it. */
   def recorded(scenario: Scenario): Seq[ParameterRow] =
