@@ -71,6 +71,8 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
       thread.interrupt()
       thread.join()
       server.close()
+      Files.delete(path)
+      Files.delete(path.getParent)
 
   private def serve(channel: SocketChannel, answer: ujson.Value => Option[String]): Unit =
     val lines = BufferedReader(InputStreamReader(Channels.newInputStream(channel), UTF_8))
