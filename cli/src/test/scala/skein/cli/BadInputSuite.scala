@@ -101,6 +101,13 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
     assertRefused(FlyCommand(), Seq("--scenario", "convoi"), "skein fly: --scenario: expected duel, ")
 
+  test("a file that cannot be written is told with the reason in words"):
+    val nowhere = Path.of("no", "such", "folder")
+    assertEquals(
+      OutFolder.write(nowhere, Seq(OutFolder.text("map.csv", ""))),
+      Left(s"cannot write into $nowhere: no such file (${nowhere.resolve("map.csv")})")
+    )
+
   test("what follows multirotors alone refuses a scenario with cars, and says so"):
     val cars = Seq("--scenario", "convoy")
     assertRefused(
