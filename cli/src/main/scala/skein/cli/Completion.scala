@@ -24,7 +24,7 @@ private[cli] object Completion:
        |_$program() {
        |  local word=$${COMP_WORDS[COMP_CWORD]} words=''
        |  if [ "$$COMP_CWORD" -eq 1 ]; then
-       |    COMPREPLY=($$(compgen -W '${commands.map(_.name).mkString(" ")} --help' -- "$$word"))
+       |    COMPREPLY=($$(compgen -W '${commands.map(_.name).mkString(" ")} --help --version' -- "$$word"))
        |    return
        |  fi
        |  case "$${COMP_WORDS[1]} $${COMP_WORDS[COMP_CWORD - 1]}" in

@@ -110,7 +110,7 @@ object NewCommand
   private val executable = Set("sbtw", "skein")
 
   /** Beside the classes: what this version was built by, and what a project begins with. */
-  private def resource(name: String): String =
+  private[cli] def resource(name: String): String =
     Using.resource(getClass.getResourceAsStream(s"/skein/project/$name"))(stream =>
       String(stream.readAllBytes, "UTF-8")
     )

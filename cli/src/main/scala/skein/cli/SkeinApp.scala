@@ -97,6 +97,9 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       case None | Some("--help" | "-h" | "help") =>
         Console.out.println(help)
         0
+      case Some("--version") =>
+        Console.out.println(s"Skein ${NewCommand.resource("version")}, Java ${sys.props("java.version")}")
+        0
       case Some(word) =>
         commands.find(_.name == word) match
           case Some(command) =>
@@ -134,4 +137,4 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
        |
        |${lines.mkString("\n")}
        |
-       |./skein COMMAND --help tells a command's options.""".stripMargin
+       |./skein COMMAND --help tells a command's options, ./skein --version what this is.""".stripMargin

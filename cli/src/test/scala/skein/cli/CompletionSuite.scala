@@ -24,7 +24,7 @@ class CompletionSuite extends munit.FunSuite:
 
   test("bash completes commands"):
     assertEquals(offered("./skein", "re"), Set("report", "replay"))
-    assertEquals(offered("./skein", ""), Main.commands.map(_.name).toSet + "--help")
+    assertEquals(offered("./skein", ""), Main.commands.map(_.name).toSet + "--help" + "--version")
 
   test("bash completes every option of every command, as its own help tells them"):
     for command <- Main.commands do

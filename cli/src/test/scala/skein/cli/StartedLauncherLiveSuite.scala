@@ -20,6 +20,10 @@ class StartedLauncherLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     val help = said("--help")
     for command <- Main.commands do assert(help.contains(command.name), command.name)
 
+  test("./skein --version"):
+    val version = said("--version")
+    assert(version.matches("Skein \\d+\\.\\d+\\.\\d+\\S*, Java \\d+\\S*\\s*"), version)
+
   test("./skein fly --clock virtual"):
     val flown =
       said("fly", "--clock", "virtual", "--duration", "12s", "--out", scratch.resolve("flown").toString)
