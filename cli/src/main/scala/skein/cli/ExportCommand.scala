@@ -46,9 +46,7 @@ object ExportCommand
 
   private def mcap(file: Path, text: String): Either[String, Unit] =
     for
-      _ <- Expect.that(text.nonEmpty)("--mcap: expected a file, came ''")
-      _ <- Expect.that(Files.isDirectory(Path.of(text).toAbsolutePath.getParent)):
-        s"--mcap: expected a file in a folder that is there, came $text"
+      _ <- OutFolder.isThere("--mcap", text)
       _ <- Expect.that(!isSame(file, Path.of(text))):
         s"--mcap: expected another file than the recording, came $text"
       _ <- McapRecording.write(file, Path.of(text), RecordOptions.sceneOf).left.map(_.message)

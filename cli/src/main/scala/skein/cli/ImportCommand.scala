@@ -3,7 +3,6 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.{Digest, McapRecording}
-import skein.units.Expect
 
 /** Options of `./skein import`. */
 final case class ImportOptions(
@@ -27,7 +26,7 @@ object ImportCommand
         case Seq(one) => Right(Path.of(one))
         case others   =>
           Left(s"expected one MCAP file, came ${others.size}: ./skein import FILE --recording FILE")
-      _ <- Expect.that(options.recording.nonEmpty)("--recording: expected a file, came ''")
+      _ <- OutFolder.isThere("--recording", options.recording)
       recording = Path.of(options.recording)
       _      <- McapRecording.read(file, recording).left.map(_.message)
       digest <- Digest.ofFile(recording).left.map(_.message)

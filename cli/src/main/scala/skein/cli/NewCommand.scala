@@ -6,6 +6,7 @@ import java.nio.file.{FileSystems, Files, Path}
 import java.util.Comparator
 import mainargs.{Leftover, ParserForClass, arg}
 import scala.util.Using
+import skein.record.FileReason
 import skein.report.Typed
 import skein.units.Expect
 
@@ -98,7 +99,7 @@ object NewCommand
     catch
       case failed: IOException =>
         emptied(folder)
-        Left(s"cannot write into the folder $folder: ${OutFolder.reason(failed)}")
+        Left(s"cannot write into the folder $folder: ${FileReason.of(failed)}")
 
   /** Half a project would be in the way of the next try. */
   private def emptied(folder: Path): Unit =

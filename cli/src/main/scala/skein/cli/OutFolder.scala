@@ -3,12 +3,14 @@ package skein.cli
 import java.io.IOException
 import java.nio.channels.{FileChannel, OverlappingFileLockException}
 import java.nio.charset.StandardCharsets.UTF_8
-import java.nio.file.{FileSystemException, Files, Path}
+import java.nio.file.{Files, Path}
 import java.nio.file.StandardOpenOption.{CREATE, WRITE}
 import java.time.LocalDateTime
 import java.time.format.DateTimeFormatter
 import scala.util.Using
 import skein.plot.{Drawing, Png, Svg}
+import skein.record.FileReason
+import skein.units.Expect
 
 /** Folders that commands write into. */
 private[cli] object OutFolder:
@@ -46,7 +48,7 @@ private[cli] object OutFolder:
         Right(folder)
       catch
         case failed: IOException =>
-          Left(s"$option: cannot write into the folder $folder: ${reason(failed)}")
+          Left(s"$option: cannot write into the folder $folder: ${FileReason.of(failed)}")
 
   /** A name that is new every second. */
   def dated(parent: String): String =
@@ -69,7 +71,7 @@ private[cli] object OutFolder:
         Option(channel.tryLock()).fold(other)(_ => body)
     catch
       case _: OverlappingFileLockException => other
-      case failed: IOException             => Left(s"cannot write into $folder: ${reason(failed)}")
+      case failed: IOException             => Left(s"cannot write into $folder: ${FileReason.of(failed)}")
 
   /** Writes files by their names.
     *
@@ -77,7 +79,7 @@ private[cli] object OutFolder:
     */
   def write(folder: Path, files: Seq[(String, Array[Byte])]): Either[String, Vector[Path]] =
     try Right(files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes)))
-    catch case failed: IOException => Left(s"cannot write into $folder: ${reason(failed)}")
+    catch case failed: IOException => Left(s"cannot write into $folder: ${FileReason.of(failed)}")
 
   def text(name: String, text: String): (String, Array[Byte]) = (name, text.getBytes(UTF_8))
 
@@ -95,12 +97,10 @@ private[cli] object OutFolder:
     painted.left.foreach(reason => Console.err.println(s"no PNG: $reason"))
     text(s"$name.svg", Svg.file(drawing, title)) +: painted.toOption.map(s"$name.png" -> _).toVector
 
-  /** Why a file could not be written, without the names of Java's classes. */
-  def reason(failed: IOException): String = failed match
-    case failed: FileSystemException =>
-      val what = Option(failed.getReason).getOrElse:
-        failed.getClass.getSimpleName.stripSuffix("Exception").replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(
-          java.util.Locale.ROOT
-        )
-      s"$what (${failed.getFile})"
-    case other => other.getMessage
+  /** Whether a file that an option names would stand in a folder. */
+  def isThere(option: String, file: String): Either[String, Unit] =
+    for
+      _ <- Expect.that(file.nonEmpty)(s"$option: expected a file, came ''")
+      _ <- Expect.that(Files.isDirectory(Path.of(file).toAbsolutePath.getParent)):
+        s"$option: expected a file in a folder that is there, came $file"
+    yield ()

@@ -101,6 +101,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
     assertRefused(FlyCommand(), Seq("--scenario", "convoi"), "skein fly: --scenario: expected duel, ")
 
+  test("import and export tell that a folder is not there"):
+    val told = "expected a file in a folder that is there, came no/such/file"
+    assertRefused(ExportCommand, Seq("x", "--mcap", "no/such/file"), s"skein export: --mcap: $told")
+    assertRefused(ImportCommand, Seq("x", "--recording", "no/such/file"), s"skein import: --recording: $told")
+
   test("a file that cannot be written is told with the reason in words"):
     val nowhere = Path.of("no", "such", "folder")
     assertEquals(

@@ -27,7 +27,7 @@ object Export:
     try
       val _ = Files.createDirectories(directory)
       Right(())
-    catch case failed: IOException => Left(RecordError.ExportFailed(directory, failed.toString))
+    catch case failed: IOException => Left(RecordError.ExportFailed(directory, FileReason.of(failed)))
 
   private def write(table: Table[?], file: Path, connection: Connection): Path =
     val quoted = "'" + file.toString.replace("'", "''") + "'"

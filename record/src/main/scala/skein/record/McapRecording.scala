@@ -263,4 +263,4 @@ object McapRecording:
 
   private def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =
     try Right(action)
-    catch case failed: IOException => Left(error(failed.toString))
+    catch case failed: IOException => Left(error(FileReason.of(failed)))

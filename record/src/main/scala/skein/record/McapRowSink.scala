@@ -67,4 +67,4 @@ object McapRowSink:
     if Files.exists(file) then Left(RecordError.AlreadyExists(file))
     else
       try Right(McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading, scene))
-      catch case error: IOException => Left(RecordError.CannotCreate(file, error.toString))
+      catch case error: IOException => Left(RecordError.CannotCreate(file, FileReason.of(error)))
