@@ -146,10 +146,11 @@ final class IdentifyCommand(using scenarios: Scenarios)
       structure: Structure,
       horizonS: Double
   ): Either[String, Identification] =
-    try Identification.of(flights, structure, horizonS)
-    catch
-      case failed: RuntimeException if !Structure.ours.contains(structure) =>
-        Left(s"its plant failed: ${OwnFailure.text(failed)}")
+    def found = Identification.of(flights, structure, horizonS)
+    if Structure.ours.contains(structure) then found
+    else
+      try OwnFailure.told("its plant")(found)
+      catch case failed: OwnFailure => Left(failed.getMessage)
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =

@@ -2,7 +2,7 @@ package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
-import skein.scenario.Scenarios
+import skein.scenario.{Scenario, Scenarios}
 import skein.settings.ConfigKeys
 
 /** Options of `./skein scenarios`. */
@@ -19,13 +19,14 @@ final class ScenariosCommand(using scenarios: Scenarios)
   protected def execute(options: ScenariosOptions): Either[String, Unit] =
     val sections = scenarios.kinds.map: kind =>
       val standard = kind.standard
-      Section(
-        s"${standard.name}: ${standard.agents.size} vehicles, ${standard.duration.toSeconds.round} s",
-        (standard.limits.map(limit => s"Limit: ${limit.text}.") :+ standard.note).mkString(" ").trim,
-        Some(TextTable(
-          Vector("<setting", "default"),
-          standard.settings.map((name, value) => Vector(ConfigKeys.ofField(name), value))
-        ))
-      )
+      Scenario.told(kind.name):
+        Section(
+          s"${standard.name}: ${standard.agents.size} vehicles, ${standard.duration.toSeconds.round} s",
+          (standard.limits.map(limit => s"Limit: ${limit.text}.") :+ standard.note).mkString(" ").trim,
+          Some(TextTable(
+            Vector("<setting", "default"),
+            standard.settings.map((name, value) => Vector(ConfigKeys.ofField(name), value))
+          ))
+        )
     Shown(options.json.value).tables(sections, Section.text(sections))
     Right(())

@@ -9,8 +9,8 @@ final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = 
 
 object OwnFailure:
 
-  /** What a user's code answers; its mistakes are told with whose it is, and the line. What came of a
-    * connection, no `RuntimeException`, is told as it is.
+  /** What a user's code answers; its mistakes are told with whose it is, and the line. That memory is full,
+    * or that the thread shall end, is told as it is.
     *
     * @throws OwnFailure if it throws
     */
@@ -18,20 +18,32 @@ object OwnFailure:
     // Not `NonFatal`: a recursion without end and a class that is missing are mistakes of the user's too.
     try answer
     catch
-      case told: OwnFailure => throw told
-      case mistake: (RuntimeException | StackOverflowError | LinkageError | AssertionError |
-            NotImplementedError) =>
-        throw OwnFailure(whose, s"failed: ${text(mistake)}", mistake)
+      case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError) => throw asItIs
+      case mistake: Throwable => throw OwnFailure(whose, s"failed: ${text(mistake)}", mistake)
 
   /** The mistake, and where it was made if that is known. */
-  def text(mistake: Throwable): String =
-    s"$mistake${line(mistake.getStackTrace).fold("")(" (" + _ + ")")}"
+  private def text(mistake: Throwable): String = mistake match
+    case shell: ExceptionInInitializerError if shell.getCause != null => text(shell.getCause)
+    case _ => s"$mistake${line(own(mistake.getStackTrace.toVector)).fold("")(" (" + _ + ")")}"
+
+  /** Of what was asked, the frames of its own package, rather than those of libraries that it called. */
+  private def own(frames: Vector[StackTraceElement]): Vector[StackTraceElement] =
+    val (asked, asking) = frames.span(frame => frame.getClassName != getClass.getName)
+    // Without who asked, it was made elsewhere than thrown.
+    val room = asked.findLast(isUsers).filter(_ => asking.nonEmpty).map(_.getClassName)
+    room.fold(asked)(name => asked.filter(_.getClassName.startsWith(name.take(name.lastIndexOf('.') + 1))))
 
   /** Where the user's code itself was, rather than what it called. */
   def line(frames: Iterable[StackTraceElement]): Option[String] =
     frames
-      .find(frame => !Libraries.exists(frame.getClassName.startsWith))
+      .find(isUsers)
+      .orElse(frames.find(!isOf(Libraries, _)))
       .map(frame => s"${frame.getFileName}:${frame.getLineNumber}")
+
+  private def isUsers(frame: StackTraceElement) = !isOf(Libraries, frame) && !isOf(Callers, frame)
+
+  private def isOf(rooms: Seq[String], frame: StackTraceElement) =
+    rooms.exists(frame.getClassName.startsWith)
 
   /** The one that another error came of. */
   def behind(error: Throwable): Option[OwnFailure] =
@@ -41,3 +53,4 @@ object OwnFailure:
       .collectFirst { case failure: OwnFailure => failure }
 
   private val Libraries = Seq("java.", "jdk.", "scala.")
+  private val Callers   = Seq("skein.", "org.apache.pekko.")

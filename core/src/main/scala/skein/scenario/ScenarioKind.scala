@@ -47,6 +47,11 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   /** What fails shall fail before the flight. */
   private def askedBeforeFlight(scenario: Scenario): Unit =
+    val _ = scenario.title
+    val _ = scenario.note
+    val _ = scenario.duration
+    val _ = scenario.scene
+    val _ = settings.map(scenario.recordedAs)
     val _ = scenario.equipment
     val _ = scenario.eyes
     val _ = scenario.limits

@@ -88,6 +88,8 @@ class ScenarioKindSuite extends munit.FunSuite:
       private val apart         = Series("apart", "m")(_ => instant => { mayFail("series"); instant })
       def agents: Vector[Agent] = { mayFail("agents"); PaperDuel().agents }
       override def limits: Vector[Limit]     = { mayFail("limits"); Vector.empty }
+      override def duration: Span            = { mayFail("duration"); super.duration }
+      override def title: String             = { mayFail("title"); name }
       override def series: Vector[Series]    = Vector(apart)
       override def measures: Vector[Measure] = Vector(Measure("own", "")(_ => { mayFail("measure"); None }))
     val broken                              = ScenarioKind(Broken())
@@ -96,7 +98,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       assert(clue(
         text
       ).matches(s"the scenario broken failed: java.lang.$mistake \\(ScenarioKindSuite.scala:\\d+\\)"))
-    for place <- Seq("agents", "limits") do
+    for place <- Seq("agents", "limits", "duration", "title") do
       isOf(told(broken.read(Map("where" -> place))), s"RuntimeException: in $place")
     isOf(
       told(broken.read(Map("where" -> "constructor"))),

@@ -27,7 +27,7 @@ final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: R
     extends ObservingPolicy[Unit]:
   def initial: Unit = ()
 
-  /** @throws IOException if there is no answer
+  /** @throws skein.policy.OwnFailure if there is no answer
     */
   def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
     val share = connection.ask(seen.fromOwnHeading.map(_.toFloat)).toDouble.max(-1).min(1)
@@ -93,7 +93,7 @@ object OutsidePolicy:
             broken = Some(reason.getMessage)
             socket.close()
             Left(reason.getMessage)
-      answer.fold(reason => throw IOException(s"the policy: $reason"), identity)
+      answer.fold(reason => throw OwnFailure("the policy:", reason), identity)
 
     private def exchange(seen: Array[Float]): Either[String, Float] =
       val question = ByteBuffer.allocate(4 * seen.length)

@@ -1,10 +1,9 @@
 package skein.settings
 
-import java.io.IOException
 import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
 import java.nio.channels.ServerSocketChannel
 import scala.util.{Try, Using}
-import skein.policy.PlanarObservation
+import skein.policy.{OwnFailure, PlanarObservation}
 import skein.testing.TemporaryFolders
 import skein.units.Span
 
@@ -18,8 +17,8 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
         OutsidePolicy.reach(peer.option).map(_.policy.asInstanceOf[OutsidePolicy]).fold(fail(_), identity)
       answers.map: _ =>
         Try(policy.decide(seen, ()).headingRad).toEither.left.map:
-          case reason: IOException => reason.getMessage
-          case other               => throw other
+          case reason: OwnFailure => reason.getMessage
+          case other              => throw other
 
   test(
     "an answer is the share of the most that the pursuer turns, and what is beyond is taken for the bound"
@@ -65,7 +64,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
     Using.resource(Peer((_, _) => None)): peer =>
       val policy = OutsidePolicy.reach(peer.option).fold(fail(_), identity).policy
       for _ <- 1 to 2 do
-        assert(intercept[IOException](policy.heading(
+        assert(intercept[OwnFailure](policy.heading(
           1, 1, 0, 0, 0, 0, 0.1
         )).getMessage.startsWith("the policy: "))
       assertEquals(peer.asked, 1)
@@ -83,7 +82,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
       val policy = OutsidePolicy.reach(s"unix:pursuer:$path").fold(fail(_), identity).policy
       listener.accept().close()
       for _ <- 1 to 2 do
-        val reason = intercept[IOException](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
+        val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
         assertEquals(reason, "the policy: its process has ended")
 
   test("who accepts nobody is not waited for longer than for an answer"):
@@ -105,7 +104,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
       Using.resource(Peer((_, _) => Some(part))): peer =>
         val policy = OutsidePolicy.reach(peer.option, Span.ofMillis(30)).fold(fail(_), identity).policy
         for _ <- 1 to 2 do
-          val reason = intercept[IOException](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
+          val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
           assertEquals(reason, "the policy: expected an answer within 30 ms, came none")
         assert(peer.asked <= 1)
 

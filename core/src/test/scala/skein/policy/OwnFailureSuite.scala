@@ -1,0 +1,52 @@
+package skein.policy
+
+import java.io.FileNotFoundException
+
+class OwnFailureSuite extends munit.FunSuite:
+
+  private def told(mistake: => Throwable): String =
+    intercept[OwnFailure](OwnFailure.told("the policy of Scout")(throw mistake)).getMessage
+
+  test("whatever is thrown is told with whose it is, checked exceptions too"):
+    val mistakes = Vector[() => Throwable](
+      () => Exception("no luck"),
+      () => FileNotFoundException("corners.csv"),
+      () => IllegalStateException(),
+      () => StackOverflowError()
+    )
+    for mistake <- mistakes do
+      assert(
+        clue(told(mistake())).startsWith(s"the policy of Scout failed: ${mistake()} (OwnFailureSuite.scala:")
+      )
+
+  test("that memory is full, or that the thread shall end, is told as it is"):
+    for asItIs <- Seq(OutOfMemoryError(), InterruptedException()) do
+      val thrown =
+        try OwnFailure.told("it")(throw asItIs)
+        catch case thrown: Throwable => thrown
+      assert(thrown eq asItIs)
+
+  test("the line is the user's, not that of a library or of Skein's that was called"):
+    def thrown(classes: String*) =
+      val mistake = IllegalStateException("bad")
+      val frames  = (classes :+ OwnFailure.getClass.getName).zipWithIndex.map: (name, line) =>
+        StackTraceElement(name, "called", s"${name.split('.').last}.scala", line)
+      mistake.setStackTrace(frames.toArray)
+      told(mistake)
+    def line(classes: String*) =
+      thrown(classes*).stripPrefix("the policy of Scout failed: java.lang.IllegalStateException: bad ")
+    assertEquals(line("patrol.Scout", "skein.loop.Decider"), "(Scout.scala:0)")
+    assertEquals(
+      line("java.util.Map", "skein.units.Span", "patrol.Scout", "skein.loop.Decider"),
+      "(Scout.scala:2)"
+    )
+    assertEquals(
+      line("org.other.Parser", "patrol.maps.Corners", "patrol.Scout", "skein.policy.PlanarPolicy"),
+      "(Corners.scala:1)"
+    )
+    assertEquals(line("scala.Option", "skein.scenario.Forest", "skein.loop.Decider"), "(Forest.scala:1)")
+
+  test("of what an object's beginning threw, that itself is told"):
+    assert(clue(told(ExceptionInInitializerError(IllegalStateException("no map")))).startsWith(
+      "the policy of Scout failed: java.lang.IllegalStateException: no map"
+    ))
