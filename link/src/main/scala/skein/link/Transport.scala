@@ -24,14 +24,15 @@ object Address:
     * @return or what was expected and came
     */
   def parse(text: String): Either[String, Address] = text match
-    case Plain(host, port) if isPort(port) => Right(Address(host, port.toInt))
-    case IPv6(host, port) if isPort(port) && Try(InetAddress.ofLiteral(host)).isSuccess =>
-      Right(Address(host, port.toInt))
-    case _ =>
+    case Plain(_, port) if port.toInt > MostPort => Left(s"expected a port up to $MostPort, came '$text'")
+    case IPv6(_, port) if port.toInt > MostPort  => Left(s"expected a port up to $MostPort, came '$text'")
+    case Plain(host, port)                       => Right(Address(host, port.toInt))
+    case IPv6(host, port) if Try(InetAddress.ofLiteral(host)).isSuccess => Right(Address(host, port.toInt))
+    case _                                                              =>
       val example = if text.count(_ == ':') > 1 then "[::1]:41451 of an IPv6 address" else "127.0.0.1:41451"
       Left(s"expected HOST:PORT, for example $example, came '$text'")
 
-  private def isPort(digits: String) = digits.toInt <= 65535
+  private val MostPort = 65535
 
 /** Where connections come from: TCP in live flight, the in-memory network in virtual time. Everything above
   * it works on byte streams and is the same for both.

@@ -17,12 +17,14 @@ class AddressSuite extends munit.FunSuite:
 
   test("what is none is refused, and an IPv6 address without brackets is told how it is written"):
     for text <-
-        Seq("", "here", ":80", "here:", "here:65536", "here:99999", "here:-1", "[here]:80", "here:80 ")
+        Seq("", "here", ":80", "here:", "here:-1", "[here]:80", "here:80 ")
     do
       assertEquals(
         Address.parse(text),
         Left(s"expected HOST:PORT, for example 127.0.0.1:41451, came '$text'")
       )
+    for text <- Seq("here:65536", "[::1]:99999") do
+      assertEquals(Address.parse(text), Left(s"expected a port up to 65535, came '$text'"))
     for text <- Seq("::1:41451", "::1", "[::1]", "[::1]41451", "[::1::2]:80", "1:2:3") do
       assertEquals(
         Address.parse(text),
