@@ -15,6 +15,8 @@ import skein.units.Expect
 /** Folders that commands write into. */
 private[cli] object OutFolder:
 
+  private val Lock = ".skein.lock"
+
   /** Those that the calling thread's command has made, the inner ones first. */
   private val fresh = ThreadLocal.withInitial[Vector[Path]](() => Vector.empty)
 
@@ -25,7 +27,10 @@ private[cli] object OutFolder:
     fresh.remove()
     val done = command
     if done.isLeft then
-      try fresh.get.foreach(Files.delete)
+      try
+        for folder <- fresh.get do
+          if folder.toFile.list.sameElements(Seq(Lock)) then Files.delete(folder.resolve(Lock))
+          Files.delete(folder)
       catch case _: IOException => () // there is something in it
     done
 
@@ -66,7 +71,7 @@ private[cli] object OutFolder:
   def alone[A](folder: Path)(body: => Either[String, A]): Either[String, A] =
     val other = Left(s"another command is at work in $folder; expected it to end first")
     try
-      Using.resource(FileChannel.open(folder.resolve(".skein.lock"), CREATE, WRITE)): channel =>
+      Using.resource(FileChannel.open(folder.resolve(Lock), CREATE, WRITE)): channel =>
         // Without a lock that this process holds already.
         Option(channel.tryLock()).fold(other)(_ => body)
     catch

@@ -36,6 +36,10 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     Files.createDirectory(folder.resolve("there")): Unit
     assertEquals(refused("there")(_ => ()), Left("nobody answers"))
     assertEquals(refused("new/dated")(_ => ()), Left("nobody answers"))
+    assertEquals(
+      refused("locked")(OutFolder.alone(_)(Left("nobody answers")): Unit),
+      Left("nobody answers")
+    )
     assertEquals(refused("used")(made => Files.createFile(made.resolve("log")): Unit), Left("nobody answers"))
     assertEquals(folder.toFile.list.toSet, Set("there", "used"))
     assertEquals(OutFolder.unlessRefused(OutFolder.made("--out", s"$folder/kept")).map(_ => ()), Right(()))
