@@ -1,7 +1,7 @@
 package skein.cli
 
 import mainargs.{ArgSig, ParserForClass, Result, Util}
-import skein.policy.OwnFailure
+import skein.units.OwnFailure
 import skein.record.{ClockKind, LoopKind}
 import skein.report.TextTable
 

@@ -4,7 +4,7 @@ import java.util.concurrent.ConcurrentLinkedDeque
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
-import skein.policy.OwnFailure
+import skein.units.OwnFailure
 
 /** Where a command's main thread waits for what runs asynchronously. */
 private[cli] object Edge:

@@ -6,7 +6,7 @@ import skein.forecast.Structure
 import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.{FlownVehicles, RecordedSeeing}
-import skein.policy.OwnFailure
+import skein.units.OwnFailure
 import skein.record.{Digest, Recording, RecordingReader}
 import skein.report.{Section, TextTable, Typed}
 import skein.scenario.{PaperDuel, Scenarios}

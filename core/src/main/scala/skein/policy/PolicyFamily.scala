@@ -1,5 +1,7 @@
 package skein.policy
 
+import skein.units.OwnFailure
+
 /** Policies of one form that differ in named parameters: what a search chooses from, and what a policy file
   * names.
   *
@@ -19,13 +21,14 @@ final class PolicyFamily(
 
   /** @param parameters one per axis of [[space]], in its order; they may lie outside the bounds, which only
     *   limit a search
+    * @throws OwnFailure if the family throws
     */
   def policy(parameters: Vector[Double]): Policy =
     require(
       parameters.size == space.dimension,
       s"family $name has ${space.dimension} parameters, got ${parameters.size}"
     )
-    make(parameters)
+    OwnFailure.told(s"the family $name")(make(parameters))
 
   def defaultPolicy: Policy = policy(space.defaults)
 

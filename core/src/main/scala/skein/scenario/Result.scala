@@ -22,7 +22,7 @@ final case class Result(
       .value
 
 object Result:
-  /** @throws skein.policy.OwnFailure if the scenario's code throws
+  /** @throws skein.units.OwnFailure if the scenario's code throws
     */
   def of(scenario: Scenario, tracks: Tracks): Result = Scenario.told(scenario.name)(Result(
     scenario,

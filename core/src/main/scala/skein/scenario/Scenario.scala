@@ -1,7 +1,7 @@
 package skein.scenario
 
 import java.util.Locale
-import skein.policy.{Agent, Fleet, OwnFailure, Seen}
+import skein.policy.{Agent, Fleet, Seen}
 import skein.units.*
 
 /** A task for a fleet: who flies, what may not happen, what is measured, and when it ends. A case class; its

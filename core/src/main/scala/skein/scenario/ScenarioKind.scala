@@ -21,7 +21,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
   private val readers = settings.zip(standard.productIterator.map(Reader.of(name, _)))
 
   /** @param values settings by name; those that are missing have their defaults
-    * @throws skein.policy.OwnFailure if the scenario's code throws
+    * @throws skein.units.OwnFailure if the scenario's code throws
     * @return or every mistake: what was expected, and what came
     */
   def read(values: Map[String, String]): Either[Seq[String], Scenario] =

@@ -1,7 +1,10 @@
 package skein.vehicle
 
+import skein.units.OwnFailure
+
 /** One vehicle that flies by a [[Plant]], from one event to the next. Mutable. How its time is cut into calls
-  * of [[advance]] does not change the flight, but for rounding.
+  * of [[advance]] does not change the flight, but for rounding. What the plant's step throws is told as an
+  * [[skein.units.OwnFailure]].
   */
 final class PlantFlight[S](val plant: Plant[S]):
   private var wantedNorthMps, wantedEastMps = 0.0
@@ -37,4 +40,6 @@ final class PlantFlight[S](val plant: Plant[S]):
     stepAtS = atS
     from = now
 
-  private def fly(spanS: Double): Unit = now = plant.step(from, wantedNorthMps, wantedEastMps, spanS)
+  private def fly(spanS: Double): Unit =
+    now = OwnFailure.told(s"the plant ${plant.getClass.getSimpleName}"):
+      plant.step(from, wantedNorthMps, wantedEastMps, spanS)

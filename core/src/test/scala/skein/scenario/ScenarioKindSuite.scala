@@ -1,6 +1,6 @@
 package skein.scenario
 
-import skein.policy.{Agent, OwnFailure, Role}
+import skein.policy.{Agent, Role}
 import skein.units.*
 
 class ScenarioKindSuite extends munit.FunSuite:

@@ -8,7 +8,7 @@ import scala.concurrent.duration.*
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
 import skein.loop.{AnyLoop, FlightOutcome, LoopKind}
 import skein.measure.RecordedTracks
-import skein.policy.OwnFailure
+import skein.units.OwnFailure
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}

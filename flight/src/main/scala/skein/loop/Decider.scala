@@ -23,7 +23,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
 
   /** Decides from a complete view.
     *
-    * @throws skein.policy.OwnFailure if the policy throws, or answers with nothing that a vehicle could be
+    * @throws skein.units.OwnFailure if the policy throws, or answers with nothing that a vehicle could be
     *   told
     * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */

@@ -1,6 +1,7 @@
 package skein.loop
 
-import skein.policy.{Agent, OwnFailure}
+import skein.policy.Agent
+import skein.units.OwnFailure
 
 /** What a vehicle's policy answers. */
 private object PolicyAnswer:

@@ -6,7 +6,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.util.concurrent.TimeUnit.NANOSECONDS
 import java.util.concurrent.{ExecutionException, FutureTask, TimeoutException}
 import skein.policy.*
-import skein.units.Span
+import skein.units.{OwnFailure, Span}
 
 /** A policy in a process of its own, asked over a Unix socket. It gets the observation of `skein.environment`
   * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, how to turn; values beyond
@@ -27,7 +27,7 @@ final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: R
     extends ObservingPolicy[Unit]:
   def initial: Unit = ()
 
-  /** @throws skein.policy.OwnFailure if there is no answer
+  /** @throws skein.units.OwnFailure if there is no answer
     */
   def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
     val share = connection.ask(seen.fromOwnHeading.map(_.toFloat)).toDouble.max(-1).min(1)

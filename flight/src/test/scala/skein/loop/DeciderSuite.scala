@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, AgentPolicy, Observation, OwnFailure, Yaw}
+import skein.policy.{Action, AgentPolicy, Observation, Yaw}
 import skein.scenario.PaperDuel
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*

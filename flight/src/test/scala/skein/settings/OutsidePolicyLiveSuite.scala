@@ -3,9 +3,9 @@ package skein.settings
 import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
 import java.nio.channels.ServerSocketChannel
 import scala.util.{Try, Using}
-import skein.policy.{OwnFailure, PlanarObservation}
+import skein.policy.PlanarObservation
 import skein.testing.TemporaryFolders
-import skein.units.Span
+import skein.units.{OwnFailure, Span}
 
 class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)

@@ -1,8 +1,8 @@
 package skein.forward
 
 import skein.forecast.Forecast
-import skein.policy.{PlanarObservation, ObservingPolicy, Policy, TeamPolicy, TeamObservation}
-import skein.units.Instant
+import skein.policy.{ObservingPolicy, PlanarObservation, Policy, TeamObservation, TeamPolicy}
+import skein.units.{Instant, OwnFailure}
 
 /** What a decision is made from: a reading of each vehicle, and the headings sent to them until then.
   * Mutable.
@@ -156,7 +156,7 @@ private[skein] final class Controller(
     policy match
       case duel: Policy     => decided = heading(duel, observation, elapsed)
       case team: TeamPolicy =>
-        val course = team.course(seen(observation, elapsed))
+        val course = asked(team.course(seen(observation, elapsed)))
         decided = course.headingRad
         speed = course.speedMps
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
@@ -223,10 +223,15 @@ private[skein] final class Controller(
       case observing: ObservingPolicy[?] =>
         val seen =
           PlanarObservation(dx, dy, dvx, dvy, decided, sentRad, elapsedS, ageS(observation, agent), otherAgeS)
-        val answer = ObservingPolicy.decide(observing, seen, memory)
+        val answer = asked(ObservingPolicy.decide(observing, seen, memory))
         memory = answer.memory
         answer.headingRad
-      case _ => policy.heading(dx, dy, dvx, dvy, decided, sentRad, elapsedS)
+      case _ => asked(policy.heading(dx, dy, dvx, dvy, decided, sentRad, elapsedS))
+
+  /** @throws OwnFailure if the policy throws
+    */
+  private def asked[A](answer: => A): A =
+    OwnFailure.told(s"the policy ${policy.getClass.getSimpleName}")(answer)
 
   private def seen(observation: RolloutView, elapsedS: Double): TeamObservation = TeamObservation(
     agent,

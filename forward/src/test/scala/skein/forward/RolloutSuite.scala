@@ -6,6 +6,7 @@ import skein.scenario.PaperDuel
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
+import skein.vehicle.{PlaneReading, Plant}
 
 class RolloutSuite extends munit.FunSuite:
   private val loops =
@@ -30,6 +31,24 @@ class RolloutSuite extends munit.FunSuite:
     test(s"without delays $loop flies as paused does, with ${model.getClass.getSimpleName}"):
       val truth = distances(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, model), 1)
       assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
+
+  test("what a policy or a plant throws is told with its name and its line"):
+    final class Lost extends Policy:
+      def heading(x: Double, y: Double, vx: Double, vy: Double, own: Double, sent: Double, elapsedS: Double) =
+        throw Exception("no way")
+    final class Stuck extends Plant[PlaneReading]:
+      def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
+      def stepS: Double                           = 0.1
+      def read(state: PlaneReading): PlaneReading = state
+      def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+        throw Exception("no way")
+    def told(duel: Duel, plant: VelocityResponse) =
+      intercept[OwnFailure](Rollout(duel, LoopTiming.Stream(), DelayTable.vpn, plant).fly(1)).getMessage
+    val ofPolicy = told(Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(policy = Lost())), lag)
+    val ofPlant  = told(Duel.paper, PlantResponse(Stuck()))
+    for (text, whose) <- Seq(ofPolicy -> "policy Lost", ofPlant -> "plant Stuck") do
+      assert(clue(text).startsWith(s"the $whose"))
+      assert(clue(text).matches(".* failed: java.lang.Exception: no way \\(RolloutSuite.scala:\\d+\\)"))
 
   for loop <- loops do
     test(s"under $loop a world depends on its key alone"):

@@ -1,4 +1,4 @@
-package skein.policy
+package skein.units
 
 import java.io.FileNotFoundException
 

@@ -1,4 +1,4 @@
-package skein.policy
+package skein.units
 
 /** Code of a user's own threw something, or answered with what nobody can use.
   *
@@ -40,7 +40,7 @@ object OwnFailure:
       .orElse(frames.find(!isOf(Libraries, _)))
       .map(frame => s"${frame.getFileName}:${frame.getLineNumber}")
 
-  private def isUsers(frame: StackTraceElement) = !isOf(Libraries, frame) && !isOf(Callers, frame)
+  private def isUsers(frame: StackTraceElement) = !isOf(Libraries, frame) && !isOf(Skein, frame)
 
   private def isOf(rooms: Seq[String], frame: StackTraceElement) =
     rooms.exists(frame.getClassName.startsWith)
@@ -52,5 +52,5 @@ object OwnFailure:
       .takeWhile(_ != null)
       .collectFirst { case failure: OwnFailure => failure }
 
-  private val Libraries = Seq("java.", "jdk.", "scala.")
-  private val Callers   = Seq("skein.", "org.apache.pekko.")
+  private val Libraries = Seq("java.", "jdk.", "scala.", "org.apache.")
+  private val Skein     = Seq("skein.")
