@@ -24,11 +24,17 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * (world % 128))
     def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * (world % 128))
 
+  private val train = PlantResponse(Train(lagS = 0.6))
+
   for
     timing <-
       Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
     (name, vehicle) <-
-      Seq("a bicycle" -> bicycle, "a car with tyre lag and its driver" -> PlantResponse(DrivenCar()))
+      Seq(
+        "a bicycle"                          -> bicycle,
+        "a car with tyre lag and its driver" -> PlantResponse(DrivenCar()),
+        "a train"                            -> train
+      )
   do
     test(s"$name flies by lanes under ${timing.productPrefix} as its scalar does"):
       val batch = DuelBatch(short, timing, vehicle, threads = 1)
@@ -57,7 +63,11 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
   for
     timing          <- Seq(LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
     (name, vehicle) <-
-      Seq("a bicycle" -> bicycle, "a car with tyre lag and its driver" -> PlantResponse(DrivenCar()))
+      Seq(
+        "a bicycle"                          -> bicycle,
+        "a car with tyre lag and its driver" -> PlantResponse(DrivenCar()),
+        "a train"                            -> train
+      )
   do
     test(s"$name flies by lanes under ${timing.productPrefix} where every world has delays of its own"):
       val batch = DuelBatch(short, timing, vehicle, threads = 1)
@@ -70,6 +80,16 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = false, Seq(DelayTable.vpn)))
       val flown = batch.fly(all)
       val off   = (0 until all.size by 3).map(offM(all, flown, timing, vehicle, _))
+      assert(off.max < 1e-3, off.sorted.takeRight(5))
+
+  for shared <- Seq(true, false) do
+    test(s"what heeds one part of its command alone is predicted by lanes as by its scalar, shared: $shared"):
+      val timing = LoopTiming.Predictive(predictor = train.predictor)
+      val batch  = DuelBatch(short, timing, train, threads = 1)
+      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)))
+      val all   = worlds(shared)
+      val flown = batch.fly(all)
+      val off   = (0 until all.size by 9).map(offM(all, flown, timing, train, _))
       assert(off.max < 1e-3, off.sorted.takeRight(5))
 
   test("a plant of a first-order lag flies as the model with a lag"):
