@@ -181,7 +181,7 @@ final class FlyCommand(using Scenarios)
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
         val written =
           Report.write(flights, out).map(_.told.foreach(shown.say))
-        val ended = landed.filter(_.outcome == FlightOutcome.Stopped).map(_.plan.id).toSet
+        val ended = landed.filter(_.outcome != FlightOutcome.Completed).map(_.plan.id).toSet
         all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)
 
@@ -207,10 +207,11 @@ private[cli] object FlyCommand:
 
   private def shows(out: Path) = s"./skein report ${Typed.recordings(out)} shows them"
 
-  /** A flight in which no vehicle was ever read for a decision is none, unless somebody ended it.
+  /** A flight in which no vehicle was ever read for a decision is none, unless it failed or somebody ended
+    * it.
     *
     * @param decisions by flight
-    * @param ended flights that somebody ended
+    * @param ended flights that failed, or that somebody ended
     */
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }

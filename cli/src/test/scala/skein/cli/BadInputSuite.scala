@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import skein.policy.Agent
+import skein.policy.{Action, Agent, AgentPolicy, Observation}
 import skein.record.MemoryRecorder
 import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
@@ -45,6 +45,24 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
         "\\(BadInputSuite.scala:\\d+\\)\n"
     ))
     assert(Files.notExists(path.resolve("out")))
+
+  folder.test("of a flight whose policy throws at once, that alone is told"): path =>
+    object Lost extends AgentPolicy:
+      type Memory = Unit
+      def start: Unit                                             = ()
+      def choose(seen: Observation, memory: Unit): (Action, Unit) = throw Exception("no way")
+    final case class Led() extends Scenario:
+      def agents: Vector[Agent] = PaperDuel().agents.map(_.copy(policy = Lost))
+    object Program extends SkeinApp(ScenarioKind(Led()))
+    val flight = s"fly --clock virtual --loop stream --link direct --duration 1s --out $path/out"
+    val ran    = Ran.of(Program.run(flight.split(' ').toSeq))
+    assertEquals(ran.status, 1)
+    assert(
+      clue(
+        ran.said
+      ).linesIterator.exists(_.matches("skein fly: stream-direct failed: the policy of .*: no way .*"))
+    )
+    assert(!ran.said.contains("nothing was decided"))
 
   test("a folder of certificates without a name is refused, and so are more flights than can be kept"):
     assertRefused(ClusterCommand, Seq("certificates", ""), "certificates: expected a folder, came ''")
