@@ -35,12 +35,15 @@ object LandscapeFigure:
           .map(axis => AxisTitle.of(landscape.space.axes(axis).name).at(landscape.best(axis)))
           .mkString("at the best: ", ", ", "")
 
+  /** Of values that are no number, as of vehicles that fly off without end, nothing is drawn. */
   private def curve(landscape: Landscape, title: String, value: String): Drawing =
     val axis   = landscape.space.axes(landscape.x)
-    val points = landscape.xs.zip(landscape.cells.head)
-    val low    = points.map((_, tally) => tally.mean - tally.sd).min
-    val high   = points.map((_, tally) => tally.mean + tally.sd).max
-    val panel  = Panel(
+    val points = landscape.xs.zip(landscape.cells.head).filter((_, tally) =>
+      (tally.mean + tally.sd).isFinite && (tally.mean - tally.sd).isFinite
+    )
+    val low   = points.map((_, tally) => tally.mean - tally.sd).minOption.getOrElse(0.0)
+    val high  = points.map((_, tally) => tally.mean + tally.sd).maxOption.getOrElse(1.0)
+    val panel = Panel(
       PlotAxis.exactly(AxisTitle.of(axis.name).text, axis.least, axis.most),
       PlotAxis.around(value, low, high),
       left = 62,
@@ -89,11 +92,15 @@ object LandscapeFigure:
     val scale  = LandscapeScale.of(landscape.cells.flatten.map(_.mean), direction)
     val best   = disc(panel.at(landscape.best(landscape.x), landscape.best(landscape.y.get)), found)
     val paper  = disc(panel.at(xAxis.default, yAxis.default), plain)
+    val off    = scale.errorBar(panel.right + 16, panel.top, panel.bottom, landscape.standardError, error)
     val legend = Legend(
       panel.left,
-      named("found", found),
-      named("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain),
-      Legend.Item("± standard error", 6, at => ColourScale.errorBar(at.moved(3, 0), 6, error))
+      Vector(
+        named("found", found),
+        named("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain)
+      ) ++ Option.when(off.nonEmpty)(
+        Legend.Item("± standard error", 6, at => ColourScale.errorBar(at.moved(3, 0), 6, error))
+      )*
     )
     Drawing(
       panel.right + 120,
@@ -103,7 +110,7 @@ object LandscapeFigure:
         legend.shapes.map(_.moved(0, panel.top - 30)) ++
         heat.cells(panel, scale) ++
         scale.bar(panel.right + 24, panel.top, panel.bottom, value) ++
-        scale.errorBar(panel.right + 16, panel.top, panel.bottom, landscape.standardError, error) ++
+        off ++
         panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
     )
 

@@ -39,6 +39,19 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val texts   = drawing.shapes.collect { case text: Mark.Text => text.content }
     assert(texts.contains("title") && texts.contains("x") && texts.contains("value"), texts)
 
+  test("of a curve's values that are no number nothing is drawn"):
+    val line                         = SearchSpace(Vector(Axis("x", 0, 1)))
+    def drawn(ofX: Double => Double) =
+      val values: Evaluator =
+        (candidates, episodes) => candidates.map(c => RunningStats.of(episodes.size)(_ => ofX(c(0))))
+      val land = Landscape.of(line, Vector(0.0), values, 0 until 2, () => false).get
+      LandscapeFigure(land, "title", "value", Direction.Minimise)
+    for wrong <- Seq(Double.PositiveInfinity, Double.NaN) do
+      val some   = drawn(x => if x > 0.5 then wrong else x)
+      val places = some.shapes.collect { case Mark.Path(points, _, _, _) => points }.flatten
+      assert(places.forall(at => at.x >= 0 && at.x <= some.width && at.y >= 0 && at.y <= some.height))
+      assert(drawn(_ => wrong).shapes.nonEmpty)
+
   private def at(dimension: Int) =
     val names = Vector("turnRateRadPerS", "lead", "captureRadiusM", "gain", "speedRatio", "w")
     val space = SearchSpace(names.take(dimension).map(Axis(_, 0, 2)))
@@ -52,6 +65,8 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assertEquals(LandscapeFigure.fixed(at(6)), Some("4 others at the best"))
     val shapes = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes
     val texts  = shapes.collect { case text: Mark.Text => text.content }
+    // All cells are equal: there is no bar to name.
+    assert(!texts.contains("± standard error"))
     // What is marked, and the same marks in the legend.
     assertEquals(
       shapes.collect { case disc: Mark.Disc => disc.fill }.groupBy(identity).values.map(_.size).toVector,
