@@ -29,7 +29,8 @@ private[cli] object OutFolder:
     if done.isLeft then
       try
         for folder <- fresh.get do
-          if folder.toFile.list.sameElements(Seq(Lock)) then Files.delete(folder.resolve(Lock))
+          if Option(folder.toFile.list).exists(_.sameElements(Seq(Lock))) then
+            Files.delete(folder.resolve(Lock))
           Files.delete(folder)
       catch case _: IOException => () // there is something in it
     done

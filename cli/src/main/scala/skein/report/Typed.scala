@@ -7,9 +7,9 @@ import java.nio.file.Path
   */
 private[skein] object Typed:
 
-  /** As one word. */
+  /** As one word, and no option. */
   def path(path: Path): String =
-    val text = path.toString
+    val text = if path.toString.startsWith("-") then s"./$path" else path.toString
     if text.matches("[\\p{L}\\p{N}._/+@%-]+") then text else s"'${text.replace("'", "'\\''")}'"
 
   /** All recordings of a folder: the star has to stay outside the quotation marks. */

@@ -40,6 +40,7 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
       refused("locked")(OutFolder.alone(_)(Left("nobody answers")): Unit),
       Left("nobody answers")
     )
+    assertEquals(refused("gone")(Files.delete), Left("nobody answers"))
     assertEquals(refused("used")(made => Files.createFile(made.resolve("log")): Unit), Left("nobody answers"))
     assertEquals(folder.toFile.list.toSet, Set("there", "used"))
     assertEquals(OutFolder.unlessRefused(OutFolder.made("--out", s"$folder/kept")).map(_ => ()), Right(()))

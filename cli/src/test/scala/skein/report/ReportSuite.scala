@@ -64,6 +64,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(clue(told).endsWith(s"c, which are there too: ./skein report '$folder/it'\\''s so'/*.duckdb"))
     assertEquals(Typed.recordings(Path.of("")), "*.duckdb")
     assertEquals(Typed.recordings(Path.of("a/b")), "a/b/*.duckdb")
+    assertEquals(Typed.recordings(Path.of("-a/b")), "./-a/b/*.duckdb")
 
   folder.test("a file that is named twice is one flight"): folder =>
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
