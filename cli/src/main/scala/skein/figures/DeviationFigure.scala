@@ -11,14 +11,17 @@ import skein.units.Decimals.signed
 object DeviationFigure:
   val name = "deviation"
 
-  private val slot   = 62.0
   private val gap    = 26.0
   private val height = 200.0
+
+  /** Of a small text. */
+  private val letterWidth = 4.6
 
   def apply(deviations: Vector[Deviation]): Option[Drawing] = Option.when(deviations.nonEmpty):
     val links  = deviations.map(_.link).distinct
     val placed = links.zipWithIndex.flatMap: (link, index) =>
       deviations.filter(_.link == link).map((_, index))
+    val slot  = (8 + deviations.map(_.name.length).max * letterWidth).max(62)
     val width = placed.size * slot + links.size * gap
     val panel = Panel(
       PlotAxis.exactly("", 0, width, 1),

@@ -44,17 +44,16 @@ object DistanceFigure:
         val x = stripsLeft + (index + 0.5) * slotWidth
         curve.lastTenSeconds.toVector.flatMap(strip(panel, x, summary, _))
     val above = Point(stripsLeft, panel.top - 10)
-    val drawn = Seq(curves.flatMap(_._2.lastTenSeconds) -> "ours ●", published -> "paper ◆")
+    val signs = Seq(curves.flatMap(_._2.lastTenSeconds) -> "ours ●", published -> "paper ◆")
       .collect { case (values, sign) if values.nonEmpty => sign }
     val heading =
-      Option.when(drawn.nonEmpty)(Mark.Text(above, drawn.mkString("last 10 s: ", ", ", ""), Theme.tickSize))
-    val title = panel.title(FlightTheme.link(link))
-    Drawing(
+      Option.when(signs.nonEmpty)(Mark.Text(above, signs.mkString("last 10 s: ", ", ", ""), Theme.tickSize))
+    val drawn = Drawing(
       stripsLeft + stripsWidth + 50,
       plotHeight + 84,
-      (title +: panel.axes) ++ heading ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++
-        lines ++ strips ++ Legend.above(panel, FlightTheme.names(flights, strokes)*)
+      panel.axes ++ heading ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++ lines ++ strips
     )
+    Legend.titled(panel, FlightTheme.link(link), drawn, FlightTheme.names(flights, strokes)*)
 
   private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Mark] =
     val colour = FlightTheme.of(summary.flight.loop)

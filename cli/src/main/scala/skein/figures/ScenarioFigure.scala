@@ -135,11 +135,8 @@ object ScenarioFigure:
       FlightTheme.names(flights.map(_.summary), strokes) ++ bound.map(bound =>
         Legend.line(bound.name, boundLine)
       )
-    Drawing(
-      plotWidth + 76,
-      plotHeight + 84,
-      (panel.title(FlightTheme.link(link)) +: panel.axes) ++ held ++ lines ++ Legend.above(panel, items*)
-    )
+    val plot = Drawing(plotWidth + 76, plotHeight + 84, panel.axes ++ held ++ lines)
+    Legend.titled(panel, FlightTheme.link(link), plot, items*)
 
   /** The highest of a curve, but where it begins far above all that follows: then some more than what
     * follows.

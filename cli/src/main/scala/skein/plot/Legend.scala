@@ -4,6 +4,7 @@ package skein.plot
 object Legend:
   private val gap         = 18.0
   private val letterWidth = 6.3
+  private val titleLetter = 7.5
   private val middle      = 9.0
   private val height      = 24.0
 
@@ -22,14 +23,25 @@ object Legend:
 
   /** Items from left to right; texts may be a little narrower or wider than the room they get. */
   def apply(left: Double, items: Item*): Drawing =
-    val starts =
-      items.scanLeft(left)((start, item) => start + item.width + 6 + item.label.length * letterWidth + gap)
+    val starts = items.scanLeft(left)(_ + room(_))
     val shapes = items.zip(starts).flatMap: (item, start) =>
       item.mark(Point(start, middle)) :+
         Mark.Text(Point(start + item.width + 6, middle + 4), item.label)
     Drawing(starts.last - gap / 2, height, shapes.toVector)
 
-  /** The same above a panel, up to its right edge. */
-  def above(panel: Panel, items: Item*): Vector[Mark] =
+  private def room(item: Item) = item.width + 6 + item.label.length * letterWidth + gap
+
+  /** What is drawn of a panel, with a title above it and the legend beside that, up to the panel's right
+    * edge; one that is too long stands below in rows.
+    */
+  def titled(panel: Panel, title: String, drawn: Drawing, items: Item*): Drawing =
+    val shapes = panel.title(title) +: drawn.shapes
     val legend = Legend(0, items*)
-    legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
+    if title.length * titleLetter + gap + legend.width <= panel.width then
+      val beside = legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
+      drawn.copy(shapes = shapes ++ beside)
+    else
+      val rows = items.foldLeft(Vector.empty[Vector[Item]]):
+        case (before :+ row, item) if (row :+ item).map(room).sum <= panel.width => before :+ (row :+ item)
+        case (before, item)                                                      => before :+ Vector(item)
+      Drawing.stacked(drawn.copy(shapes = shapes) +: rows.map(row => Legend(panel.left, row*))*)
