@@ -1,5 +1,7 @@
 package skein.units
 
+import scala.util.control.ControlThrowable
+
 /** Code of a user's own threw something, or answered with what nobody can use.
   *
   * @param whose for example `the policy of Scout 1`
@@ -10,7 +12,7 @@ final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = 
 object OwnFailure:
 
   /** What a user's code answers; its mistakes are told with whose it is, and the line. That memory is full,
-    * or that the thread shall end, is told as it is.
+    * or that the thread shall end, is told as it is, and who asked may end it by a [[ControlThrowable]].
     *
     * @throws OwnFailure if it throws
     */
@@ -18,7 +20,7 @@ object OwnFailure:
     // Not `NonFatal`: a recursion without end and a class that is missing are mistakes of the user's too.
     try answer
     catch
-      case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError) => throw asItIs
+      case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError | ControlThrowable) => throw asItIs
       case mistake: Throwable => throw OwnFailure(whose, s"failed: ${text(mistake)}", mistake)
 
   /** The mistake, and where it was made if that is known. */

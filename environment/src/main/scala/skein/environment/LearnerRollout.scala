@@ -1,5 +1,6 @@
 package skein.environment
 
+import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
 import skein.signal.SplitMix64
@@ -104,7 +105,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
         loss += side.loss(distanceM, northM, eastM)
 
 private object LearnerRollout:
-  private object Anew extends RuntimeException(null, null, false, false)
+  private object Anew extends ControlThrowable
 
   /** Over the link, of which each episode meets one. */
   private val Flights = 1 << 24

@@ -1,6 +1,7 @@
 package skein.environment
 
 import java.util.concurrent.Semaphore
+import scala.util.control.ControlThrowable
 
 /** A computation that is suspended and gone on with. It has a virtual thread of its own, which waits in
   * between; only one of the two runs at a time.
@@ -46,4 +47,4 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
     goesOn.release()
 
 private object Resumed:
-  private object GivenUp extends RuntimeException(null, null, false, false)
+  private object GivenUp extends ControlThrowable
