@@ -8,8 +8,7 @@ import skein.link.Address
 final case class Endpoint(host: String, port: Int):
   override def toString: String = Address(host, port).toString
 
-  /** As a URI has it: an IPv6 address in brackets. */
-  private[cluster] def uriHost: String = if host.contains(':') then s"[$host]" else host
+  private[cluster] def uriHost: String = Address(host, port).uriHost
 
   /** Whether nobody from another machine gets there. */
   def isLoopback: Boolean = Try(InetAddress.getByName(host).isLoopbackAddress).getOrElse(false)

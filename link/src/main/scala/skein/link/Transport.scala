@@ -13,7 +13,10 @@ import scala.util.Try
   */
 final case class Address(host: String, port: Int):
   /** As [[Address.parse]] reads it. */
-  override def toString: String = if host.contains(':') then s"[$host]:$port" else s"$host:$port"
+  override def toString: String = s"$uriHost:$port"
+
+  /** As a URI has it: an IPv6 address in brackets. */
+  def uriHost: String = if host.contains(':') then s"[$host]" else host
 
 object Address:
   private val Plain = raw"([^:\[\]]+):(\d{1,5})".r

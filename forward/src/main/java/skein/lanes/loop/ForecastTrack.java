@@ -324,22 +324,23 @@ final class ForecastTrack {
 
   /** The way is as long as from the reading before until this one, if there was one before. */
   private void aimAt(int row, int[] made) {
-    IntVector here = IntVector.broadcast(INTS, row);
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
-        rowS = FloatVector.broadcast(SPECIES, periodS),
-        zero = FloatVector.broadcast(SPECIES, 0f);
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
     for (int k = 0; k < entering.count; k++) {
       int i = entering.first[k];
-      IntVector rows = IntVector.fromArray(INTS, knownRow, i);
-      FloatVector span =
-          ((FloatVector)
-                  IntVector.fromArray(INTS, made, i)
-                      .sub(IntVector.fromArray(INTS, readAt, i))
-                      .convertShape(I2F, SPECIES, 0))
-              .mul(grainS)
-              .add(((FloatVector) here.sub(rows).convertShape(I2F, SPECIES, 0)).mul(rowS));
-      zero.blend(span, flies(i)).intoArray(endS, i);
+      zero.blend(sinceReadingS(row, i, IntVector.fromArray(INTS, made, i)), flies(i)).intoArray(endS, i);
     }
+  }
+
+  /** From the newest reading until a moment, from the row's begin in grains, s. */
+  private FloatVector sinceReadingS(int row, int i, IntVector moment) {
+    return ((FloatVector) moment.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
+        .mul(LaneViews.GRAIN_S)
+        .add(
+            ((FloatVector)
+                    IntVector.broadcast(INTS, row)
+                        .sub(IntVector.fromArray(INTS, knownRow, i))
+                        .convertShape(I2F, SPECIES, 0))
+                .mul(periodS));
   }
 
   /** Where a reading enters that is not the first. */
@@ -465,21 +466,13 @@ final class ForecastTrack {
 
   /** How long the way is. */
   private void aim(int row, LaneVectors vectors, int[] known, int[] when, float[] toS) {
-    IntVector here = IntVector.broadcast(INTS, row), none = IntVector.broadcast(INTS, NONE);
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
-        rowS = FloatVector.broadcast(SPECIES, periodS),
-        zero = FloatVector.broadcast(SPECIES, 0f);
+    IntVector none = IntVector.broadcast(INTS, NONE);
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector now = IntVector.fromArray(INTS, when, i);
       now = now.blend(IntVector.fromArray(INTS, known, i), now.compare(EQ, none));
-      FloatVector age =
-          ((FloatVector) now.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
-              .mul(grainS)
-              .add(
-                  ((FloatVector)
-                          here.sub(IntVector.fromArray(INTS, knownRow, i)).convertShape(I2F, SPECIES, 0))
-                      .mul(rowS));
+      FloatVector age = sinceReadingS(row, i, now);
       age.intoArray(ageS, i);
       age.add(FloatVector.fromArray(SPECIES, toS, i)).max(zero).intoArray(endS, i);
     }
