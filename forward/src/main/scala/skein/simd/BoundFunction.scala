@@ -77,6 +77,10 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
       starts(number) = offset
       strides(number) = stride
 
+  /** The same of an input that the function need not have: its number is −1 then. */
+  def inputIfAny(number: Int, array: Array[Float], offset: Int = 0, stride: Int = 0): Unit =
+    if number >= 0 then input(number, array, offset, stride)
+
   def output(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
     input(bound.inputs.length + number, array, offset, stride)
 

@@ -59,24 +59,21 @@ private[skein] object PlantSteps:
       * @param apart how far those of each step are from the last one's; after the last in the array come the
       *   first
       */
-    def rows(array: Array[Float], from: Int, apart: Int): Unit = put(state, array, from, apart)
+    def rows(array: Array[Float], from: Int, apart: Int): Unit = call.inputIfAny(state, array, from, apart)
 
     /** Where those of its end begin. */
     def outputRows(array: Array[Float], from: Int, apart: Int): Unit = call.output(0, array, from, apart)
 
     /** Where each vehicle started. */
     def starts(north: Array[Float], east: Array[Float]): Unit =
-      put(stepped.place(count + 2), north)
-      put(stepped.place(count + 3), east)
+      call.inputIfAny(stepped.place(count + 2), north)
+      call.inputIfAny(stepped.place(count + 3), east)
 
     /** What is commanded from now on, over the speed, m/s. */
     def command(north: Array[Float], east: Array[Float], speed: Float): Unit =
       parameters(1) = speed
-      put(this.north, north)
-      put(this.east, east)
-
-    private def put(place: Int, array: Array[Float], from: Int = 0, apart: Int = 0): Unit =
-      if place >= 0 then call.input(place, array, from, apart)
+      call.inputIfAny(this.north, north)
+      call.inputIfAny(this.east, east)
 
     /** Flies a step. */
     def next(): Unit = call.next()

@@ -75,20 +75,16 @@ private[lanes] final class StagedFlight(
     */
   def begin(commanded: Directions, from: Int): Unit =
     if moving.kept ne begun then turnOver()
-    put(beginning, firstNorth, commanded.cos, from)
-    put(beginning, firstEast, commanded.sin, from)
+    beginning.inputIfAny(firstNorth, commanded.cos, from)
+    beginning.inputIfAny(firstEast, commanded.sin, from)
     beginning()
 
   /** The next step begins at the moment flown to, under a command. */
   def act(commanded: Directions, from: Int): Unit =
-    put(moving.act, north, commanded.cos, from)
-    put(moving.act, east, commanded.sin, from)
+    moving.act.inputIfAny(north, commanded.cos, from)
+    moving.act.inputIfAny(east, commanded.sin, from)
     moving.act()
     turnOver()
-
-  /** A plant need not heed both parts of its command. */
-  private def put(call: LaneCall, place: Int, part: Array[Float], from: Int): Unit =
-    if place >= 0 then call.input(place, part, from)
 
   /** Flies on.
     *
