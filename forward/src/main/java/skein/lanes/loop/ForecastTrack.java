@@ -13,7 +13,6 @@ import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
 
-import java.util.ArrayList;
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
@@ -98,23 +97,7 @@ final class ForecastTrack {
   /** 1 where a turn is that of a command of its own. */
   private int[] counts;
 
-  /** Readings that enter together, with the mean delays then. */
-  private static final class Readings {
-    final int[] madeAt = new int[WORLDS], receivedAt = new int[WORLDS];
-    final float[] toS = new float[WORLDS], fromS = new float[WORLDS];
-  }
-
-  private final ArrayList<Readings> readings = new ArrayList<>();
-
-  /** Those to which the way was laid. */
-  private Readings nth;
-
-  // How many of a world's have entered in this row; when the last was made, from the row's begin.
-  private final int[] entered = new int[WORLDS], newestAt = new int[WORLDS];
-
-  // Where some enter together, 1; in which vectors.
-  final int[] enters = new int[WORLDS];
-  final LaneVectors entering = new LaneVectors();
+  final ArrivedReadings arrived = new ArrivedReadings();
 
   /**
    * @param deadS from a command's arrival until the vehicle is taken to follow it
@@ -138,7 +121,7 @@ final class ForecastTrack {
   void start() {
     Arrays.fill(knownRow, -1);
     Arrays.fill(readAt, -FAR);
-    Arrays.fill(entered, 0);
+    arrived.start();
     Arrays.fill(head, 0);
     Arrays.fill(before.cos, 0);
     Arrays.fill(before.sin, 0);
@@ -160,7 +143,7 @@ final class ForecastTrack {
           .min(farRows)
           .mul(-periodGrains)
           .add(IntVector.fromArray(INTS, readAt, i))
-          .intoArray(newestAt, i);
+          .intoArray(arrived.newestAt, i);
     }
     oldest = Math.max(oldest, first.reduceLanes(MIN));
     if (row - oldest >= slots) makeRoom(row);
@@ -207,112 +190,29 @@ final class ForecastTrack {
   }
 
   /**
-   * Takes readings that came, where they are newer than the newest, and updates the mean delays by them. What
-   * they tell of commands waits for {@link #conclude}.
-   *
-   * @param whose of which vehicle each reading is
-   * @param vehicle this one
-   * @param asked when it was asked for, made and received, from the row's begin
-   * @param delays the means of all vehicles' readings
-   */
-  void enter(
-      LaneVectors vectors,
-      int[] whose,
-      int vehicle,
-      int[] asked,
-      int[] made,
-      int[] received,
-      MeanDelays delays) {
-    IntVector zero = IntVector.broadcast(INTS, 0), one = IntVector.broadcast(INTS, 1);
-    entering.count = 0;
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      IntVector now = IntVector.fromArray(INTS, made, i), last = IntVector.fromArray(INTS, newestAt, i);
-      VectorMask<Integer> newer =
-          IntVector.fromArray(INTS, whose, i).compare(EQ, vehicle).and(now.compare(GT, last));
-      if (!newer.anyTrue()) continue;
-      entering.first[entering.count++] = i;
-      zero.blend(one, newer).intoArray(enters, i);
-      last.blend(now, newer).intoArray(newestAt, i);
-    }
-    delays.take(entering, enters, asked, made, received);
-    note(made, received, delays);
-  }
-
-  /** Notes readings that enter: of each world the first, the second and so on together. */
-  private void note(int[] made, int[] received, MeanDelays delays) {
-    for (int k = 0; k < entering.count; k++) {
-      int i = entering.first[k];
-      IntVector count = IntVector.fromArray(INTS, entered, i);
-      VectorMask<Integer> enter = IntVector.fromArray(INTS, enters, i).compare(GT, 0);
-      int least = count.reduceLanes(MIN), most = count.reduceLanes(MAX);
-      while (readings.size() <= most) readings.add(new Readings());
-      for (int n = least; n <= most; n++) {
-        Readings nth = readings.get(n);
-        VectorMask<Integer> does = count.compare(EQ, n).and(enter);
-        VectorMask<Float> means = does.cast(SPECIES);
-        IntVector.fromArray(INTS, nth.madeAt, i)
-            .blend(IntVector.fromArray(INTS, made, i), does)
-            .intoArray(nth.madeAt, i);
-        IntVector.fromArray(INTS, nth.receivedAt, i)
-            .blend(IntVector.fromArray(INTS, received, i), does)
-            .intoArray(nth.receivedAt, i);
-        FloatVector.fromArray(SPECIES, nth.toS, i)
-            .blend(FloatVector.fromArray(SPECIES, delays.toS, i), means)
-            .intoArray(nth.toS, i);
-        FloatVector.fromArray(SPECIES, nth.fromS, i)
-            .blend(FloatVector.fromArray(SPECIES, delays.fromS, i), means)
-            .intoArray(nth.fromS, i);
-      }
-      count.add(1, enter).intoArray(entered, i);
-    }
-  }
-
-  /**
-   * Lays the way to the readings that entered in this period: of each world to the first, then to the second
+   * Lays the way to the readings that arrived in this period: of each world to the first, then to the second
    * and so on, each of which is {@link #conclude concluded} before the next.
    *
-   * @param n which reading of each world, from 0
-   * @return whether some world has so many
+   * @return whether some world has one more
    */
-  boolean layToReading(int row, int n) {
-    if (!findEntering(n)) {
-      Arrays.fill(entered, 0);
-      return false;
-    }
-    nth = readings.get(n);
-    lay(row, entering, nth.receivedAt, nth.receivedAt, nth.toS, nth.fromS);
-    aimAt(row, nth.madeAt);
+  boolean layToReading(int row) {
+    if (!arrived.next()) return false;
+    lay(row, arrived.vectors, arrived.receivedAt(), arrived.receivedAt(), arrived.toS(), arrived.fromS());
+    aimAt(row, arrived.madeAt());
     return true;
-  }
-
-  /** When the readings were made to which the way was laid, from the row's begin. */
-  int[] madeAt() {
-    return nth.madeAt;
   }
 
   /** Lets stand what is taken to have acted before these readings, by what was known then. */
   void conclude(int row) {
     settle(row);
-    renew(row, nth.madeAt);
-  }
-
-  /** In which vectors a world has so many readings and one more. */
-  private boolean findEntering(int n) {
-    entering.count = 0;
-    for (int i = 0; i < WORLDS; i += LANES) {
-      VectorMask<Integer> more = IntVector.fromArray(INTS, entered, i).compare(GT, n);
-      if (more.anyTrue()) entering.first[entering.count++] = i;
-      IntVector.broadcast(INTS, 0).blend(1, more).intoArray(enters, i);
-    }
-    return entering.count > 0;
+    renew(row, arrived.madeAt());
   }
 
   private void renew(int row, int[] made) {
     IntVector here = IntVector.broadcast(INTS, row);
-    for (int k = 0; k < entering.count; k++) {
-      int i = entering.first[k];
-      IntVector enter = IntVector.fromArray(INTS, enters, i);
+    for (int k = 0; k < arrived.vectors.count; k++) {
+      int i = arrived.vectors.first[k];
+      IntVector enter = IntVector.fromArray(INTS, arrived.enters, i);
       VectorMask<Integer> does = enter.compare(GT, 0);
       IntVector.fromArray(INTS, readAt, i)
           .blend(IntVector.fromArray(INTS, made, i), does)
@@ -325,8 +225,8 @@ final class ForecastTrack {
   /** The way is as long as from the reading before until this one, if there was one before. */
   private void aimAt(int row, int[] made) {
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
-    for (int k = 0; k < entering.count; k++) {
-      int i = entering.first[k];
+    for (int k = 0; k < arrived.vectors.count; k++) {
+      int i = arrived.vectors.first[k];
       zero.blend(sinceReadingS(row, i, IntVector.fromArray(INTS, made, i)), flies(i)).intoArray(endS, i);
     }
   }
@@ -347,7 +247,7 @@ final class ForecastTrack {
   private VectorMask<Float> flies(int i) {
     return IntVector.fromArray(INTS, knownRow, i)
         .compare(GE, 0)
-        .and(IntVector.fromArray(INTS, enters, i).compare(GT, 0))
+        .and(IntVector.fromArray(INTS, arrived.enters, i).compare(GT, 0))
         .cast(SPECIES);
   }
 
@@ -361,8 +261,8 @@ final class ForecastTrack {
         zero = FloatVector.broadcast(SPECIES, 0f),
         dead = FloatVector.broadcast(SPECIES, deadS);
     boolean isFull = false;
-    for (int k = 0; k < entering.count; k++) {
-      int i = entering.first[k];
+    for (int k = 0; k < arrived.vectors.count; k++) {
+      int i = arrived.vectors.first[k];
       VectorMask<Float> flies = flies(i);
       if (!flies.anyTrue()) continue;
       FloatVector span = FloatVector.fromArray(SPECIES, endS, i);
@@ -572,7 +472,7 @@ final class ForecastTrack {
    * @param into from the row's begin
    */
   void tell(int[] joined, int[] into) {
-    System.arraycopy(newestAt, 0, into, 0, WORLDS);
+    System.arraycopy(arrived.newestAt, 0, into, 0, WORLDS);
     IntVector none = IntVector.broadcast(INTS, NONE);
     for (int i = 0; i < WORLDS; i += LANES)
       IntVector.fromArray(INTS, joined, i)

@@ -78,7 +78,7 @@ public final class LaneForecast {
    */
   void enter(LaneVectors vectors, int[] whose, int[] asked, int[] made, int[] received) {
     for (int v = 0; v < tracks.length; v++)
-      tracks[v].enter(vectors, whose, v, asked, made, received, delays);
+      tracks[v].arrived.take(vectors, whose, v, asked, made, received, delays);
   }
 
   /**
@@ -90,7 +90,7 @@ public final class LaneForecast {
   void tell(int[] joinedAt, int[][] madeAt) {
     Arrays.fill(joinedAt, dueGrains);
     for (int v = 0; v < tracks.length; v++) {
-      for (int n = 0; tracks[v].layToReading(row, n); n++) {
+      while (tracks[v].layToReading(row)) {
         if (vehicles[v].remembers()) enter(tracks[v], vehicles[v], read[v]);
         tracks[v].conclude(row);
       }
@@ -99,8 +99,9 @@ public final class LaneForecast {
   }
 
   private void enter(ForecastTrack track, ForecastVehicles by, LaneVehicles read) {
-    read.read(row, track.entering, track.enters, track.madeAt(), track.enters, true);
-    by.enter(track.entering, track, track.enters, read.state);
+    ArrivedReadings arrived = track.arrived;
+    read.read(row, arrived.vectors, arrived.enters, arrived.madeAt(), arrived.enters, true);
+    by.enter(arrived.vectors, track, arrived.enters, read.state);
   }
 
   /**
