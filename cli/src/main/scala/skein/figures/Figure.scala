@@ -1,6 +1,6 @@
 package skein.figures
 
-import skein.measure.{Deviation, FlightSet, PredictionErrors, PredictionGroup, ScenarioFlights}
+import skein.measure.{Compared, Deviation, FlightSet, PredictionErrors, PredictionGroup, ScenarioFlights}
 import skein.plot.Drawing
 
 /** A picture of the report.
@@ -116,7 +116,8 @@ object Figure:
         "Latency",
         "Round trips as measured in these flights (bars), and the link's profile (black line) with its 5, " +
           "50 and 95 % quantiles; direct and vpn are the paper's own samples. An emulated link takes half " +
-          "of one sample there and half of another back, so its round trips spread less (orange line).",
+          "of one sample there and half of another back, so its round trips spread less (orange line). The " +
+          "longest may lie beyond the axis.",
         drawing
       ),
     TwinFigure(set).map: drawing =>
@@ -126,7 +127,8 @@ object Figure:
         "Each live flight (coloured) and its virtual twins (black, dashed): shares of " +
           "decisions whose own data was at most so old, counted from when physics was " +
           "sampled, and whose own last move was at most so long ago; KS is the " +
-          "Kolmogorov-Smirnov distance between the two curves, the largest vertical gap.",
+          "Kolmogorov-Smirnov distance between the two curves: the largest vertical gap, " +
+          s"where times within ${Compared.WithinMs} ms count as equal.",
         drawing
       )
   ).flatten

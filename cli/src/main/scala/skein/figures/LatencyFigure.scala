@@ -3,7 +3,7 @@ package skein.figures
 import skein.measure.{Distribution, FlightSet}
 import skein.plot.*
 import skein.signal.{LatencyDistribution, LatencyProfile}
-import skein.units.Decimals.fixed
+import skein.units.Decimals.brief
 
 /** The paper's Figure 3: histograms of round trips, one panel per link, with the density and the quantiles of
   * the link's profile, which for `direct` and `vpn` are the paper's own samples.
@@ -31,7 +31,7 @@ object LatencyFigure:
 
   private def panel(link: String, samples: Distribution): Drawing =
     val profile = profileOf(link)
-    val most    = (samples.quantile(0.999) +: profile.map(_.quantile(1).toMillis).toVector).max
+    val most    = axisEndMs(samples, profile)
     val step    = binWidthMs(most)
     val width   = BigDecimal(step).bigDecimal.stripTrailingZeros.toPlainString
     val bins    = samples.sorted.groupMapReduce(ms => math.floor(ms / step).toInt)(_ => 1)(_ + _)
@@ -61,15 +61,26 @@ object LatencyFigure:
         )
     val lines = Vector(density -> profileLine, halves -> halvesLine).collect:
       case (points, stroke) if points.nonEmpty => panel.curve(points, stroke)
-    val marks              = profile.toVector.flatMap(quantileMarks(panel, _))
-    def figure(ms: Double) = ms.fixed(if most < 10 then 2 else 1)
-    val facts              = s"n ${samples.count}, mean ${figure(samples.mean)}, sd ${figure(samples.sd)}, " +
-      s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
+    val marks = profile.toVector.flatMap(quantileMarks(panel, _))
+    val facts = Vector(
+      "mean"   -> samples.mean,
+      "sd"     -> samples.sd,
+      "median" -> samples.median,
+      "p99"    -> samples.p99,
+      "max"    -> samples.most
+    ).map((name, ms) => s"$name ${ms.brief}").mkString(s"n ${samples.count}, ", ", ", " ms")
     val titles = Vector(
       panel.title(FlightTheme.link(link)).moved(0, -14),
       Mark.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize)
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
+
+  /** A few round trips may be many times as long as all others, such as when a program stands still: then
+    * they are told as a number, and lie beyond the axis.
+    */
+  private def axisEndMs(samples: Distribution, profile: Option[LatencyDistribution]): Double =
+    val longest = samples.most.min(1.25 * samples.p99)
+    profile.fold(longest)(known => known.quantile(1).toMillis.max(longest))
 
   private def legend: Drawing =
     Legend(
@@ -82,11 +93,12 @@ object LatencyFigure:
 
   /** The profile's 5, 50 and 95 % quantiles. */
   private def quantileMarks(panel: Panel, profile: LatencyDistribution): Vector[Mark] =
-    Vector(0.05, 0.5, 0.95).flatMap: p =>
+    val anchors = Vector(0.05 -> Anchor.End, 0.5 -> Anchor.Middle, 0.95 -> Anchor.Start)
+    anchors.flatMap: (p, anchor) =>
       val x = panel.atX(profile.quantile(p).toMillis)
       Vector(
         Mark.line(Point(x, panel.bottom), Point(x, panel.top + 13), quantileLine),
-        Mark.Text(Point(x, panel.top + 9), s"${(p * 100).round} %", Theme.smallSize, anchor = Anchor.Middle)
+        Mark.Text(Point(x, panel.top + 9), s"${(p * 100).round} %", Theme.smallSize, anchor = anchor)
       )
 
   /** Per cent per bin along the round trip, as a step line. */

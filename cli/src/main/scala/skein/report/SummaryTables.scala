@@ -1,7 +1,7 @@
 package skein.report
 
 import java.util.Locale
-import skein.measure.{Distribution, FlightSet, FlightSummary, Published, TimingObservation, Twin}
+import skein.measure.{Compared, Distribution, FlightSet, FlightSummary, Published, TimingObservation, Twin}
 import skein.record.EventKind
 import skein.units.Decimals.{brief, fixed, signed}
 
@@ -170,7 +170,8 @@ object SummaryTables:
   val twinsNote: String =
     "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data " +
       "and of the time since the own last move: 0 where both are distributed alike, 1 where they do not " +
-      "overlap, be it by a microsecond. Beside it, the scenario's first measure of both flights"
+      s"overlap. Times within ${Compared.WithinMs} ms count as equal. Beside it, the scenario's first " +
+      "measure of both flights"
 
   /** `TimedOut` as `timed out`. */
   def label(kind: EventKind): String =

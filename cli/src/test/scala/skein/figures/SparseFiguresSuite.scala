@@ -1,11 +1,12 @@
 package skein.figures
 
+import skein.measure.Distribution
 import skein.plot.{Drawing, Mark}
 import skein.report.{DuelReport, Report, SyntheticFlight}
 import skein.scenario.Scenarios
 import skein.training.{LearnScore, LearningCurve}
 
-/** Figures of very little. */
+/** Figures of very little, and of what lies far apart. */
 class SparseFiguresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
@@ -30,3 +31,14 @@ class SparseFiguresSuite extends munit.FunSuite:
         .toVector
     assertEquals(discs(1), Vector(Some(colour)))
     assertEquals(discs(2), Vector.empty)
+
+  test("a round trip far longer than all others is told, and does not squeeze them"):
+    val usual  = Vector.tabulate(1000)(index => 30 + index * 0.02)
+    val shapes =
+      LatencyFigure(Seq("direct" -> Distribution.of(usual ++ Vector.fill(9)(900.0)).get)).get.shapes.toVector
+    val bars = shapes.collect:
+      case Mark.Path(points, None, Some(_), _) => points.map(_.x).max - points.map(_.x).min
+    assert(bars.sum > 40, s"the bars are ${bars.sum} wide together")
+    assert(shapes.exists {
+      case Mark.Text(_, content, _, _, _, _, _) => content.endsWith("max 900 ms"); case _ => false
+    })

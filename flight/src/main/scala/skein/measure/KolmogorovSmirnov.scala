@@ -5,17 +5,20 @@ object KolmogorovSmirnov:
 
   /** The largest difference between the shares of samples up to a value, over all values: 0 for equal
     * samples, 1 for samples that lie wholly apart (Smirnov, 1948).
+    *
+    * @param within values no further apart than this count as equal: the share of one sample up to a value is
+    *   compared with that of the other up to this much more
     */
-  def distance(one: Distribution, other: Distribution): Double =
-    // At values that occur in either sample, counted past all that are equal to them.
-    def from(i: Int, j: Int, largest: Double): Double =
-      if i == one.count || j == other.count then largest
-      else
-        val value          = one.sorted(i).min(other.sorted(j))
-        val (nextI, nextJ) = (past(one, i, value), past(other, j, value))
-        val apart          = math.abs(nextI.toDouble / one.count - nextJ.toDouble / other.count)
-        from(nextI, nextJ, largest.max(apart))
-    from(0, 0, 0)
+  def distance(one: Distribution, other: Distribution, within: Double = 0): Double =
+    ahead(one, other, within).max(ahead(other, one, within))
+
+  /** By how much the first sample's share exceeds the second's at most, or 0. */
+  private def ahead(first: Distribution, second: Distribution, within: Double): Double =
+    val (_, largest) = first.sorted.zipWithIndex.foldLeft((0, 0.0)):
+      case ((reached, most), (value, index)) =>
+        val next = past(second, reached, value + within)
+        (next, most.max((index + 1.0) / first.count - next.toDouble / second.count))
+    largest
 
   private def past(samples: Distribution, index: Int, value: Double): Int =
     val next = samples.sorted.indexWhere(_ > value, index)

@@ -33,3 +33,19 @@ class KolmogorovSmirnovSuite extends munit.FunSuite:
       assertEqualsDouble(distance(one*)(other*), searched, 1e-12)
       assertEqualsDouble(distance(other*)(one*), searched, 1e-12)
       assertEqualsDouble(distance(one.map(_ * 7)*)(other.map(_ * 7)*), searched, 1e-12)
+
+  test("values within a tolerance of one another count as equal"):
+    def within(one: Double*)(other: Double*) =
+      KolmogorovSmirnov.distance(Distribution.of(one).get, Distribution.of(other).get, 1)
+    assertEquals(within(100, 100, 100)(100.9, 99.1), 0.0)
+    assertEquals(within(100, 100)(101.1), 1.0)
+    // By hand: half of the one come up to 1, none of the other up to 2.
+    assertEqualsDouble(within(1, 5)(5, 5.5), 0.5, 1e-12)
+    val random = Random(12)
+    for _ <- 1 to 50 do
+      val one   = Vector.fill(1 + random.nextInt(30))(random.nextInt(20).toDouble)
+      val other = Vector.fill(1 + random.nextInt(30))(random.nextInt(20).toDouble + 3)
+      def share(samples: Vector[Double], value: Double) = samples.count(_ <= value) / samples.size.toDouble
+      val searched = one.map(value => share(one, value) - share(other, value + 1))
+        ++ other.map(value => share(other, value) - share(one, value + 1))
+      assertEqualsDouble(within(one*)(other*), searched.max.max(0), 1e-12)
