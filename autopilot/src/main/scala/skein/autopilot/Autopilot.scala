@@ -63,44 +63,34 @@ final case class Autopilot(
         parameters.set(name, value) match
           case Left(why)           => refused(why)
           case Right((next, told)) => Heard(copy(parameters = next), news = Vector(told))
-      case MissionRequestList(_, _, kind) =>
-        val count = if kind == Mission.Kind then mission.items.size else 0
-        Heard(this, Vector(MissionCount(from.system, from.component, count, kind)))
-      case MissionRequestInt(_, _, seq, Mission.Kind) =>
-        Heard(
-          this,
-          Vector(mission.items.lift(seq) match
-            case Some(item) =>
-              item.copy(targetSystem = from.system, targetComponent = from.component, seq = seq)
-            case None => MissionAck(from.system, from.component, Mission.Ack.OutOfOrder))
-        )
-      case MissionCount(_, _, count, kind) => receive(count, kind, from, motion)
-      case item: MissionItemInt            => receive(item, from, motion)
-      case MissionClearAll(_, _, kind)     =>
-        val cleared = if kind == Mission.Kind then copy(mission = Mission(), upload = None) else this
-        Heard(cleared, Vector(MissionAck(from.system, from.component, Mission.Ack.Accepted, kind)))
       case MissionSetCurrent(_, _, seq) =>
         if mission.items.isDefinedAt(seq) then
           val next = copy(mission = mission.from(seq))
           Heard(next, news = Vector(next.mission.told))
         else refused(s"no mission item $seq")
-      case setpoint =>
-        OffboardSetpoint.of(setpoint, home) match
-          case None                => Heard(this)
-          case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
-          case Some(Left(why))     => refused(why)
+      case other =>
+        transfer.heard(other, from, motion.sinceBoot).map(transferred).getOrElse:
+          OffboardSetpoint.of(other, home) match
+            case None                => Heard(this)
+            case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
+            case Some(Left(why))     => refused(why)
 
   /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never
     * armed.
     */
   def steer(motion: VehicleMotion): (heard: Heard, setpoint: Option[Setpoint]) =
-    val (asked, texts) = uploading(motion)
-    val (after, told)  = asked.onItsOwn(motion)
-    (Heard(after, news = texts ++ told), after.goal(motion))
+    val asked         = transferred(transfer.passed(motion.sinceBoot))
+    val (after, told) = asked.next.onItsOwn(motion)
+    (Heard(after, news = asked.news ++ told), after.goal(motion))
 
   /** In its own clock's time, whether setpoints come. */
   def isCommanded(motion: VehicleMotion): Boolean =
     heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
+
+  private def transfer = MissionTransfer(mission, upload)
+
+  private def transferred(told: MissionTransfer.Told): Heard =
+    Heard(copy(mission = told.next.mission, upload = told.next.upload), told.answers, told.news)
 
   private def refused(why: String): Heard = Heard(this, Vector(text(Severity.Critical, why)))
 
@@ -241,59 +231,6 @@ final case class Autopilot(
             mission = again
           )
         ))
-
-  private def receive(
-      count: Int,
-      kind: Int,
-      from: (system: Int, component: Int),
-      motion: VehicleMotion
-  ): Heard =
-    def ack(result: Int) = Vector(MissionAck(from.system, from.component, result, kind))
-    if kind != Mission.Kind then Heard(this, ack(Mission.Ack.Unsupported))
-    else if count > Mission.Most then
-      Heard(
-        this,
-        ack(Mission.Ack.NoSpace),
-        Vector(text(Severity.Critical, s"mission: at most ${Mission.Most} items"))
-      )
-    else if count == 0 then Heard(copy(mission = Mission(), upload = None), ack(Mission.Ack.Accepted))
-    else
-      val begun = Upload(from.system, from.component, count, Vector.empty, motion.sinceBoot, tries = 1)
-      Heard(copy(upload = Some(begun)), Vector(begun.question))
-
-  private def receive(
-      item: MissionItemInt,
-      from: (system: Int, component: Int),
-      motion: VehicleMotion
-  ): Heard =
-    upload match
-      case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
-        if item.seq != going.items.size then Heard(this, Vector(going.question))
-        else
-          Mission.mistake(item) match
-            case Some((kind, why)) =>
-              Heard(copy(upload = None), Vector(going.ack(kind)), Vector(text(Severity.Critical, why)))
-            case None =>
-              val more = going.copy(items = going.items :+ item, askedAt = motion.sinceBoot, tries = 1)
-              if more.items.size < more.count then Heard(copy(upload = Some(more)), Vector(more.question))
-              else
-                Heard(
-                  copy(upload = None, mission = Mission(more.items)),
-                  Vector(more.ack(Mission.Ack.Accepted))
-                )
-      case _ => Heard(this, Vector(MissionAck(from.system, from.component, Mission.Ack.OutOfOrder)))
-
-  private def uploading(motion: VehicleMotion): (Autopilot, Vector[Message]) = upload match
-    case Some(going) if (motion.sinceBoot - going.askedAt) >= Upload.AskAgain =>
-      if going.tries >= Upload.MostTries then
-        (
-          copy(upload = None),
-          Vector(going.ack(Mission.Ack.Cancelled), text(Severity.Warning, "mission: upload given up"))
-        )
-      else
-        val again = going.copy(askedAt = motion.sinceBoot, tries = going.tries + 1)
-        (copy(upload = Some(again)), Vector(again.question))
-    case _ => (this, Vector.empty)
 
   /** What it does without being told. */
   private def onItsOwn(motion: VehicleMotion): (Autopilot, Vector[Message]) =

@@ -61,23 +61,3 @@ object Mission:
     val altitude = OffboardSetpoint.heightOf(item.frame, item.z, home).getOrElse(home.altitude)
     val at       = GeoLocation(item.x * 1e-7, item.y * 1e-7, altitude).nedFrom(home)
     if item.x == 0 && item.y == 0 then hereNed.copy(z = at.z) else at
-
-/** A mission on its way to the vehicle: items are asked for one by one, again where one does not come.
-  *
-  * @param system who sends it
-  * @param askedAt when the next item was asked for last
-  */
-final case class Upload(
-    system: Int,
-    component: Int,
-    count: Int,
-    items: Vector[MissionItemInt],
-    askedAt: Span,
-    tries: Int
-):
-  def question: Message       = MissionRequestInt(system, component, items.size)
-  def ack(kind: Int): Message = MissionAck(system, component, kind)
-
-object Upload:
-  val AskAgain: Span = Span.ofMillis(250)
-  val MostTries      = 10

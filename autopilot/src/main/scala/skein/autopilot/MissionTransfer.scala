@@ -1,0 +1,118 @@
+package skein.autopilot
+
+import skein.mavlink.*
+import skein.mavlink.CommonDialect.Severity
+import skein.units.*
+
+/** How missions come to the vehicle and are read from it, by MAVLink's mission protocol, as a value: messages
+  * go in, and what the vehicle has then and what it answers come out.
+  *
+  * @param mission that it has
+  * @param upload of another one, which takes its place when all items have come
+  */
+private[autopilot] final case class MissionTransfer(mission: Mission, upload: Option[Upload]):
+  import MissionTransfer.Told
+  import Autopilot.text
+
+  /** @param from system and component of the sender
+    * @return none where the message is not of the protocol
+    */
+  def heard(message: Message, from: (system: Int, component: Int), sinceBoot: Span): Option[Told] =
+    message match
+      case MissionRequestList(_, _, kind) =>
+        val count = if kind == Mission.Kind then mission.items.size else 0
+        Some(Told(this, Vector(MissionCount(from.system, from.component, count, kind))))
+      case MissionRequestInt(_, _, seq, Mission.Kind) => Some(Told(this, Vector(item(seq, from))))
+      case MissionCount(_, _, count, kind)            => Some(begin(count, kind, from, sinceBoot))
+      case item: MissionItemInt                       => Some(receive(item, from, sinceBoot))
+      case MissionClearAll(_, _, kind)                =>
+        val cleared = if kind == Mission.Kind then MissionTransfer(Mission(), None) else this
+        Some(Told(cleared, Vector(ack(from, Mission.Ack.Accepted, kind))))
+      case _ => None
+
+  /** Time has passed: asks again for an item that does not come. */
+  def passed(sinceBoot: Span): Told = upload match
+    case Some(going) if sinceBoot - going.askedAt >= Upload.AskAgain =>
+      if going.tries >= Upload.MostTries then
+        Told(
+          copy(upload = None),
+          news = Vector(going.ack(Mission.Ack.Cancelled), text(Severity.Warning, "mission: upload given up"))
+        )
+      else
+        val again = going.copy(askedAt = sinceBoot, tries = going.tries + 1)
+        Told(copy(upload = Some(again)), news = Vector(again.question))
+    case _ => Told(this)
+
+  private def ack(to: (system: Int, component: Int), result: Int, kind: Int = Mission.Kind) =
+    MissionAck(to.system, to.component, result, kind)
+
+  private def item(seq: Int, to: (system: Int, component: Int)): Message = mission.items.lift(seq) match
+    case Some(item) => item.copy(targetSystem = to.system, targetComponent = to.component, seq = seq)
+    case None       => ack(to, Mission.Ack.OutOfOrder)
+
+  private def begin(
+      count: Int,
+      kind: Int,
+      from: (system: Int, component: Int),
+      sinceBoot: Span
+  ): Told =
+    def answer(result: Int) = Vector(ack(from, result, kind))
+    if kind != Mission.Kind then Told(this, answer(Mission.Ack.Unsupported))
+    else if count > Mission.Most then
+      val why = text(Severity.Critical, s"mission: at most ${Mission.Most} items")
+      Told(this, answer(Mission.Ack.NoSpace), Vector(why))
+    else if count == 0 then Told(MissionTransfer(Mission(), None), answer(Mission.Ack.Accepted))
+    else
+      val begun = Upload(from.system, from.component, count, Vector.empty, sinceBoot, tries = 1)
+      Told(copy(upload = Some(begun)), Vector(begun.question))
+
+  private def receive(item: MissionItemInt, from: (system: Int, component: Int), sinceBoot: Span): Told =
+    upload match
+      case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
+        if item.seq != going.items.size then Told(this, Vector(going.question))
+        else
+          Mission.mistake(item) match
+            case Some((result, why)) =>
+              Told(
+                copy(upload = None),
+                Vector(going.ack(result)),
+                Vector(text(Severity.Critical, why))
+              )
+            case None =>
+              val more = going.copy(items = going.items :+ item, askedAt = sinceBoot, tries = 1)
+              if more.items.size < more.count then Told(copy(upload = Some(more)), Vector(more.question))
+              else
+                Told(MissionTransfer(Mission(more.items), None), Vector(more.ack(Mission.Ack.Accepted)))
+      case _ => Told(this, Vector(ack(from, Mission.Ack.OutOfOrder)))
+
+private[autopilot] object MissionTransfer:
+  /** What comes of a message.
+    *
+    * @param answers for who has sent it
+    * @param news for everybody
+    */
+  final case class Told(
+      next: MissionTransfer,
+      answers: Vector[Message] = Vector.empty,
+      news: Vector[Message] = Vector.empty
+  )
+
+/** A mission on its way to the vehicle: items are asked for one by one, again where one does not come.
+  *
+  * @param system who sends it
+  * @param askedAt when the next item was asked for last
+  */
+final case class Upload(
+    system: Int,
+    component: Int,
+    count: Int,
+    items: Vector[MissionItemInt],
+    askedAt: Span,
+    tries: Int
+):
+  def question: Message       = MissionRequestInt(system, component, items.size)
+  def ack(kind: Int): Message = MissionAck(system, component, kind)
+
+object Upload:
+  val AskAgain: Span = Span.ofMillis(250)
+  val MostTries      = 10
