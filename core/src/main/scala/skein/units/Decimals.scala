@@ -15,9 +15,11 @@ object Decimals:
   def counted(count: Long, one: String): String = if count == 1 then s"1 $one" else s"$count ${one}s"
 
   extension (number: Double)
-    /** With so many digits behind the point; very large numbers, of up to 309 digits, as powers of ten. */
+    /** With so many digits behind the point; very large numbers, of up to 309 digits, as powers of ten. What
+      * rounds to zero has no sign.
+      */
     def fixed(decimals: Int): String =
-      if number.abs < MostInFull then String.format(Locale.ROOT, s"%.${decimals}f", number)
+      if number.abs < MostInFull then withoutSignOfZero(String.format(Locale.ROOT, s"%.${decimals}f", number))
       else significant(4)
 
     /** The same, at least so wide, for columns. */
@@ -28,7 +30,7 @@ object Decimals:
     /** The same, with its sign. */
     def signed(decimals: Int): String =
       val text = fixed(decimals)
-      if number.isNaN || text.startsWith("-") then text else s"+$text"
+      if number.isNaN || text.startsWith("-") || isZero(text) then text else s"+$text"
 
     /** Ten and more without decimals, less with one, small ones with two. */
     def brief: String =
@@ -36,8 +38,12 @@ object Decimals:
 
     /** With so many significant digits at most; very large and very small numbers as powers of ten. */
     def significant(digits: Int): String =
-      if number == 0 || !number.isFinite then number.toString
+      if number == 0 || !number.isFinite then withoutSignOfZero(number.toString)
       else
         val rounded = java.math.BigDecimal(number).round(java.math.MathContext(digits)).stripTrailingZeros
         if number.abs < MostInFull && number.abs > LeastInFull then rounded.toPlainString
         else rounded.toString.replace("E+", "e").replace("E", "e")
+
+  private def withoutSignOfZero(text: String) = if isZero(text) then text.stripPrefix("-") else text
+
+  private def isZero(text: String) = text.forall(letter => "-0.".contains(letter))

@@ -16,9 +16,16 @@ class DecimalsSuite extends munit.FunSuite:
 
   test("signed numbers say their sign"):
     assertEquals(
-      Seq(1.25, 0.0, -0.0, -3.04, Double.NaN).map(_.signed(1)),
-      Seq("+1.3", "+0.0", "-0.0", "-3.0", "NaN")
+      Seq(1.25, 0.05, -0.05, -3.04, Double.NaN).map(_.signed(1)),
+      Seq("+1.3", "+0.1", "-0.1", "-3.0", "NaN")
     )
+
+  test("what rounds to zero has no sign"):
+    for number <- Seq(0.0, -0.0, 0.04, -0.04) do
+      assertEquals((number.fixed(1), number.signed(1), number.fixed(0)), ("0.0", "0.0", "0"))
+    assertEquals((-0.004).brief, "0.00")
+    assertEquals((-0.0).significant(3), "0.0")
+    assertEquals((-0.04).fixed(1, width = 5), "  0.0")
 
   test("numbers of hundreds of digits are powers of ten"):
     assertEquals(
