@@ -31,4 +31,4 @@ object VehicleTheme:
     Stroke(
       colours(index % colours.size).tinted(lightness(dash / Stroke.Dashes.size % lightness.size)),
       width
-    ).dashed(dash)
+    ).dashed(dash % Stroke.Dashes.size)

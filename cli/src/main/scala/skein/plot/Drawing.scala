@@ -53,8 +53,13 @@ final case class Colour(rgb: Int, opacity: Double = 1):
   */
 final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty):
 
-  /** With the dashes of this number; no two of [[Stroke.Dashes]] look alike without colours either. */
-  def dashed(number: Int): Stroke = copy(dash = Stroke.Dashes(number % Stroke.Dashes.size))
+  /** With the dashes of this number; no two look alike without colours either. Beyond [[Stroke.Dashes]] it is
+    * a dash and so many dots: three, four, and on.
+    */
+  def dashed(number: Int): Stroke =
+    def dashAndDots =
+      Vector(10.0, 3.0) ++ Vector.fill(number - Stroke.Dashes.size + 3)(Vector(2.0, 3.0)).flatten
+    copy(dash = Stroke.Dashes.applyOrElse(number, _ => dashAndDots))
 
 object Stroke:
   /** Solid first. */

@@ -15,7 +15,7 @@ object Legend:
 
   /** Dashed lines are as long as it takes to tell them apart. */
   def line(label: String, stroke: Stroke): Item =
-    val long = if stroke.dash.isEmpty then 20.0 else 30.0
+    val long = if stroke.dash.isEmpty then 20.0 else stroke.dash.sum.max(30)
     Item(label, long, at => Vector(Mark.line(at, at.moved(long, 0), stroke)))
 
   def box(label: String, fill: Colour): Item =
