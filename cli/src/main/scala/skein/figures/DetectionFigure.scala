@@ -22,10 +22,12 @@ object DetectionFigure:
     val rows = set.flights.flatMap(flight => flight.seeing.flatMap(row(flight, _)))
     Option.when(rows.nonEmpty)(Drawing.stacked(rows*))
 
-  /** A row of a flight's moments; none where the scenario does not say what its camera is. */
+  /** A row of a flight's moments; none where nothing was found, or the scenario does not say what its camera
+    * is.
+    */
   private def row(flight: FlightSummary, seen: SeeingSummary): Option[Drawing] =
     for
-      scenario <- flight.scenario
+      scenario <- flight.scenario if seen.detections.nonEmpty
       camera   <- scenario.equipment.collectFirst:
         case camera: Equipment.Camera
             if camera.vehicle == seen.eye.vehicle && camera.name == seen.eye.camera =>

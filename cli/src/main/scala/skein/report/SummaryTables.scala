@@ -104,7 +104,7 @@ object SummaryTables:
         flight.flight.link,
         seen.eye.vehicle,
         seen.eye.target,
-        seen.images.toString
+        seen.images.fold("")(_.toString)
       ) ++
         Vector(seen.detections.size.toString) ++ spread(seen.tookMs, 0) ++ spread(seen.agesMs, 0) ++
         spread(seen.errorsM, 2)
@@ -112,7 +112,7 @@ object SummaryTables:
 
   /** How to read [[seen]]. */
   val seenNote: String =
-    "Images that were searched until the last detection, and detections that were " +
+    "Images that were searched until the last detection, if there was one, and detections that were " +
       "used. Ages of detections count from the exposure to each decision made from " +
       "them; off: how far the estimate for the exposure lay from the truth."
 

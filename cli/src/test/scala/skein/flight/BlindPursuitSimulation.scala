@@ -51,8 +51,9 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
     assertEquals(Replay(settings(LoopKind.Predictive, 20).fleet, recording).firstDifference, None)
     val seen = FlightSummary.of(recording).seeing.headOption.getOrElse(fail("nothing was seen"))
     // Of 200 images.
-    assert(clue(seen.images) > 150)
-    assert(clue(seen.detections.size) > 0.7 * seen.images)
+    val images = seen.images.getOrElse(fail("nothing was seen"))
+    assert(clue(images) > 150)
+    assert(clue(seen.detections.size) > 0.7 * images)
     assert(clue(seen.errorsM.get.median) < 0.25)
     // Recognition takes 15 to 120 ms, the way to and fro some 100 ms.
     assert(clue(seen.tookMs.get.least) >= 15 && clue(seen.tookMs.get.most) <= 120)

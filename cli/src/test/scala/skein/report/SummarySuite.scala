@@ -1,6 +1,15 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSummary, Published, TimingObservation}
+import skein.cli.OurScenarios
+import skein.figures.DetectionFigure
+import skein.measure.{
+  DistanceCurve,
+  Distribution,
+  FlightSummary,
+  Published,
+  RecordedSeeing,
+  TimingObservation
+}
 import skein.record.*
 import skein.scenario.Scenarios
 import skein.signal.{Kinematics, Stamped}
@@ -175,6 +184,18 @@ class SummarySuite extends munit.FunSuite:
     val header = SummaryTables.distances(cut).header
     assertEquals(row(header.indexOf("paper m")), "")
     assertEquals(cut.deviations, Vector.empty)
+
+  test("an eye that found nothing stands in the table"):
+    val duel  = SyntheticFlight("stream", "direct", 1, 12)
+    val named = duel.heading.flight.copy(scenario = "blind-pursuit")
+    val blind = duel.copy(heading = duel.heading.copy(flight = named))
+    val set   = Report.of(Seq(blind))(using OurScenarios.all)
+    assertEquals(
+      SummaryTables.seen(set.flights).rows.map(_.take(7)),
+      Vector(Vector("stream", "direct", "Pursuer", "Evader", "", "0", ""))
+    )
+    assertEquals(DetectionFigure(set), None)
+    assertEquals(RecordedSeeing.of(blind)(using OurScenarios.all), Vector.empty)
 
   test("a recording that breaks off is known for it, also without a word of its end"):
     val broken  = SyntheticFlight("stream", "direct", 1, 12)

@@ -18,7 +18,7 @@ import skein.units.Decimals.fixed
   * @param predictions absent where nothing was predicted
   * @param paused for how long its vehicles were told to hover: that lies within all times and distances of
   *   the flight
-  * @param seeing of each eye that saw anything
+  * @param seeing of each eye of its scenario, also of one that found nothing
   * @param solver absent where the flight's own process decided
   * @param commandAgesMs of commands that carry out a decision: from when the vehicle's own physics was
   *   sampled to the command's sending

@@ -14,6 +14,7 @@ object RecordedSeeing:
     val summary = FlightSummary.of(recording)
     for
       seen     <- summary.seeing
+      images   <- seen.images.toVector
       scenario <- summary.scenario.toVector
       case camera: Equipment.Camera <- scenario.equipment
       if camera.vehicle == seen.eye.vehicle && camera.name == seen.eye.camera
@@ -31,7 +32,7 @@ object RecordedSeeing:
         StrictMath.toRadians(camera.fovDeg),
         seen.eye.workers,
         seen.eye.deadline.toSeconds,
-        seen.images,
+        images,
         inView.toDouble / own.size.max(1),
         seen.detections.map: detection =>
           val there = Placement(detection.cameraNed, detection.orientation).inside(detection.trueNed)

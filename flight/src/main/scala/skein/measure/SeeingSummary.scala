@@ -34,13 +34,13 @@ final case class Detection(
 
 /** What a vehicle saw by one of its scenario's eyes.
   *
-  * @param images that were looked at until the last detection
+  * @param images that were looked at until the last detection; absent where nothing was found
   * @param agesMs of what decisions were made upon, since the exposure
   */
 final case class SeeingSummary(
     eye: Eye,
     detections: Vector[Detection],
-    images: Int,
+    images: Option[Int],
     agesMs: Option[Distribution]
 ):
   def tookMs: Option[Distribution]  = Distribution.of(detections.map(_.tookMs))
@@ -60,6 +60,7 @@ final case class SeeingSummary(
 
 object SeeingSummary:
 
+  /** None where the target's own readings are missing. */
   def of(recording: Recording, eye: Eye, tracks: Vector[Track]): Option[SeeingSummary] =
     val told = recording.measurements
       .filter(row => row.vehicle == eye.vehicle && row.sensor == eye.sensor && row.quantities == Eye.Columns)
@@ -68,9 +69,7 @@ object SeeingSummary:
     val byTime  = turned.map(_.state.validAt)
     val ages    = agesMs(recording, eye)
     val ordered = told.distinctBy(_.validAt).sortBy(_.validAt)
-    for
-      track <- target if ordered.nonEmpty
-    yield
+    target.map: track =>
       val detections = ordered.map: row =>
         val v       = row.numbers
         val nearest = turned((byTime.search(row.validAt).insertionPoint - 1).max(0))
@@ -91,7 +90,7 @@ object SeeingSummary:
       SeeingSummary(
         eye,
         detections.toVector,
-        ordered.last.numbers(18).toInt,
+        ordered.lastOption.map(_.numbers(18).toInt),
         Distribution.of(ages.values.flatten.toVector)
       )
 

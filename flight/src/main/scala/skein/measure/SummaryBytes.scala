@@ -90,7 +90,7 @@ object SummaryBytes:
 
     /** Of eyes that are not known here, nothing is. */
     private given seeing: Codec[Vector[SeeingSummary]] = Codec
-      .vector(using Codec.derived[(Int, Vector[Detection], Int, Option[Distribution])])
+      .vector(using Codec.derived[(Int, Vector[Detection], Option[Int], Option[Distribution])])
       .imap(_.flatMap((eye, detections, images, ages) =>
         eyes.lift(eye).map(SeeingSummary(_, detections, images, ages))
       ))(_.map(of => (eyes.indexOf(of.eye), of.detections, of.images, of.agesMs)))
