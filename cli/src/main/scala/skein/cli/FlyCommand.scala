@@ -179,8 +179,9 @@ final class FlyCommand(using Scenarios)
     val told =
       Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n")).flatMap: flights =>
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
-        val written =
-          Report.write(flights, out).map(_.told.foreach(shown.say))
+        val written = Report.write(flights, out).flatMap: output =>
+          output.told.foreach(shown.say)
+          output.whole
         val ended = landed.filter(_.outcome != FlightOutcome.Completed).map(_.plan.id).toSet
         all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)

@@ -66,6 +66,8 @@ final class SpreadCommand(program: String)(using Scenarios)
           .writeSpread(flown, folder)
           .map(output => shown.say(s"spread in ${output.page}"))
       )
+      failures = sections.flatMap(_.failure)
+      _ <- Expect.that(failures.isEmpty)(failures.mkString("\n"))
       _ <- Expect.that(missing.isEmpty)(NotFlown.message(missing, plans.size))
     yield ()
 

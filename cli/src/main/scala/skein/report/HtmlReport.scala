@@ -4,17 +4,17 @@ import scalatags.Text.TypedTag
 import scalatags.Text.all.*
 import scalatags.Text.tags2.{section, title as pageTitle}
 import skein.figures.Figure
-import skein.measure.{FlightSet, FlightSummary}
+import skein.measure.FlightSet
 import skein.plot.Svg
 import skein.record.FlightRow
-import skein.scenario.Scenarios
 import skein.units.Decimals
 import skein.units.Decimals.brief
 
 /** The report as one page that needs nothing beside itself: no script, no font, no link to anywhere. */
 object HtmlReport:
 
-  def render(set: FlightSet, figures: Seq[Figure])(using Scenarios): String =
+  /** @param sections as [[ReportSections.of]] gives them */
+  def render(set: FlightSet, sections: Seq[Section]): String =
     val page = html(
       lang := "en",
       head(
@@ -27,7 +27,7 @@ object HtmlReport:
         h1(heading(set)),
         p(cls := "lead", abstractOf(set)),
         cutShort(set),
-        ReportSections.of(set, figures).map(part),
+        sections.map(part),
         section(h2("Run parameters"), table(parameters(set)))
       )
     )
@@ -46,14 +46,14 @@ object HtmlReport:
       s"${named(_.clock)} clock."
 
   /** What many flights of each loop over each link come to, as a page. */
-  def spread(flights: Seq[FlightSummary], figures: Seq[Figure])(using Scenarios): String =
-    val title = s"Skein: spread over ${flights.size} flights"
+  def spread(flights: Int, sections: Seq[Section]): String =
+    val title = s"Skein: spread over $flights flights"
     val page  = html(
       lang := "en",
       head(meta(charset := "utf-8"), pageTitle(title), tag("style")(raw(style))),
       body(
         h1(title),
-        ReportSections.spread(flights, figures).map(part)
+        sections.map(part)
       )
     )
     s"<!doctype html>\n${page.render}\n"
@@ -62,6 +62,7 @@ object HtmlReport:
     h2(shown.title),
     shown.table.map(table),
     Option.when(shown.note.nonEmpty)(p(cls := "note", shown.note)),
+    shown.failure.map(reason => p(cls := "note", strong(reason))),
     shown.figures.map(pictureOf)
   )
 

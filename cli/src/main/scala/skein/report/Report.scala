@@ -11,6 +11,7 @@ import skein.plot.{Png, Svg}
 import skein.record.{RecordError, Recording, RecordingReader}
 import skein.scenario.Scenarios
 import skein.settings.FlightPlan
+import skein.units.Expect
 
 /** Turns recordings into tables and pictures; needs nothing but the recordings. */
 object Report:
@@ -28,13 +29,18 @@ object Report:
     * @param withoutPng why there are no PNG files, where there are none
     * @param isReplaced whether there was such a page before
     * @param others recordings in the folder that it does not show
+    * @param failures what is missing on the page, since a scenario's code threw
     */
   final case class Output(
       page: Path,
       withoutPng: Option[String],
       isReplaced: Boolean,
-      others: Vector[String]
+      others: Vector[String],
+      failures: Vector[String]
   ):
+    /** Nothing, or what is missing, a line each. */
+    def whole: Either[String, Unit] = Expect.that(failures.isEmpty)(failures.mkString("\n"))
+
     /** Where it is, in lines for the user. */
     def told: Vector[String] =
       val shown = if others.size <= MostNamed then others else others.take(MostNamed) :+ "…"
@@ -52,17 +58,26 @@ object Report:
     * @return or why it could not be written
     */
   def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
-    val figures = ReportFigures.of(set)
-    write(directory.resolve("report.html"), HtmlReport.render(set, figures), figures, set.all)
+    val figures  = ReportFigures.of(set)
+    val sections = ReportSections.of(set, figures)
+    write(directory.resolve("report.html"), HtmlReport.render(set, sections), sections, figures.all, set.all)
 
   /** Writes `spread.html` and its figures likewise. */
   def writeSpread(flights: Seq[FlightSummary], directory: Path)(using Scenarios): Either[String, Output] =
-    val figures = ReportFigures.spread(flights)
-    write(directory.resolve("spread.html"), HtmlReport.spread(flights, figures), figures, flights)
+    val figures  = ReportFigures.spread(flights)
+    val sections = ReportSections.spread(flights, figures)
+    write(
+      directory.resolve("spread.html"),
+      HtmlReport.spread(flights.size, sections),
+      sections,
+      figures.all,
+      flights
+    )
 
   private def write(
       page: Path,
       text: String,
+      sections: Vector[Section],
       figures: Vector[Figure],
       flights: Seq[FlightSummary]
   ): Either[String, Output] =
@@ -79,7 +94,8 @@ object Report:
         page,
         unpainted.headOption,
         isReplaced,
-        others(page, flights.map(flight => FlightPlan.fileName(flight.flight.id)).toSet)
+        others(page, flights.map(flight => FlightPlan.fileName(flight.flight.id)).toSet),
+        sections.flatMap(_.failure)
       ))
     catch case failed: IOException => Left(s"cannot write the report to $page: $failed")
 

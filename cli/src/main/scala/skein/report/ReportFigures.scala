@@ -4,17 +4,26 @@ import skein.figures.Figure
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionGroup}
 import skein.scenario.Scenarios
 
-/** The pictures of a report, in its order; those without anything to show are left out. Blocks for those of
-  * the loops.
+/** The pictures of a report, in its order; those without anything to show are left out.
+  *
+  * @param failures of scenarios whose pictures are missing, since their code threw
   */
+final case class ReportFigures(all: Vector[Figure] = Vector.empty, failures: Vector[String] = Vector.empty)
+
 object ReportFigures:
 
-  def of(set: FlightSet)(using Scenarios): Vector[Figure] =
-    ScenarioReport.each(set)((report, flights) => report.figures(flights)) ++ Figure.ofDetections(
-      set
-    ) ++ Figure.ofDecisions(set) ++
-      Figure.ofDeviations(set.deviations) ++ Figure.ofPredictions(set.predictions) ++ LoopPictures.of(set)
+  /** Blocks for those of the loops. */
+  def of(set: FlightSet)(using Scenarios): ReportFigures =
+    val (failures, own) =
+      ScenarioReport.each(set)((report, flights) => report.figures(flights)).partitionMap(identity)
+    ReportFigures(
+      own.flatten ++ Figure.ofDetections(set) ++ Figure.ofDecisions(set) ++
+        Figure.ofDeviations(set.deviations) ++ Figure.ofPredictions(set.predictions) ++ LoopPictures.of(set),
+      failures
+    )
 
   /** Of flights that were flown many times. */
-  def spread(flights: Seq[FlightSummary]): Vector[Figure] =
-    Figure.ofDeviations(Deviation.of(flights)) ++ Figure.ofPredictions(PredictionGroup.of(flights))
+  def spread(flights: Seq[FlightSummary]): ReportFigures =
+    ReportFigures(
+      Figure.ofDeviations(Deviation.of(flights)) ++ Figure.ofPredictions(PredictionGroup.of(flights))
+    )

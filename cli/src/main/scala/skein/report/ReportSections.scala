@@ -9,13 +9,17 @@ object ReportSections:
 
   /** @param figures as [[ReportFigures.of]] gives them; none, where only tables are shown
     */
-  def of(set: FlightSet, figures: Seq[Figure] = Nil)(using Scenarios): Vector[Section] =
-    val results  = ScenarioReport.each(set)((report, flights) => report.results(flights))
-    val pictures = figures.toVector.filterNot(figure => withTables(figure.name)).map(figure =>
+  def of(set: FlightSet, figures: ReportFigures = ReportFigures())(using Scenarios): Vector[Section] =
+    val results  = orFailures(ScenarioReport.each(set)((report, flights) => report.results(flights)))
+    val pictures = figures.all.filterNot(figure => withTables(figure.name)).map(figure =>
       Section(figure.title, figures = Vector(figure))
     )
     shown(
-      results ++ pictures ++ compared(set.deviations, set.predictions, figures) ++ Vector(
+      results ++ figures.failures.map(failed) ++ pictures ++ compared(
+        set.deviations,
+        set.predictions,
+        figures
+      ) ++ Vector(
         Section(
           "Live against virtual",
           SummaryTables.twinsNote.capitalize + ".",
@@ -41,16 +45,23 @@ object ReportSections:
     (Section.text(of(set)) +: said).mkString("\n\n")
 
   /** What many flights of each loop over each link come to. */
-  def spread(flights: Seq[FlightSummary], figures: Seq[Figure] = Nil)(using Scenarios): Vector[Section] =
-    val results = ScenarioReport.eachName(flights)((report, name) =>
+  def spread(flights: Seq[FlightSummary], figures: ReportFigures = ReportFigures())(using
+      Scenarios
+  ): Vector[Section] =
+    val results = orFailures(ScenarioReport.eachName(flights)((report, name) =>
       report.spread(flights.filter(_.scenarioName == name).toVector)
-    )
+    ))
     shown(results ++ compared(Deviation.of(flights), PredictionGroup.of(flights), figures))
+
+  private def orFailures(results: Vector[Either[String, Vector[Section]]]): Vector[Section] =
+    results.flatMap(_.fold(failure => Vector(failed(failure)), identity))
+
+  private def failed(failure: String) = Section("Missing", failure = Some(failure))
 
   private def compared(
       deviations: Vector[Deviation],
       predictions: Vector[PredictionGroup],
-      figures: Seq[Figure]
+      figures: ReportFigures
   ): Vector[Section] = Vector(
     Section(
       "Deviation from the paused truth",
@@ -67,13 +78,14 @@ object ReportSections:
   )
 
   private[report] def shown(sections: Vector[Section]): Vector[Section] =
-    sections.filter(section => section.table.exists(_.rows.nonEmpty) || section.figures.nonEmpty)
+    sections.filter(section =>
+      section.table.exists(_.rows.nonEmpty) || section.figures.nonEmpty || section.failure.nonEmpty
+    )
 
   /** Figures that stand beside a table of their own. */
   private val withTables = Set(TwinFigure.name, DeviationFigure.name, PredictionFigure.name)
 
-  private def named(name: String, figures: Seq[Figure]): Vector[Figure] =
-    figures.filter(_.name == name).toVector
+  private def named(name: String, figures: ReportFigures): Vector[Figure] = figures.all.filter(_.name == name)
 
   private val observationsNote =
     "Mean/median/99th percentile in ms, by the role that was decided for. Ages " +

@@ -3,6 +3,7 @@ package skein.report
 import skein.figures.Figure
 import skein.measure.{FlightSet, FlightSummary, ScenarioFlights}
 import skein.scenario.{ScenarioKind, Scenarios}
+import skein.units.OwnFailure
 
 /** What a report has of one kind of scenario: its results as tables, and its pictures. A kind that has some
   * of its own extends it and gives these in the place of the general ones:
@@ -41,19 +42,23 @@ object ScenarioReport:
 
   /** For each kind that there are flights of, in the registry's order; then for those that are not known
     * here.
+    *
+    * @return or the mistake of one that throws
     */
   private[report] def each[A](set: FlightSet)(show: (ScenarioReport, FlightSet) => Vector[A])(using
       Scenarios
-  ): Vector[A] =
+  ): Vector[Either[String, Vector[A]]] =
     eachName(set.all)((report, name) => show(report, set.ofKind(name)))
 
   private[report] def eachName[A](flights: Seq[FlightSummary])(show: (ScenarioReport, String) => Vector[A])(
       using scenarios: Scenarios
-  ): Vector[A] =
+  ): Vector[Either[String, Vector[A]]] =
     val flown   = flights.map(_.scenarioName).distinct.toVector
     val known   = scenarios.kinds.filter(kind => flown.contains(kind.name)).map(kind => (of(kind), kind.name))
     val unknown = flown.diff(scenarios.names).map((Unknown, _))
-    (known ++ unknown).flatMap(show(_, _))
+    (known ++ unknown).map: (report, name) =>
+      try Right(OwnFailure.told(s"the report of the scenario $name")(show(report, name)))
+      catch case failed: OwnFailure => Left(failed.getMessage)
 
   private def of(kind: ScenarioKind[?]): ScenarioReport = kind match
     case own: ScenarioReport => own

@@ -8,12 +8,14 @@ import ujson.{Arr, Null, Num, Obj, Str, Value}
   * @param note how to read it; may be empty
   * @param table absent where there are pictures alone
   * @param figures on the page alone
+  * @param failure why there is nothing to show: what the scenario's code threw; on the page alone
   */
 final case class Section(
     title: String,
     note: String = "",
     table: Option[TextTable] = None,
-    figures: Vector[Figure] = Vector.empty
+    figures: Vector[Figure] = Vector.empty,
+    failure: Option[String] = None
 )
 
 object Section:

@@ -86,7 +86,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
         s"${errors.made} ${errors.unverified}"
       )
       assert(errors.errors.get.quantile(0.95) < 0.1, errors.errors.get.quantile(0.95).toString)
-    assert(ReportFigures.spread(flights).map(_.name).contains("prediction"))
+    assert(ReportFigures.spread(flights).all.map(_.name).contains("prediction"))
 
   test("predictions of which none could be verified are counted, not hidden"):
     val groups = PredictionGroup.of(fly(List(LoopKind.Predictive), Span.ofMillis(400)))
@@ -110,8 +110,8 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms, mm"), text)
     val pages =
       Seq(
-        HtmlReport.render(set, ReportFigures.of(set)),
-        HtmlReport.spread(flights, ReportFigures.spread(flights))
+        HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set))),
+        HtmlReport.spread(flights.size, ReportSections.spread(flights, ReportFigures.spread(flights)))
       )
     for page <- pages do
       assert(

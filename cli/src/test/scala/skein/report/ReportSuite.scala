@@ -3,10 +3,11 @@ package skein.report
 import java.nio.file.{Files, Path}
 import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
-import skein.figures.TrajectoryFigure
+import skein.figures.{Figure, TrajectoryFigure}
+import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.Mark
 import skein.record.{MemoryRecorder, RecordError, Recording}
-import skein.scenario.Scenarios
+import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Decimals.fixed
 
@@ -35,7 +36,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "graph-sequential",
       "graph-stream"
     )
-    assertEquals(ReportFigures.of(set).map(_.name).toSet, names)
+    assertEquals(ReportFigures.of(set).all.map(_.name).toSet, names)
     for name <- names do
       val stem     = output.page.resolveSibling("figures").resolve(name).toString
       val document =
@@ -74,14 +75,33 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(Report.read(named).map(_.all.size), Right(1))
 
   test("the page needs nothing beside itself"):
-    val page    = HtmlReport.render(set, ReportFigures.of(set))
+    val page    = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
     val links   = "(?:src|href|url|@import)\\s*[=(]".r.findFirstIn(page)
     val scripts = "<script|<link|<iframe|<img".r.findFirstIn(page)
     val hosts   = "https?://[^\"]*".r.findAllIn(page).toSet
     assertEquals((links, scripts, hosts - "http://www.w3.org/2000/svg"), (None, None, Set.empty[String]))
 
   test("the same recordings give the same page"):
-    assertEquals(HtmlReport.render(set, ReportFigures.of(set)), HtmlReport.render(set, ReportFigures.of(set)))
+    def page = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
+    assertEquals(page, page)
+
+  folder.test("where a scenario's own report throws, it is told, and all else is written"): folder =>
+    object Broken extends ScenarioKind(PaperDuel()), ScenarioReport:
+      override def results(set: FlightSet): Vector[Section]                = sys.error("no results")
+      override def figures(set: FlightSet): Vector[Figure]                 = sys.error("no figures")
+      override def spread(flights: Vector[FlightSummary]): Vector[Section] = sys.error("no spread")
+    given Scenarios        = Scenarios(Vector(Broken))
+    def told(what: String) = s"the report of the scenario duel failed: java.lang.RuntimeException: no $what"
+    val output             = Report.write(set, folder).fold(fail(_), identity)
+    assertEquals(output.failures.map(_.takeWhile(_ != '(').trim), Vector(told("results"), told("figures")))
+    assertEquals(output.whole, Left(output.failures.mkString("\n")))
+    val page = Files.readString(output.page)
+    for expected <- Vector("What happened", "Deviation") ++ Seq("results", "figures").map(told) do
+      assert(page.contains(expected), expected)
+    assert(ReportSections.text(set).contains("What happened"))
+    val spread = Report.writeSpread(set.flights, folder).fold(fail(_), identity)
+    assertEquals(spread.failures.map(_.takeWhile(_ != '(').trim), Vector(told("spread")))
+    assert(Files.readString(spread.page).contains("Deviation"))
 
   test("what a recording says cannot become markup"):
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
@@ -94,7 +114,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("a flight without a single record still gives a page and a table"):
     val empty = SyntheticFlight("stream", "direct", seed = 1, seconds = 12).heading
     val set   = Report.of(Seq(Recording(empty)))
-    assert(HtmlReport.render(set, ReportFigures.of(set)).contains("Skein"))
+    assert(HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set))).contains("Skein"))
     assert(ReportSections.text(set).contains("stream"))
 
   test("the tables have our values beside the paper's"):

@@ -65,7 +65,7 @@ class SectionSuite extends munit.FunSuite:
     val titles = ReportSections.of(set).map(_.title)
     assert(titles.size >= 4, titles.toString)
     val text = ReportSections.text(set)
-    val page = HtmlReport.render(set, ReportFigures.of(set))
+    val page = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
     val data = ujson.read(Section.json(ReportSections.of(set)))("tables").arr.map(_("title").str).toVector
     assertEquals(data, titles)
     for medium <- Seq(text, page.replace("&#39;", "'")) do

@@ -145,7 +145,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEquals(set.ofKind("duel").flights.size, 1)
     val text = ReportSections.text(set)
     assert(text.contains("Results: surround") && text.contains("Distance between pursuer and evader"), text)
-    val page = HtmlReport.render(set, ReportFigures.of(set))
+    val page = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
     assert(page.contains("Results: surround") && page.contains("Surround: trajectories"))
 
   test("tables of teams: a row per flight, and one per loop and link with the spread of its flights"):

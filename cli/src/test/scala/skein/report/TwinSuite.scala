@@ -61,10 +61,13 @@ class TwinSuite extends munit.FunSuite:
 
   test("the section stands in the text and on the page where there is a pair, and only there"):
     val paired = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 2)))
-    val page   = HtmlReport.render(paired, ReportFigures.of(paired))
+    val page   = HtmlReport.render(paired, ReportSections.of(paired, ReportFigures.of(paired)))
     assert(page.contains("Live against virtual") && page.contains("KS 0."), "no section")
     val text = ReportSections.text(paired)
     assert(text.contains("Live against virtual") && text.contains("seed 2"), text)
     val alone = Report.of(Seq(live("stream", "direct", 1)))
-    assert(!HtmlReport.render(alone, ReportFigures.of(alone)).contains("Live against virtual"))
+    assert(!HtmlReport.render(
+      alone,
+      ReportSections.of(alone, ReportFigures.of(alone))
+    ).contains("Live against virtual"))
     assert(!ReportSections.text(alone).contains("Live against virtual"))
