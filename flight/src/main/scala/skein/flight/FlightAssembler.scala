@@ -17,6 +17,7 @@ import skein.signal.LatencyProfile
 import skein.solver.{Briefing, SolverClient}
 import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
+import skein.units.Decimals.brief
 
 /** Puts flights together.
   *
@@ -185,8 +186,12 @@ final class FlightAssembler(
                 monitor.offer(Event(clock.now(), kind, vehicle.map(agents(_).name), detail))
                 if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
             ))(_.close())
+            val waits = system.scheduler.scheduleOnce(solvers.toldAfter.toDuration):
+              val most = solvers.patience.toSeconds.brief
+              tell(s"${plan.id}: waits for --solver ${choice.text}, $most s at most: ${client.whyNone}")
             client
               .ready(solvers.patience)
+              .andThen(_ => waits.cancel())
               .recoverWith:
                 case no: SolverClient.NoSolver =>
                   Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))

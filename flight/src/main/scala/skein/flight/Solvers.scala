@@ -10,11 +10,13 @@ import skein.units.*
   * @param build of this program; the solver's must be the same
   * @param link to a solver, or why it cannot be had
   * @param patience for how long a flight waits before its start until a solver welcomes it
+  * @param toldAfter from when on a person is told that it waits
   */
 final case class Solvers(
     build: String,
     link: SolverChoice => Either[String, MessageLink],
-    patience: Span = Span.ofSeconds(30)
+    patience: Span = Span.ofSeconds(30),
+    toldAfter: Span = Span.ofSeconds(2)
 ):
 
   /** A number for a flight that no other has. */

@@ -56,19 +56,22 @@ final class SolverClient(
     val begun                        = clock.now()
     def expect(until: Instant): Unit =
       val timer = system.scheduler.scheduleOnce(until.since(clock.now()).toDuration):
-        val (stands, prepared) = lock.synchronized((standing, preparedAt))
+        val prepared = lock.synchronized(preparedAt)
         prepared.map(at => (at + patience).min(begun + MostPrepared)).filter(_ > until) match
           case Some(later) => expect(later)
           case None        =>
-            val why = stands match
-              case Standing.Greeting(why) => why
-              case other                  => other.toString
             val within = until.since(begun).toSeconds.round
-            started.tryFailure(NoSolver(s"no solver within $within s: $why")): Unit
+            started.tryFailure(NoSolver(s"no solver within $within s: $whyNone")): Unit
       lock.synchronized:
         late = Some(timer)
     expect(begun + patience)
     started.future.andThen(_ => lock.synchronized(late).foreach(_.cancel()))
+
+  /** Why no solver has welcomed the flight, while none has. */
+  def whyNone: String = lock.synchronized(standing) match
+    case Standing.Greeting(why) => why
+    case Standing.Refused(why)  => why
+    case Standing.Welcome       => "it is there"
 
   def delay: Span = lock.synchronized(exchange.delay)
 

@@ -10,21 +10,25 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.{Future, Promise}
 import scala.util.{Failure, Success, Try}
 import skein.link.{Address, Transport, TransportError}
+import skein.units.Decimals.brief
 import skein.units.Span
 
 /** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same
   * over sockets and in virtual time. Where one side does not trust the other, twice and before any message
-  * came, it is refused.
+  * came, it is refused; so is an other side that takes the connection and says nothing, with certificates or
+  * without, for `answerWithin`.
   *
   * @param whyClosed asked once, when the other side has ended a connection before any message came: why it
   *   will always do so, if that is known, and then it is refused
   * @param perhaps said beside what ended such a connection, where it is not known
+  * @param answerWithin for the first message of all
   */
 final class TcpLink(
     transport: Transport,
     to: Address,
     whyClosed: () => Future[Option[String]] = () => Future.successful(None),
-    perhaps: String = ""
+    perhaps: String = "",
+    answerWithin: Span = TcpLink.AnswerWithin
 )(using system: ActorSystem) extends MessageLink:
   import TcpLink.*
   import system.dispatcher
@@ -58,6 +62,7 @@ final class TcpLink(
       connected.foreach: _ =>
         queue.set(Some(out))
         news(LinkNews.Up)
+        system.scheduler.scheduleOnce(answerWithin.toDuration)(unlessHeard(out)): Unit
       ended.onComplete: result =>
         val wasUp = queue.getAndSet(None).isDefined
         completed(out)
@@ -79,6 +84,15 @@ final class TcpLink(
           known.foreach:
             case Some(why) if !isClosing => refused(why)
             case _                       => again()
+
+    private def unlessHeard(out: BoundedSourceQueue[ByteString]): Unit =
+      if !hasHeard && !isClosing && queue.get.contains(out) then
+        isClosing = true
+        switch.shutdown()
+        refused(
+          s"who listens at $to takes the connection, but has said nothing for ${answerWithin.toSeconds.brief} s; " +
+            s"expected ./skein decide there$perhaps"
+        )
 
     private def refused(why: String): Unit =
       closed.trySuccess(Done): Unit
@@ -113,6 +127,9 @@ final class TcpLink(
 object TcpLink:
   /** Messages of one side that wait until they are sent. */
   private[solver] val MostWaiting = 256
+
+  /** A solver says at once that it prepares. */
+  val AnswerWithin: Span = Span.ofSeconds(10)
 
   private val TryEvery      = Span.ofMillis(200)
   private val CloseWithin   = Span.ofMillis(500)

@@ -21,6 +21,8 @@ final class SolvedFlight(
     loop: LoopKind = LoopKind.Stream,
     duration: Span = Span.ofSeconds(3),
     patience: Span = Span.ofSeconds(30),
+    toldAfter: Span = Span.ofSeconds(2),
+    tell: String => Unit = _ => (),
     changed: FlySettings => FlySettings = identity
 )(using system: ActorSystem):
   val settings: FlySettings = changed(FlySettings(
@@ -39,7 +41,8 @@ final class SolvedFlight(
     settings,
     None,
     workers = _ => throw AssertionError("the flight's own process was to plan"),
-    solvers = Solvers(SolvedFlight.Build, _ => Right(link), patience)
+    tell = tell,
+    solvers = Solvers(SolvedFlight.Build, _ => Right(link), patience, toldAfter)
   )
   val briefing: Briefing       = Briefing.of(settings, plan)
   val recorder: MemoryRecorder = MemoryRecorder(assembler.heading(plan, "real"))

@@ -1,9 +1,13 @@
 package skein.flight
 
+import java.net.{InetAddress, ServerSocket}
+import java.util.concurrent.ConcurrentLinkedQueue
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
 import skein.link.{Address, TcpTransport}
 import skein.loop.{LoopKind, FlightOutcome, PlanSettings, Replay}
 import skein.policy.Action
@@ -48,6 +52,25 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
       assert(one.thinking >= flight.settings.planning.deadline, one)
     val again = RecordedPlan.of(recording).fold(fail(_), identity)
     assertEquals(Replay(again.fleet, recording, again.settings.loopSettings).firstDifference, None)
+
+  test("who takes the connection and says nothing is no solver: that is told long before patience ends"):
+    // Backlog: what nobody accepts is connected all the same.
+    Using.resource(ServerSocket(0, 8, InetAddress.getLoopbackAddress)): silent =>
+      val at     = Address("127.0.0.1", silent.getLocalPort)
+      val link   = TcpLink(TcpTransport(), at, answerWithin = Span.ofMillis(200))
+      val said   = ConcurrentLinkedQueue[String]()
+      val flight = SolvedFlight(
+        SolverChoice.Tcp(at),
+        link,
+        patience = Span.ofSeconds(600),
+        toldAfter = Span.ofMillis(1),
+        tell = said.add(_): Unit
+      )
+      val why = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
+      assert(clue(why).endsWith(
+        s"who listens at $at takes the connection, but has said nothing for 0.20 s; expected ./skein decide there"
+      ))
+      assert(clue(said.asScala.toSeq).head.contains(s"waits for --solver tcp://$at, 600 s at most: "))
 
   test("a solver that ends and is started again in a flight: the flight hovers, flies on, and replays"):
     val first  = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)
