@@ -48,8 +48,10 @@ private[cli] object OutFolder:
       try
         val missing =
           Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(Files.notExists(_)).toVector
-        Files.createDirectories(folder)
-        fresh.set(missing ++ fresh.get)
+        // One by one: where `gone` is missing, so is `gone/..`, until `gone` is made.
+        for part <- missing.reverse if Files.notExists(part) do
+          Files.createDirectories(part)
+          fresh.set(part +: fresh.get)
         Files.delete(Files.createTempFile(folder, ".skein", ""))
         Right(folder)
       catch

@@ -74,6 +74,11 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     age(agent)
     assertEquals(builds(moved), 4)
 
+  folder.test("a folder may be told by way of one that is not there yet"): folder =>
+    val (status, told) = run("ridge-watch", "--out", s"$folder/missing/../x")
+    assertEquals(status, 0, told)
+    assert(Files.exists(folder.resolve("x/build.sbt")))
+
   folder.test("a folder that is there is left alone"): folder =>
     val (status, told) = run("ridge-watch", "--out", folder.toString)
     assertNotEquals(status, 0)
