@@ -241,7 +241,7 @@ final case class TeamSetup(
   /** The scenario as a candidate has it; its settings were seen to be right. */
   def scenario(candidate: Vector[Double]): Scenario =
     ScenarioSettings
-      .ofKeys(kind, TeamQuestion.settings(question.set, space, candidate))
+      .candidate(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
   def engine(candidate: Vector[Double], judge: Judge): String = flownBy match

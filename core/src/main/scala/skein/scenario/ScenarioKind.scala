@@ -20,11 +20,19 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   private val readers = settings.zip(standard.productIterator.map(Reader.of(name, _)))
 
-  /** @param values settings by name; those that are missing have their defaults
+  /** Reads it and asks it once for all that it states, so that what fails does so before the flight.
+    *
+    * @param values settings by name; those that are missing have their defaults
     * @throws skein.units.OwnFailure if the scenario's code throws
     * @return or every mistake: what was expected, and what came
     */
   def read(values: Map[String, String]): Either[Seq[String], Scenario] =
+    val made = candidate(values)
+    made.foreach(scenario => Scenario.told(name)(ask(scenario)))
+    made
+
+  /** The same, but that it is not asked: where a scenario like it was read, as of a search's candidates. */
+  def candidate(values: Map[String, String]): Either[Seq[String], Scenario] =
     val unknown = values.keys.toSeq.sorted.filterNot(settings.contains).map(name =>
       s"no setting '$name'; the nearest is '${Nearest.to(name, settings)}'"
     )
@@ -42,11 +50,9 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
         val scenario = mirror.fromProduct(Tuple.fromArray(right.toArray))
         val mistakes =
           if scenario.mistakes.isEmpty then Scenario.mistakeOfAgents(scenario).toSeq else scenario.mistakes
-        if mistakes.isEmpty then askedBeforeFlight(scenario)
         Either.cond(mistakes.isEmpty, scenario, mistakes)
 
-  /** What fails shall fail before the flight. */
-  private def askedBeforeFlight(scenario: Scenario): Unit =
+  private def ask(scenario: Scenario): Unit =
     val _ = scenario.title
     val _ = scenario.note
     val _ = scenario.duration

@@ -31,9 +31,17 @@ object ScenarioSettings:
     * @return or every mistake
     */
   def ofKeys(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
+    byKeys(kind, settings)(kind.read)
+
+  /** The same, as [[ScenarioKind.candidate]]. */
+  def candidate(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
+    byKeys(kind, settings)(kind.candidate)
+
+  private def byKeys(kind: ScenarioKind[?], settings: Map[String, String])(
+      read: Map[String, String] => Either[Seq[String], Scenario]
+  ): Either[String, Scenario] =
     val names = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap
-    kind
-      .read(settings.map((key, value) => names.getOrElse(key, key) -> value))
+    read(settings.map((key, value) => names.getOrElse(key, key) -> value))
       .left
       .map(_.map(ConfigKeys.ofMistake).mkString("; "))
 
