@@ -12,6 +12,7 @@ object SpreadTable:
     * a loop and link gave no distance, since a vehicle was never read, the flights are counted alone.
     */
   def of(flights: Seq[FlightSummary]): TextTable =
+    val truths = Truth.among(flights)
     val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
     val order  = flights.map(summary => (summary.name, summary.flight.link)).distinct
     TextTable(
@@ -46,7 +47,7 @@ object SpreadTable:
           metres(within, _.mean),
           metres(closest, _.mean),
           closest.fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString),
-          Distribution.of(groups(group).flatMap(Truth.deviation(_, flights)))
+          Distribution.of(groups(group).flatMap(truths.deviation))
             .fold("")(share => s"${(100 * share.mean).signed(1)} %")
         )
     )

@@ -4,9 +4,11 @@ import skein.measure.{
   Deviation,
   Distribution,
   FlightSet,
+  FlightSummary,
   TimingObservation,
   PredictionErrors,
-  PredictionGroup
+  PredictionGroup,
+  Truth
 }
 import skein.figures.ObservationFigure
 import skein.plot.Mark
@@ -45,6 +47,19 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(stream("vs paused"), (if percent < 0 then "" else "+") + percent.fixed(1) + " %")
     assertEquals(row(table, "paused")("vs paused"), "")
     assertEquals(row(table, "paused")("sd"), "")
+
+  test("the truth is of the flight's own clock where there is one, else of any, and never of other settings"):
+    val Vector(truth, flight)                            = set.flights.take(2): @unchecked
+    def by(one: FlightSummary, clock: String)            = one.copy(flight = one.flight.copy(clock = clock))
+    def truths(of: FlightSummary, among: FlightSummary*) = Truth.among(among).of(of)
+    val (live, virtual)                                  = (by(truth, "real"), by(truth, "virtual"))
+    assertEquals(truths(by(flight, "real"), virtual, live), Vector(live))
+    assertEquals(truths(by(flight, "real"), virtual, flight), Vector(virtual))
+    assertEquals(truths(virtual, virtual), Vector.empty)
+    val longer = truth.copy(flight = truth.flight.copy(duration = Span.ofSeconds(13)))
+    assertEquals(truths(flight, longer, truth.copy(policy = Some("pure-pursuit"))), Vector.empty)
+    val off = Truth.among(Vector(virtual)).deviation(flight)
+    assertEquals(off, flight.headline.map(_ / truth.headline.get - 1))
 
   test("without a paused flight nothing is said of the truth, and captures are counted"):
     val stream = row(SpreadTable.of(set.flights.tail), "stream")

@@ -16,7 +16,8 @@ object Deviation:
   def of(flights: Seq[FlightSummary]): Vector[Deviation] =
     def key(one: FlightSummary) = (one.scenario, one.name, one.flight.link, one.flight.clock)
     val keys                    = flights.map(_.scenario).distinct.zipWithIndex.toMap
-    val off                     = flights.toVector.flatMap(one => Truth.deviation(one, flights).map(one -> _))
+    val truths                  = Truth.among(flights)
+    val off                     = flights.toVector.flatMap(one => truths.deviation(one).map(one -> _))
     off.map((one, _) => key(one)).distinct.sortBy((scenario, _, _, _) => keys(scenario)).flatMap: same =>
       val group = off.filter((one, _) => key(one) == same)
       val first = group.head._1

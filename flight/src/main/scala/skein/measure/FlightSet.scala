@@ -34,7 +34,9 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
 
   /** What a flight comes to against its [[Truth]]. */
-  def deviation(flight: FlightSummary): Option[Double] = Truth.deviation(flight, all)
+  def deviation(flight: FlightSummary): Option[Double] = truths.deviation(flight)
+
+  private lazy val truths = Truth.among(all)
 
 object FlightSet:
   private val linkOrder = Vector("none", "direct", "vpn", "vpn-mixed")

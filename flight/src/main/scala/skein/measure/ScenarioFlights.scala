@@ -11,14 +11,15 @@ final case class ScenarioFlights(flights: Vector[ScenarioFlights.Flown]):
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)
 
   /** The first measure against that of the flight's [[Truth]]. */
-  def deviation(flight: ScenarioFlights.Flown): Option[Double] =
-    Truth.deviation(flight.summary, flights.map(_.summary))
+  def deviation(flight: ScenarioFlights.Flown): Option[Double] = truths.deviation(flight.summary)
+
+  private lazy val truths = Truth.among(flights.map(_.summary))
 
   /** Root mean square distance from the places of its [[Truth]] at the same time, m; absent for the truth
     * itself.
     */
   def offTruthM(flight: ScenarioFlights.Flown): Option[Double] =
-    Truth.of(flight.summary, flights.map(_.summary)).headOption.flatMap(_.result).map(truth =>
+    truths.of(flight.summary).headOption.flatMap(_.result).map(truth =>
       flight.result.tracks.rmsFrom(truth.tracks, inSpace = !scenario.isPlanar)
     )
 
