@@ -3,8 +3,9 @@ package skein.recognition
 /** Whether onnxruntime is there: it is larger than all else, and so whoever runs models adds it. */
 private[recognition] object OnnxRuntime:
   /** How it is got, and used; docs/guides/onnx.md has the same. */
-  val Fetch = "mvn dependency:copy -Dartifact=com.microsoft.onnxruntime:onnxruntime:1.26.0 -DoutputDirectory=."
-  val Use   = "JAVA_OPTS=-Xbootclasspath/a:onnxruntime-1.26.0.jar"
+  val Fetch =
+    "mvn dependency:copy -Dartifact=com.microsoft.onnxruntime:onnxruntime:1.26.0 -DoutputDirectory=."
+  val Use = "JAVA_OPTS=-Xbootclasspath/a:onnxruntime-1.26.0.jar"
 
   def present[A](use: => Either[String, A]): Either[String, A] =
     try use

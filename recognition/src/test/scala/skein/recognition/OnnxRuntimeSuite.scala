@@ -10,7 +10,9 @@ class OnnxRuntimeSuite extends munit.FunSuite:
     val text = told(NoClassDefFoundError("ai/onnxruntime/OrtException")).swap.getOrElse(fail("it is there"))
     assert(!clue(text).contains("ai/") && !text.contains("java.lang"))
     val guide = Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).takeWhile(_ != null)
-      .map(_.resolve("docs/guides/onnx.md")).find(Files.exists(_)).map(Files.readString).getOrElse(fail("no guide"))
+      .map(_.resolve("docs/guides/onnx.md")).find(Files.exists(_)).map(Files.readString).getOrElse(fail(
+        "no guide"
+      ))
     for command <- Seq(OnnxRuntime.Fetch, OnnxRuntime.Use) do
       assert(text.contains(command) && guide.contains(command), command)
 
