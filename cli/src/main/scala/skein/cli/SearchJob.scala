@@ -26,15 +26,17 @@ private[cli] final class SearchJob(
 
   def run(from: SearchState): Either[String, Unit] =
     say(introduction)
-    @volatile var stopped = false
-    Edge.untilInterrupted(() => stopped = true):
+    @volatile var stoppedAt = Option.empty[Long]
+    def isStopped           = stoppedAt.isDefined
+    def isLate              = stoppedAt.exists(System.nanoTime() - _ > PatienceNanos)
+    Edge.untilInterrupted(() => stoppedAt = Some(System.nanoTime())):
       val startedAt = System.nanoTime()
       val line      = ProgressLine(ready.search.expected, Console.err, from.flown)
       var last      = from
       runner.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
       val searched =
         SearchRun(ready.search, question, candidates, folder, () => System.nanoTime())
-          .run(from, () => stopped): state =>
+          .run(from, () => isStopped): state =>
             last = state
             line.show(state.flown, progress(state))
             onShow.step(state, progress(state))
@@ -52,7 +54,7 @@ private[cli] final class SearchJob(
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else if !state.best.get.tally.mean.isFinite then
           Left(s"${ready.formula}: even the best candidate comes to no number; choose another objective")
-        else conclude(state, () => stopped).map(_ => if !state.isDone then say(goOn))
+        else conclude(state, () => isStopped, () => isLate).map(isWhole => if !isWhole then say(goOn))
 
   private def introduction: String =
     val shownAxes =
@@ -75,14 +77,33 @@ private[cli] final class SearchJob(
     state.best.fold("no candidate measured yet"): best =>
       s"best ${best.tally.mean.significant(4)} ${ready.unit} with ${ready.label(best.candidate)}"
 
-  /** Measures the winner on fresh episodes and writes it with pictures. */
-  private def conclude(state: SearchState, isStopped: () => Boolean): Either[String, Unit] =
+  /** Measures the winner on fresh episodes and writes it with pictures.
+    *
+    * @param isLate whether somebody who stopped the search waits no longer for its winner's measures
+    * @return whether nothing is left to do
+    */
+  private def conclude(
+      state: SearchState,
+      isStopped: () => Boolean,
+      isLate: () => Boolean
+  ): Either[String, Boolean] =
     val effort = ready.effort
     // Somebody who stops a search does not wait for long.
     val most  = if state.isDone then Int.MaxValue else effort.freshEpisodes
     val fresh = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
     say(f"measuring the best on $fresh%,d fresh episodes")
-    val found        = SearchResult.measured(ready, runner(_), state, fresh)
+    SearchResult.measured(ready, runner(_), state, fresh, isLate) match
+      case None =>
+        say(s"${progress(state)}; it is not measured on fresh episodes, which would take a while")
+        Right(false)
+      case Some(found) => written(state, found, fresh, isStopped).map(_ => state.isDone)
+
+  private def written(
+      state: SearchState,
+      found: Found,
+      fresh: Int,
+      isStopped: () => Boolean
+  ): Either[String, Unit] =
     val result       = SearchResult(ready, found)
     val (name, text) = ready.file(found)
     for
@@ -92,7 +113,7 @@ private[cli] final class SearchJob(
       _ = SearchResult.atLimits(ready.space, found.best).foreach(say)
       _ = disagreement(found.best, fresh.min(SearchResult.Checked)).foreach(say)
       pictures <-
-        if state.isDone then landscape(found.best, effort.within(fresh), isStopped) else Right(Vector.empty)
+        if state.isDone then landscape(found.best, ready.effort.within(fresh), isStopped) else Right(Vector.empty)
     yield say(s"written: ${(file ++ pictures).mkString(", ")}")
 
   private def disagreement(best: Vector[Double], episodes: Int): Option[String] =
@@ -144,3 +165,6 @@ private[cli] final class SearchJob(
 
 private[cli] object SearchJob:
   private val MostAxes = 4
+
+  /** For how long somebody who has stopped a search waits for what it has found. */
+  private val PatienceNanos = 2_000_000_000L

@@ -38,12 +38,13 @@ trait ReadySearch:
   /** What judges in this process, one call at a time. */
   def judges(threads: Int): Judge => ValueEvaluator
 
-  /** Of a candidate and of the baseline. */
+  /** Of a candidate and of the baseline; or none if it was cancelled. */
   def measured(
       by: Judge => Evaluator,
       candidate: Vector[Double],
-      episodes: Range
-  ): (RunningStats, RunningStats)
+      episodes: Range,
+      isCancelled: () => Boolean
+  ): Option[(RunningStats, RunningStats)]
 
   /** What a candidate comes to by the scalar reference; none where that flies it anyhow, or nothing forward.
     */

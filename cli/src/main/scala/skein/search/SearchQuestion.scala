@@ -174,12 +174,13 @@ final case class SearchSetup(
   def measured(
       by: Judge => Evaluator,
       candidate: Vector[Double],
-      episodes: Range
-  ): (RunningStats, RunningStats) =
-    (
-      by(Judge.Winner).tallies(Vector(candidate), episodes).head,
-      by(Judge.Baseline).tallies(Vector(baseline.candidate), episodes).head
-    )
+      episodes: Range,
+      isCancelled: () => Boolean
+  ): Option[(RunningStats, RunningStats)] =
+    for
+      winner <- by(Judge.Winner).talliesUnless(isCancelled)(Vector(candidate), episodes)
+      other  <- by(Judge.Baseline).talliesUnless(isCancelled)(Vector(baseline.candidate), episodes)
+    yield (winner.head, other.head)
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] =
     Option.when(fliesByLanes(together = false))(

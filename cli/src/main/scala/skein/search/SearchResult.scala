@@ -90,11 +90,20 @@ object SearchResult:
   private val NearLimit = 0.01
 
   /** @param state with a best candidate
+    * @param isCancelled asked now and then, from any thread
+    * @return or none if it was cancelled
     */
-  def measured(ready: ReadySearch, by: Judge => Evaluator, state: SearchState, episodes: Int): Found =
-    val best              = state.best.get.candidate
-    val (fresh, baseline) = ready.measured(by, best, FreshFrom until FreshFrom + episodes)
-    Found(state, best, fresh, baseline)
+  def measured(
+      ready: ReadySearch,
+      by: Judge => Evaluator,
+      state: SearchState,
+      episodes: Int,
+      isCancelled: () => Boolean = () => false
+  ): Option[Found] =
+    val best = state.best.get.candidate
+    ready.measured(by, best, FreshFrom until FreshFrom + episodes, isCancelled).map((fresh, baseline) =>
+      Found(state, best, fresh, baseline)
+    )
 
   /** A mean with the half width of its interval of 95 %. */
   def interval(tally: RunningStats, unit: String): String =

@@ -226,10 +226,12 @@ final case class TeamSetup(
   def measured(
       by: Judge => Evaluator,
       candidate: Vector[Double],
-      episodes: Range
-  ): (RunningStats, RunningStats) =
-    val tallies = by(Judge.Winner).tallies(Vector(candidate, baseline.candidate), episodes)
-    (tallies(0), tallies(1))
+      episodes: Range,
+      isCancelled: () => Boolean
+  ): Option[(RunningStats, RunningStats)] =
+    by(Judge.Winner).talliesUnless(isCancelled)(Vector(candidate, baseline.candidate), episodes).map(tallies =>
+      (tallies(0), tallies(1))
+    )
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
     case TeamEngine.Reduced(conditions, delays)

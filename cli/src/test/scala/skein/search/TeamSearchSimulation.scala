@@ -33,7 +33,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val ready = setup()
     assert(ready.engines.startsWith("SIMD"), ready.engines)
     val judges = ready.judges(2)
-    val found  = SearchResult.measured(ready, judges, ended(ready.search, judges(Judge.Candidates)), 4)
+    val found  = SearchResult.measured(ready, judges, ended(ready.search, judges(Judge.Candidates)), 4).get
     assert(found.fresh.mean < found.baseline.mean, SearchResult(ready, found).summary)
     val written =
       ConfigFactory.parseString(ready.file(found)._2).withFallback(ConfigFactory.load()).resolve()

@@ -1,5 +1,6 @@
 package skein.lanes
 
+import java.time.Duration
 import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
 
 /** Hands batches of worlds out to workers, each on a thread of its own: a worker keeps its arrays from batch
@@ -7,7 +8,8 @@ import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
   */
 private[lanes] object LaneThreads:
 
-  /** @param isCancelled asked before each batch, from any thread
+  /** @param isCancelled asked before each batch, from any thread, and meanwhile by the caller: then who works
+    *   is interrupted, and a batch that throws for that is given up
     * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
     * @return how many worlds were done
     * @throws InterruptedException if the caller is interrupted; the batches handed out have ended then
@@ -41,16 +43,23 @@ private[lanes] object LaneThreads:
       .map: worker =>
         val thread = Thread(() =>
           try handle(worker)
-          catch case thrown: Throwable => failure.compareAndSet(null, thrown): Unit
+          catch
+            case thrown: Throwable =>
+              if !(thrown.isInstanceOf[InterruptedException] && isCancelled()) then
+                failure.compareAndSet(null, thrown): Unit
         )
         thread.setDaemon(true)
         thread.setName("skein-lanes")
         thread
     flying.foreach(_.start())
-    try flying.foreach(_.join())
+    try
+      for thread <- flying do
+        while !thread.join(AskedEvery) do if isCancelled() then flying.foreach(_.interrupt())
     catch
       case interrupted: InterruptedException =>
         failure.compareAndSet(null, interrupted): Unit
         flying.foreach(_.join())
     if failure.get != null then throw failure.get
     done
+
+  private val AskedEvery = Duration.ofMillis(100)

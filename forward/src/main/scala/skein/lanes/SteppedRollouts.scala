@@ -34,6 +34,7 @@ private final class SteppedRollouts private (
   /** Flies worlds to their end.
     *
     * @param start begins the rollout of a world, which flies [[vehiclesOf]] it
+    * @throws InterruptedException if the thread is interrupted: a model may take many seconds for them
     */
   def fly(count: Int)(start: Int => Rollout): Unit =
     steppedTo = Math.floorDiv(hoveredNs, stepNs) * stepNs - hoveredNs
@@ -42,6 +43,7 @@ private final class SteppedRollouts private (
     vehicles.use(count * each)
     var flying = count
     while flying > 0 do
+      if Thread.interrupted() then throw InterruptedException()
       val until = steppedTo + stepNs
       flying = 0
       var world = 0

@@ -104,7 +104,8 @@ final class TeamBatch(
   /** Flies all worlds, unless it is cancelled.
     *
     * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
-    * @param isCancelled asked before each batch, from any thread; batches that fly already end
+    * @param isCancelled asked before each batch and now and then, from any thread; batches that fly already
+    *   end, or are given up where vehicles are stepped side by side
     * @throws InterruptedException if the caller is interrupted; the batches that fly already have ended then
     */
   def fly(

@@ -107,6 +107,13 @@ class DuelBatchSimulation extends munit.FunSuite:
     val same  = (0 until 600).count(world => numbers(part, world) == numbers(whole, world))
     assertEquals(same, part.flown)
 
+  test("who cancels does not wait for vehicles that are stepped side by side for long"):
+    val hours = Duel.paper.copy(durationS = 36_000)
+    val batch = DuelBatch(hours, LoopTiming.Stream(), VelocityResponses.quadrotor(), threads = 1)
+    val asked = AtomicInteger()
+    // Asked once before the batch, and then while it flies.
+    assertEquals(batch.fly(mixed(8), isCancelled = () => asked.incrementAndGet() > 1).flown, 0)
+
   for timing <-
       Seq(LoopTiming.Stream(), LoopTiming.Futures(), LoopTiming.Predictive(predictor = lag.predictor))
   do
