@@ -198,7 +198,9 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
   private val readme: Vector[String] = shown(Documentation.root.resolve("README.md"))
 
   private val documented: Vector[String] =
-    val pages      = Seq("docs/guides", "docs/results", "examples").flatMap(under => files(Documentation.root.resolve(under)))
+    val pages = Seq("docs/guides", "docs/results", "examples").flatMap(under =>
+      files(Documentation.root.resolve(under))
+    )
     val shownThere = (pages :+ Documentation.root.resolve("docs/results.md"))
       .filter(page => page.toString.endsWith(".md") && !page.toString.contains("/target/"))
       .flatMap(shown)

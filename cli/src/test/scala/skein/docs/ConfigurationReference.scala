@@ -1,12 +1,13 @@
 package skein.docs
 
 import com.typesafe.config.{ConfigFactory, ConfigObject, ConfigRenderOptions, ConfigValue}
+import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
 import skein.cli.OurScenarios
 import skein.settings.ConfigKeys
 
 /** All settings with their defaults as a page of the documentation: from `reference.conf` and its comments,
-  * and from the scenarios.
+  * and from the scenarios and their docstrings.
   */
 object ConfigurationReference:
   private val file = "flight/src/main/resources/reference.conf"
@@ -61,9 +62,31 @@ object ConfigurationReference:
     case _            => value.render(ConfigRenderOptions.concise).replace("\"", "").replace(",", ", ")
 
   private def scenarios: String =
-    val rows =
-      for
-        kind          <- OurScenarios.all.kinds
-        (name, value) <- kind.standard.settings
-      yield s"| ${kind.name} | `${ConfigKeys.ofField(name)}` | `$value` |\n"
-    s"| scenario | setting | default |\n|---|---|---|\n${rows.mkString}"
+    OurScenarios.all.kinds.map: kind =>
+      val docs = docstring(kind.standard.getClass.getSimpleName)
+      val rows = kind.standard.settings.map: (name, value) =>
+        s"| `${ConfigKeys.ofField(name)}` | `$value` | ${docs.parameter(name)} |\n"
+      s"### ${kind.name}\n\n${docs.text}\n\n| setting | default | meaning |\n|---|---|---|\n${rows.mkString}"
+    .mkString("\n")
+
+  /** What a scenario's source says of it and of its settings. */
+  private case class Docstring(text: String, parameters: Map[String, String]):
+    def parameter(name: String): String =
+      parameters.getOrElse(name, throw java.util.NoSuchElementException(s"no @param $name: $text"))
+
+  private def docstring(scenario: String): Docstring =
+    val source = Seq("core/src/main/scala/skein/scenario", "recognition/src/main/scala/skein/recognition")
+      .map(folder => Documentation.root.resolve(s"$folder/$scenario.scala"))
+      .find(Files.exists(_))
+      .fold(throw java.util.NoSuchElementException(s"no source of $scenario"))(Files.readString)
+    val before  = source.take(source.indexOf(s"final case class $scenario("))
+    val comment = before.substring(before.lastIndexOf("/**") + 3, before.lastIndexOf("*/"))
+    val words   = comment.linesIterator.map(_.trim.stripPrefix("*").trim).mkString(" ").trim
+    val parts   = words.split("@param ").toSeq.map(part => shown(part.trim))
+    Docstring(
+      parts.head,
+      parts.tail.map(part => part.takeWhile(_ != ' ') -> part.dropWhile(_ != ' ').trim).toMap
+    )
+
+  /** Without the brackets of links between definitions. */
+  private def shown(text: String): String = """\[\[([^\]]*)\]\]""".r.replaceAllIn(text, "`$1`")

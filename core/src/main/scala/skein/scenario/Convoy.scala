@@ -9,12 +9,13 @@ import skein.vehicle.{ReducedModel, VehicleKind}
   * to their right, one beside them to their left, one behind them. The drones' places turn with the road
   * where the leading car is.
   *
-  * @param gapM from the leading car to the other, along the circuit
-  * @param carMps of the leading car
-  * @param mostMps the fastest that anybody is commanded
-  * @param straightM of the circuit; its half turns have the radius `radiusM`
-  * @param altitudeM of the drones
-  * @param sightM within which a drone has a car in view, in the plane
+  * @param gapM distance from the leading car to the other, along the circuit
+  * @param carMps speed of the leading car
+  * @param mostMps the highest speed that is commanded
+  * @param straightM length of each of the circuit's two straights
+  * @param radiusM radius of the half turns between them
+  * @param altitudeM altitude of the drones
+  * @param sightM horizontal distance up to which a drone has a car in view
   */
 final case class Convoy(
     gapM: Double = 12,

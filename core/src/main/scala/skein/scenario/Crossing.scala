@@ -7,14 +7,18 @@ import skein.units.Metres
 /** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing; everyone
   * avoids all others.
   *
-  * @param streams 2, northward and eastward; or 4
-  * @param spacingM between two vehicles of a stream
-  * @param entryM from the first vehicle of a stream to the middle of the crossing
-  * @param laneM by which each stream keeps to the right of the middle
-  * @param minimumM the separation that is set
-  * @param marginM kept on top of it by the avoidance rule, which does not know that vehicles lag behind their
-  *   commands
-  * @param horizonS for which the avoidance rule looks ahead
+  * @param vehicles number of vehicles, in all streams
+  * @param streams number of streams: 2, to the north and to the east, or 4
+  * @param spacingM distance between two vehicles of a stream
+  * @param entryM distance from the first vehicle of a stream to the middle of the crossing, at the start
+  * @param laneM distance by which each stream keeps to the right of the middle
+  * @param cruiseMps speed where nobody is in the way
+  * @param mostMps the highest speed that is commanded
+  * @param minimumM the limit: the smallest separation allowed
+  * @param marginM distance that the avoidance rule keeps on top of it, because it does not know that vehicles
+  *   lag behind their commands
+  * @param horizonS time for which the avoidance rule looks ahead
+  * @param altitudeM altitude of all vehicles
   */
 final case class Crossing(
     vehicles: Int = 20,

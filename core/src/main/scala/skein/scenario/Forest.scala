@@ -7,9 +7,12 @@ import skein.units.Decimals.significant
 /** Vehicles side by side cross a forest, each along a lane of its own, and know of the trees and of one
   * another by lidar alone.
   *
-  * @param apartM from one lane to the next
-  * @param lengthM of the way, to beyond the last tree
-  * @param keepM kept from everything, where there is room
+  * @param vehicles number of vehicles
+  * @param apartM distance from one lane to the next
+  * @param cruiseMps speed along the lane
+  * @param lengthM length of the way, which ends beyond the last tree
+  * @param altitudeM altitude of all vehicles
+  * @param keepM distance that is kept from everything, where there is room
   */
 final case class Forest(
     vehicles: Int = 5,

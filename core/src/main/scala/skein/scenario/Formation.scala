@@ -6,12 +6,15 @@ import skein.units.Decimals.significant
 /** A wedge flies a circuit, two straights joined by half turns; the leader first, followers behind it to the
   * right and left in turn.
   *
-  * @param vehicles the leader included
-  * @param spacingM of the slots, backwards and sideways
-  * @param mostMps the fastest a follower is commanded
-  * @param straightM of the circuit; its half turns have the radius `radiusM`
-  * @param lagS time constant with which vehicles follow their commands; AirSim's at low altitude take about
-  *   1.5 s
+  * @param vehicles number of vehicles, the leader included
+  * @param spacingM distance from one slot to the next, backwards and sideways
+  * @param leaderMps speed of the leader
+  * @param mostMps the highest speed that a follower is commanded
+  * @param straightM length of each of the circuit's two straights
+  * @param radiusM radius of the half turns between them
+  * @param lagS time constant with which the policies expect vehicles to follow their commands;
+  *   AirSim's at low altitude take about 1.5 s
+  * @param altitudeM altitude of all vehicles
   */
 final case class Formation(
     vehicles: Int = 5,

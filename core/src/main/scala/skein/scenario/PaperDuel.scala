@@ -6,9 +6,10 @@ import skein.units.*
 /** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart. Several stand
   * side by side, 60 m apart, and are measured by the first.
   *
-  * @param pairs how many duels; the vehicles of several are numbered from 1
-  * @param asPublished the pursuer turns a fixed angle per decision, as the published code does
-  * @param altitudeM at which all fly
+  * @param pairs number of duels; the vehicles of several are numbered from 1
+  * @param asPublished the pursuer turns by a fixed angle per decision, as the published code does, and not at
+  *   a fixed rate
+  * @param altitudeM altitude of all vehicles
   */
 final case class PaperDuel(
     pairs: Int = 1,

@@ -5,9 +5,12 @@ import skein.units.Decimals.significant
 
 /** Pursuers close a ring around an evader, which flees from the nearest of them.
   *
-  * @param vehicles the evader included
+  * @param vehicles number of vehicles, the evader included
   * @param ringM radius of the ring
-  * @param startM from the pursuers' line to the evader, at the start
+  * @param pursuerMps speed of the pursuers
+  * @param evaderMps speed of the evader
+  * @param startM distance from the pursuers' line to the evader at the start
+  * @param altitudeM altitude of all vehicles
   */
 final case class Surround(
     vehicles: Int = 6,

@@ -7,15 +7,19 @@ import skein.scenario.*
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** The paper's duel, but that the pursuer knows of the evader by its camera alone.
+/** The paper's duel, but the pursuer knows the evader from its camera alone.
   *
-  * @param blind false: the pursuer is told where the evader is, and flies by the same policy otherwise
-  * @param recogniser `tags`: by the AprilTags on the evader's sides; `detector`: an evader without tags, by
-  *   the detector that comes with this library; or a file: by an ONNX detector of one's own, as
-  *   [[VehicleDetector.load]] takes it
-  * @param takes how long recognition takes, as latencies are told: `uniform:15ms..120ms`, or `file:PATH` of
-  *   times that were measured
+  * @param blind false: the same policy is given the evader's true position
+  * @param recogniser `tags`: finds AprilTags on the evader's sides; `detector`: the evader has no tags, and
+  *   the detector that comes with this library looks for it; or the file of another ONNX detector, as
+  *   [[VehicleDetector.load]] reads it
+  * @param takes how long recognition takes: a latency profile, such as `uniform:15ms..120ms`, or `file:PATH`
+  *   with measured times
   * @param everyMs period of the images
+  * @param widthPx width of an image
+  * @param heightPx height of an image
+  * @param fovDeg horizontal field of view
+  * @param altitudeM altitude of both vehicles
   */
 final case class BlindPursuit(
     blind: Boolean = true,
