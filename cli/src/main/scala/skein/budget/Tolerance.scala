@@ -19,9 +19,9 @@ enum Tolerance:
   def per(truth: Double): Either[String, Double] = this match
     case Share(_) if truth == 0 =>
       Left(
-        "it is 0 where the world waits, so no share of it can be told; --within takes a distance in its place"
+        "it is 0 in the paused truth, so no percentage of it can be given; --within takes a difference instead"
       )
-    case _ if !truth.isFinite => Left("it comes to no number where the world waits; choose another objective")
+    case _ if !truth.isFinite => Left("it has no value in the paused truth; choose another objective")
     case Share(_)             => Right(truth.abs)
     case Within(_)            => Right(1)
 

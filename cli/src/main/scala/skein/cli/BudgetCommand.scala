@@ -27,9 +27,9 @@ final case class BudgetOptions(
     forward: ForwardOptions,
     @arg(doc = "time between decisions for one vehicle; each of several gets a map (default: 100ms)")
     period: Seq[String],
-    @arg(name = "most-mean", doc = "the map's mean latencies are below this (default: 200ms of a round trip)")
+    @arg(name = "most-mean", doc = "upper end of the map's mean latencies (default: 200ms of a round trip)")
     mostMean: Option[String],
-    @arg(name = "most-jitter", doc = "the map's jitters are below this (default: 100ms of a round trip)")
+    @arg(name = "most-jitter", doc = "upper end of the map's jitters (default: 100ms of a round trip)")
     mostJitter: Option[String],
     @arg(doc = "cells along the latency (default: 40; of a scenario 10)")
     means: Option[Int],
@@ -45,7 +45,7 @@ final case class BudgetOptions(
       "instead of --tolerance, the tolerance in the objective's unit"
     )
     within: Option[Double],
-    @arg(name = "at-jitter", doc = "jitter for which the sentence is printed (default: 20ms)")
+    @arg(name = "at-jitter", doc = "jitter at which the tolerated mean latency is printed (default: 20ms)")
     atJitter: Option[String],
     @arg(name = "one-way", doc = "all latencies are of one direction, instead of round trips")
     oneWay: Flag,
@@ -100,7 +100,9 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           files <- write(maps, isWhole, folder)
           _ = Shown(options.json.value).say(s"written: ${files.mkString(", ")}")
           _ <-
-            Expect.that(isWhole)(s"${BudgetSubject.Stopped}; what was flown until then is told and written")
+            Expect.that(isWhole)(
+              s"${BudgetSubject.Stopped}; what was flown until then is printed and written"
+            )
         yield ()
     yield ()
 

@@ -6,12 +6,12 @@ import skein.cluster.Certificates
 /** Options of `./skein cluster`. */
 final case class ClusterCommandOptions(
     @arg(doc =
-      "of a machine, as its certificate shows it: a name, an address, or " +
+      "name of a machine, to stand in its certificate: a host name, an address, or " +
         "*.DOMAIN for all of a domain; can be repeated (default: localhost)"
     )
     host: Seq[String],
     @arg(doc =
-      "makes what coordinator and workers show one another, a folder for each host"
+      "makes certificates, with a folder for each host"
     )
     words: Leftover[String]
 )

@@ -66,7 +66,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
           Misuse.text(failure, names).linesIterator.foreach(mistake =>
             Console.err.println(s"skein $name: ${TextTable.printable(mistake)}")
           )
-          Console.err.println(s"skein $name: --help tells the options")
+          Console.err.println(s"skein $name: --help lists the options")
           2
         case Result.Success(options) =>
           OutFolder.unlessRefused(done(options)) match

@@ -3,7 +3,7 @@ package skein.cli
 /** All commands with their options as a page of the documentation. */
 object CommandReference:
 
-  /** What `--help` tells of every command. */
+  /** What `--help` prints for every command. */
   def markdown: String =
     val commands = Main.commands.map: command =>
       s"## ${command.name}\n\n${command.summary.capitalize}.\n\n```\n${command.help.stripTrailing}\n```\n"
@@ -14,5 +14,5 @@ object CommandReference:
       |
       |`./skein COMMAND --help` shows the same. `source <(./skein completion bash)` completes commands, options and known values; `zsh` works too.
       |
-      |Exit status: 0 done; 1 failed, or told of what cannot be flown; 2 unknown options, or values of the wrong kind. Progress and errors go to standard error, results to standard output.
+      |Exit status: 0 success; 1 failure, or something that cannot be flown; 2 unknown options, or values of the wrong kind. Progress and errors go to standard error, results to standard output.
       |""".stripMargin

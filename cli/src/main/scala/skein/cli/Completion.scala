@@ -53,7 +53,7 @@ private[cli] object Completion:
           else s":value:(${option.values.mkString(" ")})"
         s"'*${option.flag}[${bracketed(option.summary)}]$value'"
       s"    ${command.name}) _arguments " +
-        s"${(options :+ "'--help[tells the options]'" :+ "'*:file:_files'").mkString(" ")} ;;"
+        s"${(options :+ "'--help[lists the options]'" :+ "'*:file:_files'").mkString(" ")} ;;"
     s"""#compdef $program
        |# zsh completion of $program: source <(./$program completion zsh)
        |_$program() {

@@ -23,13 +23,13 @@ import skein.units.{Clock, Decimals, Expect}
 /** Options of `./skein decide`. */
 final case class DecideOptions(
     @arg(doc =
-      "where flights ask, as they say with --solver: tcp://HOST:PORT of " +
+      "address at which flights ask, which they name with --solver: tcp://HOST:PORT of " +
         "this machine, or kafka://HOST:PORT/PREFIX of a broker"
     )
     at: String = "tcp://127.0.0.1:7400",
     @arg(doc =
-      "starts Kafka's own broker there, in this process; what it holds is " +
-        "deleted at the end. Without --tls, of this machine alone"
+      "starts Kafka's own broker there, in this process; its messages are " +
+        "deleted at the end; without --tls, it is reachable from this machine only"
     )
     broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")

@@ -64,7 +64,7 @@ final class FlyCommand(using Scenarios)
         .fold(Right(None))(Address.parse(_).map(Some(_)))
         .left.map("--simulator: " + _)
       _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
-        s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's wire is TCP as it is"
+        s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's protocol is always TCP"
       _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
         "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):

@@ -17,11 +17,11 @@ import skein.units.{Expect, Interval, Span}
 final case class IdentifyOptions(
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String],
-    @arg(doc = "a vehicle to fit to; can be repeated; without it, all")
+    @arg(doc = "a vehicle to fit a model to; can be repeated; without it, all")
     vehicle: Seq[String],
     @arg(doc =
-      "structure of the model that the file selects: lag, turn, drag, drag-and-turn, or one of your program's own; " +
-        "all are fitted beside it"
+      "the model that model.conf selects: lag, turn, drag, drag-and-turn, or one of your program's own; " +
+        "all are fitted"
     )
     structure: String = Structure.Drag.label,
     @arg(doc = "how far each reading is predicted for the fit")
@@ -38,7 +38,7 @@ final case class IdentifyOptions(
 final class IdentifyCommand(using scenarios: Scenarios)
     extends OptionsCommand[IdentifyOptions](
       "identify",
-      "fits models of the vehicles to recordings, and one of their recognition, for forward simulation and prediction",
+      "fits models of vehicles, and of what their cameras recognise, to recordings",
       ParserForClass[IdentifyOptions]
     ):
 

@@ -19,7 +19,7 @@ import skein.units.{Clock, Expect, Span}
 final case class LatencyOptions(
     @arg(doc = "the simulator")
     simulator: String = "127.0.0.1:41451",
-    @arg(doc = "an emulated link to put between: direct, vpn, constant:200ms, …; without it, none")
+    @arg(doc = "an emulated link between this command and the simulator: direct, vpn, constant:200ms, …")
     link: String = "none",
     @arg(doc = "pings to send")
     samples: Int = 200,

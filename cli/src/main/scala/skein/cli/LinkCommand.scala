@@ -14,14 +14,14 @@ final case class LinkOptions(
     @arg(doc = "the server behind the link")
     to: String,
     @arg(doc =
-      "carries datagrams, and not TCP: each comes out as it went in, " +
-        "after a delay of its own, so a later one may come first"
+      "carries UDP datagrams instead of TCP; each has a delay of its own, " +
+        "so a later one may arrive first"
     )
     udp: Flag,
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
         "lognormal:36ms,0.3 or file:PATH; times are round trips; " +
-        "correlated:250ms,PROFILE holds each for a while"
+        "correlated:250ms,PROFILE keeps each for 250 ms on average"
     )
     profile: String = "direct",
     @arg(name = "to-server", doc = "latency towards the server, where it differs")
@@ -35,7 +35,7 @@ final case class LinkOptions(
     @arg(name = "reset-every", doc = "mean time between resets of all connections, for example 5min")
     resetEvery: Option[String],
     @arg(doc =
-      "of each direction, shared by all connections, and the queue " +
+      "rate of each direction, shared by all connections, and the size of the queue " +
         "before it: 50mbit or 50mbit/64kB; without it, unlimited"
     )
     rate: Option[String],

@@ -12,9 +12,9 @@ import skein.units.Expect
 
 /** Options of `./skein new`. */
 final case class NewOptions(
-    @arg(doc = "folder that is made; without it, one of the project's name, here")
+    @arg(doc = "folder to create; without it, ./NAME")
     out: Option[String],
-    @arg(doc = "of the project: small letters, digits and dashes, for example ridge-watch")
+    @arg(doc = "name of the project: small letters, digits and dashes, for example ridge-watch")
     name: Leftover[String]
 )
 

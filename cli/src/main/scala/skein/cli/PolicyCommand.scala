@@ -13,7 +13,7 @@ final case class PolicyOptions(
     file: Leftover[String],
     @arg(doc = "ONNX file to write its network into, for other programs; it is replaced")
     onnx: Option[String],
-    @arg(doc = "policy file to write it into; it is replaced")
+    @arg(doc = "policy file to write it into; replaced if it exists")
     conf: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag

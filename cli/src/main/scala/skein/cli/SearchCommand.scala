@@ -38,7 +38,7 @@ final case class SearchOptions(
     population: Option[Int],
     @arg(doc =
       "fresh episodes on which the winner is measured (default: 4096 with a reduced model by " +
-        "SIMD, fewer where an episode costs more); no point of the landscape takes more"
+        "SIMD, fewer where an episode costs more); also the most for each point of the landscape"
     )
     fresh: Option[Int],
     @arg(doc =

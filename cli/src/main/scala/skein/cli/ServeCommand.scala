@@ -40,8 +40,8 @@ final case class ServeOptions(
     @arg(
       name = "mavlink-instance",
       doc =
-        "for a second serve --mavlink: the first vehicle's number, as PX4's -i, " +
-          "by which ports and systems are higher; 0 unless told otherwise"
+        "for a second serve --mavlink: the instance number of the first vehicle, as PX4's -i, " +
+          "which is added to ports and system numbers (default: 0)"
     )
     mavlinkInstance: Option[Int],
     @arg(doc =
@@ -56,7 +56,7 @@ final case class ServeOptions(
 object ServeCommand
     extends OptionsCommand[ServeOptions](
       "serve",
-      "runs the built-in simulator, which speaks AirSim's wire",
+      "runs the built-in simulator, which speaks AirSim's protocol",
       ParserForClass[ServeOptions]
     ):
 

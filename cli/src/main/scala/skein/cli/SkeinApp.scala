@@ -43,30 +43,35 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   private def program = getClass.getName.stripSuffix("$")
 
-  private[skein] final val commands: Seq[Command] = Seq(
-    FlyCommand(),
-    DecideCommand(),
-    SpreadCommand(program),
-    SearchCommand(program),
-    LearnCommand(program),
-    PolicyCommand(),
-    WorkerCommand(),
-    ClusterCommand,
-    BudgetCommand(program),
-    ServeCommand,
-    LinkCommand,
-    LatencyCommand,
-    ReportCommand(),
-    ExportCommand,
-    ImportCommand,
-    IdentifyCommand(),
-    ReplayCommand(),
-    DigestCommand,
-    TortureCommand(program),
-    ScenariosCommand(),
-    NewCommand,
-    CompletionCommand(commands)
+  /** By what they are for, as `--help` lists them. */
+  private val groups: Seq[(String, Seq[Command])] = Seq(
+    "Fly" -> Seq(
+      FlyCommand(),
+      SpreadCommand(program),
+      TortureCommand(program),
+      ScenariosCommand(),
+      NewCommand
+    ),
+    "Choose a policy before the flight" -> Seq(
+      SearchCommand(program),
+      LearnCommand(program),
+      BudgetCommand(program),
+      PolicyCommand()
+    ),
+    "Simulator and network" -> Seq(ServeCommand, LinkCommand, LatencyCommand),
+    "Work with recordings"  -> Seq(
+      ReportCommand(),
+      ReplayCommand(),
+      IdentifyCommand(),
+      ExportCommand,
+      ImportCommand,
+      DigestCommand
+    ),
+    "Other processes and machines" -> Seq(DecideCommand(), WorkerCommand(), ClusterCommand),
+    "Shell"                        -> Seq(CompletionCommand(commands))
   )
+
+  private[skein] final val commands: Seq[Command] = groups.flatMap(_._2)
 
   final def main(arguments: Array[String]): Unit =
     val status = Edge.tellingExit(run(arguments.toSeq))
@@ -89,8 +94,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   /** Runs one command, for tests.
     *
-    * @return the exit status: 0 done; 1 failed, or told of what cannot be done; 2 unknown options, or values
-    *   of the wrong kind
+    * @return the exit status: 0 success; 1 failure, or something that cannot be done; 2 unknown options, or
+    *   values of the wrong kind
     */
   final def run(arguments: Seq[String]): Int =
     arguments.headOption match
@@ -130,11 +135,14 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   private def help: String =
     val width = commands.map(_.name.length).maxOption.getOrElse(0)
-    val lines = commands.map(command => s"  ${command.name.padTo(width, ' ')}  ${command.summary}")
+    val lines = groups.map: (purpose, commands) =>
+      commands
+        .map(command => s"  ${command.name.padTo(width, ' ')}  ${command.summary}")
+        .mkString(s"$purpose:\n", "\n", "")
     s"""Skein: control graphs for teams of drones that know how old their data is.
        |
        |Usage: ./skein COMMAND [OPTION…]
        |
-       |${lines.mkString("\n")}
+       |${lines.mkString("\n\n")}
        |
-       |./skein COMMAND --help tells a command's options, ./skein --version what this is.""".stripMargin
+       |./skein COMMAND --help lists a command's options; ./skein --version prints the version.""".stripMargin

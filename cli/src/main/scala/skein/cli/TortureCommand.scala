@@ -40,7 +40,7 @@ final case class TortureOptions(
 final class TortureCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[TortureOptions](
       "torture",
-      "flies teams in virtual time through injected faults, and checks what must hold all the same",
+      "flies teams in virtual time through injected faults, and checks ages, order and completeness of each flight",
       ParserForClass[TortureOptions]
     ):
   import TortureCommand.*

@@ -24,6 +24,6 @@ object DuelReport extends ScenarioKind(PaperDuel()), ScenarioReport:
     Scenarios(Scenarios.ours.kinds.map(kind => if kind.name == name then this else kind))
 
   private val note =
-    "Horizontal distance between pursuer and evader at equal instants of the simulator's clock; sd is the " +
-      "standard deviation over the last 10 s, which a flight has that lasted as long. The paper's values " +
+    "Horizontal distance between pursuer and evader at equal instants of the simulator's clock; sd is its " +
+      "standard deviation over the last 10 s, absent where the flight was shorter. The paper's values " +
       "are from its text and published result files; its paused flight went over the direct link."

@@ -47,9 +47,9 @@ object PlanTable:
 
   /** How to read it. */
   def note(set: FlightSet): String =
-    "Candidate manoeuvres flown forward per vehicle and tick, all searches together; slices are " +
-      "of all vehicles planned for together; ms from the tick to the decision; a deadline is " +
-      "missed where no slice was ready, and the last plan went on or the policy decided" +
+    "Candidates: manoeuvres simulated per vehicle and tick, in all searches together. Slices: steps in " +
+      "which searches improved the plans of all vehicles together. ms: from the tick to the decision. " +
+      "A deadline is missed where no slice was ready; then the last plan went on, or the policy decided" +
       (if hasDuels(set) then
-         "; captured where the distance first is below 1.5 m, and the share of the flight below it"
+         ". Captured: when the distance first was below 1.5 m, and the share of the flight below it"
        else "")

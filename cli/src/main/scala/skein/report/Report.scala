@@ -44,7 +44,7 @@ object Report:
     /** Where it is, in lines for the user. */
     def told: Vector[String] =
       val shown = if others.size <= MostNamed then others else others.take(MostNamed) :+ "…"
-      s"Report: $page${if isReplaced then ", in the place of the one before" else ""}" +:
+      s"Report: $page${if isReplaced then ", which replaces the one before" else ""}" +:
         Option.when(others.nonEmpty)(
           s"it does not show ${shown.mkString(", ")}, which are there too: " +
             s"./skein report ${Typed.recordings(page.resolveSibling(""))}"

@@ -71,7 +71,7 @@ object ReportSections:
     ),
     Section(
       "Prediction error",
-      "",
+      predictionNote,
       Some(PredictionTable.of(predictions)),
       named(PredictionFigure.name, figures)
     )
@@ -87,7 +87,11 @@ object ReportSections:
 
   private def named(name: String, figures: ReportFigures): Vector[Figure] = figures.all.filter(_.name == name)
 
+  private val predictionNote =
+    "Distance of predicted positions from readings of the same moment. Carried by: median time from the " +
+      "reading to the moment predicted for. Unverified: no reading came to compare with."
+
   private val observationsNote =
-    "Mean/median/99th percentile in ms, by the role that was decided for. Ages " +
-      "count from the arrival of the reading used, as published; the true ages, " +
-      "means, count from when physics was sampled, by the simulator's clock."
+    "Mean/median/99th percentile in ms, by the role that decides. Ages count from the arrival of the " +
+      "reading used, as in the paper. The true ages are means, and count from when physics was sampled, " +
+      "by the simulator's clock."

@@ -48,10 +48,10 @@ object SolverTable:
       .fold("")((there, own) => s"${((there / own - 1) * 100).signed(1)} %")
 
   val note: String =
-    "Beside the same loop that decides in its own process (here). Added: ms from question to answer, " +
-      "of answers that were used, of which the solver was thinking for so long. Age at command: from " +
-      "when the vehicle's own physics was sampled to the sending of the command that was decided upon " +
-      "it, with all ways. Missed: decisions that the fallback had to make; late: answers that came " +
-      "after their deadline and were not used; twice: messages that came more than once and count " +
-      "once; left: questions that the solver left for newer ones; lost: connections. The result is the " +
-      "scenario's first measure, such as the distance of the last 10 s."
+    "Here: the same loop, decided in the flight's own process. Added: ms from question to answer, for " +
+      "answers that were used. Thinking: the part of it for which the solver computed. Age at command: " +
+      "ms from the sampling of the vehicle's own physics to the sending of the command. Missed: " +
+      "decisions that the fallback had to make. Late: answers that came after their deadline and were " +
+      "not used. Twice: messages that came more than once and count once. Left: questions that the " +
+      "solver left for newer ones. Lost: connections. Result: the scenario's first measure, such as the " +
+      "distance over the last 10 s."

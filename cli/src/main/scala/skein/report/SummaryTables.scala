@@ -112,9 +112,9 @@ object SummaryTables:
 
   /** How to read [[seen]]. */
   val seenNote: String =
-    "Images that were searched until the last detection, if there was one, and detections that were " +
-      "used. Ages of detections count from the exposure to each decision made from " +
-      "them; off: how far the estimate for the exposure lay from the truth."
+    "Images: searched until the last detection, if there was one. Found: detections that were used. " +
+      "Took: duration of recognition. Age: from the exposure to each decision made from the detection. " +
+      "Off: distance of the estimate for the moment of the exposure from the truth."
 
   /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made
     * on, by role, and how far apart they converged.
@@ -164,14 +164,13 @@ object SummaryTables:
       summary <- set.all
       span    <- summary.paused
     yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
-      "nothing was decided, which its times and distances include; it stands beside no other flight"
+      "nothing was decided; its times and distances include this, so it is not compared with other flights"
 
   /** How to read [[twins]]. */
   val twinsNote: String =
-    "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data " +
-      "and of the time since the own last move: 0 where both are distributed alike, 1 where they do not " +
-      s"overlap. Times within ${Compared.WithinMs} ms count as equal. Beside it, the scenario's first " +
-      "measure of both flights"
+    "Kolmogorov-Smirnov distances between live and virtual decisions, by role: of the age of the " +
+      "vehicle's own data, and of the time since its last move. 0: distributed alike; 1: no overlap. " +
+      s"Times within ${Compared.WithinMs} ms count as equal. Then the scenario's first measure of both flights"
 
   /** `TimedOut` as `timed out`. */
   def label(kind: EventKind): String =

@@ -163,7 +163,7 @@ class TablesSuite extends munit.FunSuite:
       )
     )
     assertEquals(table.header.size, table.rows.head.size)
-    assert(PlanTable.note(Report.of(Seq(catches))).contains("captured where"))
+    assert(PlanTable.note(Report.of(Seq(catches))).contains("Captured: when"))
 
   test("a distance of just 1.5 m is no capture"):
     val plan = Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)

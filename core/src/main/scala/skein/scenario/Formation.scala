@@ -12,8 +12,8 @@ import skein.units.Decimals.significant
   * @param mostMps the highest speed that a follower is commanded
   * @param straightM length of each of the circuit's two straights
   * @param radiusM radius of the half turns between them
-  * @param lagS time constant with which the policies expect vehicles to follow their commands;
-  *   AirSim's at low altitude take about 1.5 s
+  * @param lagS time constant with which the policies expect vehicles to follow their commands; AirSim's at
+  *   low altitude take about 1.5 s
   * @param altitudeM altitude of all vehicles
   */
 final case class Formation(
