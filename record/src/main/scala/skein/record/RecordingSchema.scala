@@ -7,7 +7,7 @@ object RecordingSchema:
   def markdown: String =
     val tables = Table.all.map: table =>
       val columns = table.numbered.map: column =>
-        s"| `${column.name}` | ${column.sqlType} | ${if column.nullable then "may be absent" else ""} |"
+        s"| `${column.name}` | ${column.sqlType} |${if column.nullable then " may be absent" else ""} |"
       s"## ${table.name}\n\n${meaning(table.name)}\n\n| column | " +
         s"type | |\n|---|---|---|\n${columns.mkString("\n")}\n"
     s"$introduction\n${tables.mkString("\n")}"
@@ -23,7 +23,7 @@ object RecordingSchema:
       |second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are axes of the world frame;
       |`Front`, `Right`, `Down` those of the body frame. `validAtNs` (also `ownValidAtNs` and similar), `actsAtNs` and
       |`predictedForNs` are on the simulator's clock, all other instants on the controller's. `sequence` counts the rows
-      |of a vehicle; other tables refer to it. Every table begins with `row`, the order in which all rows of the flight
+      |of a vehicle; other tables refer to it. [Concepts](concepts.md#the-words) defines reading, decision and age. Every table begins with `row`, the order in which all rows of the flight
       |were accepted.
       |
       |```sql
@@ -33,42 +33,70 @@ object RecordingSchema:
       |""".stripMargin
 
   private def meaning(table: String): String = table match
-    case "flight"    => "What was flown: one row."
-    case "parameter" => "Further settings of the flight, such as those of its scenario."
-    case "vehicle"   => "One row for each vehicle; `start…` is its own frame's origin in the world frame."
-    case "reading"   => "One row for each answer of the simulator."
-    case "decision"  =>
-      "One row for each decision, with the readings it was made from. `ownAge` and `opponentAge` count " +
-        "from a reading's arrival, as in the paper; `ownTrueAge` and `opponentTrueAge` from its valid " +
-        "time, with `uncertainty` as the bound of their error. `relativeX` and `relativeY` are the " +
-        "position of the evader relative to the pursuer, along its commanded heading and to the right of " +
-        "it (for other roles, of the opponent relative to the vehicle). `elapsed` is the time since the " +
-        "vehicle's last decision, `actsAt` the predicted time at which the command acts."
-    case "sighting"    => "The readings of the other vehicles that a decision for a team was made from."
+    case "flight" =>
+      "What was flown: one row. `clock` is real or virtual; `simulator` is `built-in`, or the address of " +
+        "another; `version` is that of the program."
+    case "parameter" => "Further settings of the flight, such as those of its scenario: name and value."
+    case "vehicle"   =>
+      "One row for each vehicle, with its role in the scenario and its cruising speed; `start…` is " +
+        "its own frame's origin in the world frame."
+    case "reading" =>
+      "One row for each answer of the simulator. `sentAt` and `receivedAt` are when it was asked for " +
+        "and when the answer came. The orientation is a quaternion from the body frame to the world frame."
+    case "decision" =>
+      "One row for each decision. Columns that begin with `own` and `opponent` are the readings that it " +
+        "was made from. `ownAge` and `opponentAge` count from a reading's arrival, as in the paper; " +
+        "`ownTrueAge` and `opponentTrueAge` from its valid time, with `uncertainty` as the bound of their " +
+        "error. `sinceOwnMove` and `sinceOpponentMove` are the times since the last commands. " +
+        "`relativeX` and `relativeY` are the position of the evader relative to the pursuer, along its " +
+        "commanded heading and to the right of it (for other roles, of the opponent relative to the " +
+        "vehicle). `headingBefore` was commanded last, `heading` was decided now. `elapsed` is the time " +
+        "since the vehicle's last decision. `actsAt` is the predicted time at which the command acts, and " +
+        "`…Predicted…` are the states predicted for it, if the decision was made from them. `action…` is " +
+        "absent where heading and speed, at the altitude of the start, are the whole action."
+    case "sighting" =>
+      "The readings of the other vehicles that a decision for a team was made from: one row for each of " +
+        "them. `decider` and `decision` name the decision, `vehicle` and `reading` the reading."
     case "measurement" => "One row for each answer of a sensor; `quantities` names its numbers, with units."
     case "sensing"     =>
-      "The measurements that a decision was made from: one row for each sensor that its policy reads."
+      "The measurements that a decision was made from: one row for each sensor that its policy reads. " +
+        "`decision` and `measurement` are sequences."
     case "image" =>
       "One row for each image, if images are recorded (`fly --images`). `pixels` are " +
         "compressed by Zstandard: rows from the top, `bgr8`, or `32FC1` as numbers of 32 " +
-        "bits. Position and orientation are the camera's at the exposure."
+        "bits. Position and orientation are the camera's at the exposure, which is `validAt`."
     case "cloud" =>
       "One row for each scan of a lidar, if scans are recorded. `xyz` are compressed by " +
         "Zstandard: three numbers of 32 bits for each point, in the lidar's frame."
     case "plan" =>
-      "How a plan was found: candidates, slices of each search, cost, broken limits; the " +
-        "planned path, from the moment at which its command acts, a position for each step; and what no " +
-        "reading tells of the states that it begins with, as numbers of the vehicle's and its opponent's plant."
+      "How a decision was planned. `candidates` were simulated by all searches together. `slices` are the " +
+        "steps that each search finished before the deadline; if all are 0, the last plan went on or the " +
+        "policy decided. `cost` is that of the chosen plan, and `breaches` counts its broken limits. " +
+        "`course…` is the planned path: a position at the end of each step, the first of which begins when " +
+        "the command acts. `ownState` and `opponentState` are the states of the plants from which it was " +
+        "planned, where readings do not show all of them."
     case "solved" =>
       "Decisions that were made in another process: when the question left and the answer came, " +
-        "and how long the solver took. Questions without a row were not answered in time."
-    case "prediction"      => "Predictions that a later reading could be compared with, and their errors."
-    case "command"         => "One row for each command as it was sent."
-    case "acknowledgement" => "How each command ended."
-    case "latency"         => "Round trips over the link."
-    case "event"           =>
-      "Everything unusual: every drop, skip, time-out and " +
-        "reconnection; and messages of a learner beside the loop."
+        "and for how long the solver computed (`thinking`). Questions without a row were not answered in " +
+        "time. `solverClockOffset` is the controller's clock minus the solver's."
+    case "prediction" =>
+      "Predictions that a later reading could be compared with. `age` is from the reading that was carried " +
+        "forward to the moment predicted for, `error` the distance to where the vehicle was then."
+    case "command" =>
+      "One row for each command as it was sent. `decision` is absent for take-off, hover and the like."
+    case "acknowledgement" =>
+      "How each command ended: `outcome` is `done`, `superseded` (a newer command replaced it), or the " +
+        "text of an error."
+    case "latency" => "Round trips over the link."
+    case "event"   =>
+      s"Everything unusual. `kind` is ${listed(EventKind.values.toVector.map(_.toString))}: " +
+        "[what each means](report.md#events). `decision` is the one that a fallback made, or the first " +
+        "after something was learned or a solver was restarted."
     case "truth"  => "True positions of vehicles, if they are sampled apart from the readings."
-    case "ending" => "How the flight ended: one row, or none if the recording is incomplete."
-    case other    => throw IllegalArgumentException(s"table $other has no description")
+    case "ending" =>
+      s"How the flight ended: one row, or none if the recording is incomplete. `how` is " +
+        s"${listed(EndingKind.values.toVector.map(_.toString))}; `reason` says why it ended early."
+    case other => throw IllegalArgumentException(s"table $other has no description")
+
+  private def listed(names: Seq[String]): String =
+    s"${names.init.map(name => s"`$name`").mkString(", ")} or `${names.last}`"
