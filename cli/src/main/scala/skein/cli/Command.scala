@@ -14,8 +14,8 @@ trait Command(val name: String, val summary: String):
 
   /** Runs with the words after the command's name.
     *
-    * @return the exit status: 0 done; 1 failed, or told of what cannot be done; 2 unknown options, or values
-    *   of the wrong kind
+    * @return the exit status: 0 success; 1 failure, or something that cannot be done; 2 unknown options, or
+    *   values of the wrong kind
     */
   def run(arguments: Seq[String]): Int
 

@@ -162,11 +162,11 @@ final class FlyCommand(using Scenarios)
     val written  = AtomicInteger()
     def recorded =
       val goOn = if written.get == 0 then "" else s"; ${FlyCommand.shows(out)}"
-      s"${written.get} of ${Decimals.counted(plans.size, "flight")} have landed and are recorded$goOn"
+      s"${written.get} of ${Decimals.counted(plans.size, "flight")} have ended and are recorded$goOn"
     Edge.tellingIfCut(recorded):
       VirtualFlights.fly(settings, plans, out): (landed, contents) =>
         if landed.written.isRight then written.incrementAndGet(): Unit
-        Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
+        Console.err.println(s"${landed.plan.id} has ended; SHA-256 of its recording: $contents")
 
   /** Whoever ends the command behind the flights is told where they are. */
   private def kept[A](out: Path)(body: => A): A =

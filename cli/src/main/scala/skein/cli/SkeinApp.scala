@@ -23,18 +23,18 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   Terminal.adapt()
 
   /** Families of policies of your own, for the duel's roles: `search`, `budget`, policy files, `--opponent`
-    * and `--fallback` know them by name. It is asked for before the object's own values are there, so write
-    * them into it.
+    * and `--fallback` know them by name. It is read before the object's own fields are set, so it must not
+    * refer to them.
     */
   def policyFamilies: Seq[PolicyFamily] = Nil
 
   /** Structures of plants of your own: `identify` fits them, and `--plant FILE` and `--predictor FILE` know
-    * them. It is asked for as [[policyFamilies]] is.
+    * them. It is read as [[policyFamilies]] is.
     */
   def structures: Seq[Structure] = Nil
 
   /** Loops of your own: `fly` and `spread` fly them by `--loop`, and `report` and `replay` know them. It is
-    * asked for as [[policyFamilies]] is.
+    * read as [[policyFamilies]] is.
     */
   def loops: Seq[OwnLoop] = Nil
 

@@ -35,7 +35,7 @@ private[cli] object SpreadFlights:
   /** How many have landed, told now and then. */
   final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):
     @volatile private var landed = 0
-    private def progress()       = s"$landed of $of flights have landed"
+    private def progress()       = s"$landed of $of flights have ended"
 
     /** Told in order, though flights land on several threads. */
     def one: Unit = synchronized:

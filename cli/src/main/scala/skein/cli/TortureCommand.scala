@@ -123,7 +123,7 @@ object TortureCommand:
     def failed: Vector[FaultVerdict] = broken
 
     def tellingIfCut[A](body: => A): A =
-      Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed")(body)
+      Edge.tellingIfCut(s"$flown of ${options.seeds} flights have ended, ${failed.size} failed")(body)
 
     def add(verdict: FaultVerdict): Unit =
       flown += 1

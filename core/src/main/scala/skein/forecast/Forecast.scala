@@ -4,8 +4,8 @@ import skein.signal.{ClockAlignment, Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleModel
 
-/** What is known of vehicles from their readings and from the commands sent to them. Immutable and pure:
-  * events go in as they come, in any order; estimates come out for any moment.
+/** Estimates the states of vehicles at any moment, from their readings and from the commands sent to them.
+  * Immutable and pure: events go in as they come, in any order.
   *
   * @param models one per vehicle: the vehicle's own where its commands are known, else
   *   [[skein.vehicle.ConstantVelocity]] or [[skein.vehicle.ConstantTurn]]
@@ -81,7 +81,7 @@ object Forecast:
   def apply(models: Vector[VehicleModel[?]]): Forecast =
     new Forecast(models, models.map(_ => None), None, None)
 
-/** What a forecast is made of. Vehicles are counted from 0. */
+/** An event that a forecast takes in. Vehicles are counted from 0. */
 enum ForecastEvent:
   def vehicle: Int
 

@@ -5,8 +5,9 @@ import skein.signal.{Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint, VehicleModel}
 
-/** What is known of one vehicle's past and of what is on its way to it. Instants are the controller's, except
-  * where they come from the simulator: `validAt` and everything named after it.
+/** The forecast of one vehicle: its newest readings and the commands that act on it or are on their way.
+  * Instants are the controller's, except where they come from the simulator: `validAt` and everything named
+  * after it.
   *
   * @param state the model's, at the newest reading
   * @param readings the newest readings, the newest last

@@ -1,14 +1,14 @@
 package skein.policy
 
-/** What a layer of neurons makes of its sums. */
+/** The function that a layer of neurons applies to its sums. */
 enum Activation:
-  /** What is negative becomes 0. */
+  /** 0 for negative numbers. */
   case Relu
 
   /** −1 to 1, smoothly. */
   case Tanh
 
-  /** What is beyond −1 and 1 becomes −1 and 1. */
+  /** Limited to −1 and 1. */
   case Clip
 
   /** As in names of shapes. */

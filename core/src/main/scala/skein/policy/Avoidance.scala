@@ -13,10 +13,10 @@ import skein.policy.Avoidance.*
   * the discs are wider than the separation to be kept.
   *
   * @param goalNorthM where it wants to be; nearer than `cruiseMps / arrivePerS` it slows down in proportion
-  * @param minimumM the separation that is set
-  * @param marginM on top of it: the two discs' radii together are the sum
-  * @param horizonS for how long no two shall meet
-  * @param mostMps the fastest that is commanded
+  * @param minimumM the smallest separation allowed
+  * @param marginM added to it: the sum is that of the two discs' radii
+  * @param horizonS time within which no two vehicles may meet
+  * @param mostMps the highest speed that is commanded
   */
 final case class Avoidance(
     goalNorthM: Double,

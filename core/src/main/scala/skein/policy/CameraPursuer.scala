@@ -2,13 +2,13 @@ package skein.policy
 
 import skein.units.*
 
-/** Pursues as another policy does, turns its camera to where the opponent is, and, with a sensor, knows of it
-  * by that alone: what [[skein.scenario.Eye]] believes. Where the own place is predicted, the belief is
-  * carried to the same moment, evenly; else it is used as it was exposed. Before anything was seen, the
-  * opponent is taken to be where it started.
+/** Pursues as another policy does, and turns its camera to where the opponent is. With a sensor, it knows the
+  * opponent by that alone: by the estimate of [[skein.scenario.Eye]]. If the own position is predicted, the
+  * estimate is carried forward to the same moment with constant velocity; otherwise it is used as it was at
+  * the exposure. Before the first detection, the opponent is assumed to be at its start.
   *
-  * @param steers by what is believed in the place of readings
-  * @param sensor absent for one that is told where its opponent is
+  * @param steers the other policy; it is given the estimate in the place of readings
+  * @param sensor absent where readings of the opponent are used
   */
 final case class CameraPursuer(steers: Policy, sensor: Option[String], opponentStartNed: Vector3)
     extends AgentPolicy:

@@ -4,7 +4,7 @@ package skein.policy
   * at all: it turns hard towards the evader and dashes, unless the evader would slip by it; then it swerves,
   * flies straight away until the evader is far enough to be turned upon.
   *
-  * Whether the evader would slip by is told by [[HomicidalChauffeur.radiusNeededM]]: it must not exceed a
+  * Whether the evader would slip by follows from [[HomicidalChauffeur.radiusNeededM]]: it must not exceed a
   * limit, which is the capture radius for an evader ahead, up to the edge of what it can be run over in, and
   * falls linearly with the angle to the least radius that captures, for an evader behind. While the pursuer
   * turns, no evader can raise the radius that is needed, and the limit rises, for the evader comes to the

@@ -10,7 +10,7 @@ import skein.vehicle.FirstOrderLag
   * lane and keeps clear. Points stay where they were in the world; nothing is remembered of earlier scans.
   * Without a scan, or upon one too old, the vehicle stands still.
   *
-  * @param sensor the lidar, as [[skein.scenario.Equipment.Lidar]] tells what it says
+  * @param sensor the lidar, whose columns [[skein.scenario.Equipment.Lidar]] describes
   * @param laneNorthM a place on the lane
   * @param keepM from the vehicle's body, if there is room
   * @param bodyM from its middle to its farthest corner

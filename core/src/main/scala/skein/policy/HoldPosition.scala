@@ -1,6 +1,6 @@
 package skein.policy
 
-/** Stays where it is: what a vehicle does whose policy is not heard of. */
+/** Stays where it is: used where a policy does not answer. */
 object HoldPosition extends AgentPolicy:
   type Memory = Unit
 

@@ -6,8 +6,8 @@ package skein.policy
   * inner ones slower. What a vehicle that lags loses in a turn is commanded on top: lag × turn rate × the
   * slot's velocity.
   *
-  * @param aheadM of the slot before the leader
-  * @param rightM of the slot to the right of the leader
+  * @param aheadM distance of the slot ahead of the leader
+  * @param rightM distance of the slot to the right of the leader
   * @param lagS time constant with which vehicles follow their commands
   */
 final case class KeepSlot(

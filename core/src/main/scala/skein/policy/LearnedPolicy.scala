@@ -1,7 +1,7 @@
 package skein.policy
 
-/** What a learner learned: a network of all that it sees ([[PlanarObservation.fromOwnHeading]] over
-  * [[LearnedPolicy.scales]]), whose one output, −1 to 1, says how to turn.
+/** A trained policy: a network whose inputs are all that it observes ([[PlanarObservation.fromOwnHeading]]
+  * over [[LearnedPolicy.scales]]), whose one output, −1 to 1, says how to turn.
   *
   * Allocates two arrays as wide as its widest layer at a decision, and one of what it sees.
   *

@@ -6,7 +6,7 @@ import skein.units.Radians
   */
 final case class Decided[M](headingRad: Double, memory: M)
 
-/** A policy with a memory of its own, who is told how old what it sees is. As a [[Policy]] it is a pure
+/** A policy with a memory of its own, which also sees the age of each reading. As a [[Policy]] it is a pure
   * function.
   *
   * It flies by lanes if [[decide]] is arithmetic and the memory is a number or a case class of numbers.

@@ -36,8 +36,8 @@ trait Policy extends PlanarPolicy:
     import seen.*
     heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
 
-  /** This policy as somebody may take it to be who knows it roughly, such as a planner against it: its
-    * numbers off by what is drawn. Known exactly unless a policy says otherwise.
+  /** A guess at this policy by somebody who knows it roughly, such as a planner that plays against it: its
+    * parameters are off by what is drawn. By default the policy is known exactly.
     *
     * @param draw normal numbers of mean 0 and deviation 1, by place
     */
@@ -45,7 +45,7 @@ trait Policy extends PlanarPolicy:
 
   final override def isAgainstOne: Boolean = true
 
-  /** What a plan knows of its goal is to be near. */
+  /** For pursuers alone: a plan's only goal is to be near the opponent. */
   final override def isPlannedFor(role: Role): Boolean = role == Role.Pursuer
 
   type Memory = Any

@@ -52,7 +52,7 @@ object PolicyFamily:
     parameters => PaperEvader(parameters(0))
   )
 
-  /** The paper's policies of a role of the duel, which results are held against. */
+  /** The paper's policies of a role of the duel, with which results are compared. */
   def paperOf(role: Role): PolicyFamily = if role == Role.Pursuer then paperPursuer else paperEvader
 
   private val turnRate = Axis("turnRateRadPerS", 0.2, 3.0, 1.0)
@@ -121,8 +121,8 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  /** What `./skein learn` teaches, named `learned:64x64` as [[LearnedPolicy.label]] says; the default's
-    * weights are all zero.
+  /** Networks as `./skein learn` trains them, named `learned:64x64` as [[LearnedPolicy.label]] says; the
+    * default's weights are all zero.
     */
   def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
     s"$LearnedPrefix${LearnedPolicy.label(shape)}",

@@ -18,7 +18,7 @@ trait TeamPolicy extends PlanarPolicy:
     val chosen = course(TeamObservation.of(seen))
     (Planar(Radians(chosen.headingRad), Some(MetresPerSecond(chosen.speedMps))), ())
 
-/** A policy of a vehicle that wants to be somewhere: what a planner can plan for in its place. */
+/** A policy of a vehicle with a goal: a planner can decide in its place. */
 trait GoalPolicy extends TeamPolicy:
 
   /** Where it wants to be a time ahead, north and east, m, if it were alone. */
@@ -29,7 +29,7 @@ trait GoalPolicy extends TeamPolicy:
   /** The fastest that is commanded, m/s. */
   def mostMps: Double
 
-  /** The separation that is set, m; 0: none. */
+  /** The smallest separation allowed, m; 0: none. */
   def minimumM: Double = 0
 
 /** What one vehicle knows of its team at one moment. Arrays are by the vehicle's place in the scenario, its
@@ -85,9 +85,8 @@ object Course:
     if speed < 1e-9 then Course(headingRad, 0)
     else Course(StrictMath.atan2(eastMps, northMps), speed.min(mostMps))
 
-/** How a vehicle that answers late to its commands follows a point that moves: the point's velocity, and
-  * shares of how far it lags behind in place and in speed (proportional-derivative control with
-  * feed-forward).
+/** Proportional-derivative control with feed-forward, for a vehicle with a lag that follows a moving point:
+  * the point's velocity, plus shares of the errors of position and of velocity.
   *
   * @param perS commanded speed per metre behind
   * @param lead commanded speed per speed behind: 1 halves the time constant of a vehicle that follows its

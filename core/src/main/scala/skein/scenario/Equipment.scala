@@ -24,7 +24,7 @@ enum Equipment:
       verticalFovDeg: (Double, Double) = (-20, 20)
   )
 
-  /** A camera in front of the vehicle, which looks ahead.
+  /** A camera at the front of the vehicle, which looks ahead.
     *
     * @param fovDeg horizontal
     */

@@ -5,8 +5,9 @@ import skein.fusion.{FusionSettings, PolarMeasurement}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** A camera as a policy's source of knowledge: images are taken, a target is recognised in them, and each
-  * detection enters an estimate at the moment of its exposure. The policy reads the estimate as a sensor.
+/** A camera with a recogniser, as a sensor of a policy: images are taken, a target is recognised in them, and
+  * each detection enters an estimate at the moment of its exposure. The policy reads the estimate as a
+  * sensor.
   *
   * @param vehicle whose camera it is
   * @param sensor the name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the

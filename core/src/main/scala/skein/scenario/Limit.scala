@@ -5,10 +5,9 @@ import skein.units.Decimals.significant
 
 /** What may not happen: a quantity of some vehicles that must stay at or above a value, or at or below it.
   *
-  * @param name what is broken, for example `separation`
-  * @param groups whose quantity it is: of so many vehicles in the fleet, every group of places that it holds
-  *   for
-  * @param kept what plans keep of it, if they do
+  * @param name of the limit, for example `separation`
+  * @param groups the groups of vehicles that it holds for, by their places, given the number of vehicles
+  * @param kept the part of it that plans keep, if they keep any
   * @param quantity of a group, by instant
   */
 final class Limit private (

@@ -9,9 +9,10 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.GoTo
 
-/** An environment of anybody's as a simulator: paused, stepped, or run by the clock. It is stepped as late as
-  * possible: when somebody looks, by as many steps as have become due since, each under the velocities that
-  * had come before it. So it needs no thread of its own, and flies in virtual time as live.
+/** An environment of another framework as a simulator: paused, stepped, or run by the clock. It is stepped as
+  * late as possible: at each reading or command, by as many steps as have become due since the last one, each
+  * under the velocities that were commanded before it. So it needs no thread of its own, and flies in virtual
+  * time as live.
   *
   * A reading is of the last step. Every step's rewards and ends are recorded, as measurements of each vehicle
   * by the sensor [[EnvironmentSimulator.Sensor]].

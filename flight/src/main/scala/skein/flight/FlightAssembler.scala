@@ -24,9 +24,9 @@ import skein.units.Decimals.brief
   * @param simulator the address of a simulator that runs already; without one, each flight has a built-in
   *   simulator of its own
   * @param workers what a flight that plans searches with
-  * @param tell a line for a person, of what goes wrong in flight, as soon as it does
-  * @param learnsOn what policies learn on that learn in flight; without it, each on a thread of its own that
-  *   gives way to all others
+  * @param tell called with a line for a person as soon as something goes wrong in flight
+  * @param learnsOn threads for policies that learn during the flight; without it, each has a thread of its
+  *   own that gives way to all others
   * @param solvers the links to solvers, for flights that are not decided for here
   * @param calledOff why a flight, by its name, goes no further while its vehicles are brought to their starts
   * @param isWatched whether its records are shown, so that images and clouds are offered that are not

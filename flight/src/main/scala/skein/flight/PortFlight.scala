@@ -15,7 +15,7 @@ import skein.units.*
   *
   * @param id its name in tables and figures
   * @param loop one of ours, or a user's own graph
-  * @param scenario who flies, by which policies, and what is measured
+  * @param scenario vehicles, policies and measures
   * @param link name of the network between loop and vehicles, for the report
   * @param simulator name of the vehicles' simulator, for the report
   * @param clockKind real or virtual time; [[clock]] reads it

@@ -24,7 +24,7 @@ object VirtualFlights:
 
   /** Flies all, as many at once as there are cores, and writes a recording of each into `folder`. Blocks.
     *
-    * @param onLanded told of each flight as it has ended, and of its recording's contents
+    * @param onLanded called with each flight as it has ended, and with the digest of its recording
     * @return or which of them could not be flown, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(

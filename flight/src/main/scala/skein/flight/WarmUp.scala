@@ -10,10 +10,10 @@ import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** Flies what is to be flown live before, so that the compiler has seen the whole way of a decision before
-  * the first one counts: in virtual time, over the links to come, and then over real sockets. At ten
-  * decisions a second a flight of a minute would end before it is compiled: cold, a decision takes many times
-  * as long from the reading to the command (`skein.bench.FrameworkLatency`).
+/** Flies the flights in advance, so that the code on the way of a decision is compiled before the first one
+  * counts: in virtual time, over the same links, and then over real sockets. At ten decisions a second a
+  * flight of a minute would end before it is compiled: cold, a decision takes many times as long from the
+  * reading to the command (`skein.bench.FrameworkLatency`).
   */
 object WarmUp:
   /** How many virtual flights it takes. */

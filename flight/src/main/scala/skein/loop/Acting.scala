@@ -24,7 +24,7 @@ private object Acting:
     case Action.VelocityAt(north, east, _, _) => StrictMath.hypot(north, east)
     case _                                    => 0)
 
-  /** What a model of the vehicle is told, for a prediction. */
+  /** The command as a model of the vehicle takes it, for a prediction. */
   def guidance(action: Action): Guidance = action match
     case Action.Velocity(velocity, yaw) =>
       turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, velocity)
@@ -37,7 +37,7 @@ private object Acting:
     case Action.Hover => Setpoint.velocity(0, 0, 0)
     case Action.Land  => Setpoint.velocity(0, 0, LandingMps)
 
-  /** What a model of the vehicle is told by a move that was sent. */
+  /** A move that was sent, as a model of the vehicle takes it. */
   def guidance(fleet: Fleet, move: SentCommand): Guidance =
     val agent = fleet.agents(move.vehicle)
     move.action.fold {

@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.forecast.ForecastEvent
 
-/** What enters the view. */
+/** An event that the view takes in. */
 enum LoopEvent:
   /** Readings of different vehicles, and the vehicles to decide upon them. */
   case Seen(readings: Vector[Reading], deciders: Set[Int])
@@ -19,7 +19,7 @@ enum LoopEvent:
   /** A command that was sent. */
   case Moved(move: SentCommand)
 
-  /** What a forecast is told of besides. */
+  /** A further event for the forecast. */
   case Heard(event: ForecastEvent)
 
 /** A view and the vehicles to decide upon it. */

@@ -6,8 +6,8 @@ import skein.scenario.Scenarios
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-/** Decides again what a recorded flight decided, live or virtual, with the pure core of every loop: no
-  * stream, no clock.
+/** Repeats the decisions of a recorded flight, live or virtual, with the pure core of every loop: without
+  * streams, without a clock.
   *
   * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and
   * moves the controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its

@@ -94,8 +94,8 @@ private final class TeamSensing(
     fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
       TeamSensor(vehicle, name, ports(vehicle).sensors(name), log)
 
-  /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles
-    * are asked a quarter of a period after they were asked where they are.
+  /** Answers of the policies' sensors: a periodic source for each, which nobody waits for. The vehicles are
+    * asked a quarter of a period after they were asked where they are.
     */
   def sensed(start: Instant): Vector[Source[LoopEvent, NotUsed]] = sensors.map: sensor =>
     Sense

@@ -153,7 +153,7 @@ private final class TeamSteering(
   private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
     Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
 
-  /** What became of all vehicles' commands. */
+  /** The outcomes of all vehicles' commands. */
   def steered: Graph[UniformFanInShape[SteeringEvent, SteeringEvent], NotUsed] =
     Merge[SteeringEvent](ports.size).addAttributes(parts.named("steered"))
 

@@ -38,7 +38,7 @@ object Frames:
     * @param isNewer whether one frame is of a later moment than another: over a restart of the simulator
     *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
     * @param ask must end by itself, within its own timeout
-    * @param onSkip told of every frame that was due and is not emitted
+    * @param onSkip called for every frame that was due and is not emitted
     */
   def at[E, A, M](
       ticks: Source[Int, M],

@@ -4,9 +4,8 @@ import org.apache.pekko.stream.stage.*
 import org.apache.pekko.stream.{Attributes, FlowShape, Inlet, Outlet}
 import skein.units.Span
 
-/** Joins many inputs, keeping the newest value of each key. What belongs together comes together: it waits a
-  * little until every key has a new value, so that a decision is not made between the arrivals of two halves
-  * of a picture.
+/** Joins many inputs, keeping the newest value of each key. It waits a little until every key has a new
+  * value, so that a decision does not mix new values of one key with old ones of another.
   *
   *   - '''Emits when''' every key has a value, and all were renewed since the last emission or `patience` is
   *     over since the first of them was; and downstream demands. With no patience, at every newer value.
@@ -15,7 +14,7 @@ import skein.units.Span
   *   - '''Cancels when''' downstream cancels.
   *
   * @param isNewer `isNewer(arrived, held)`: a late value never overrides a newer one
-  * @param onStale told of every value dropped because a newer one was held
+  * @param onStale called for every value dropped because a newer one was held
   */
 final class JoinLatest[K, A](keys: Set[K], patience: Span)(
     isNewer: (A, A) => Boolean,

@@ -4,7 +4,7 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.Future
 
-/** Learns beside what flows by. */
+/** Gives elements to a learner beside a stream. */
 object Learn:
 
   /** Gives what has come to `learn`, one lesson at a time; what comes meanwhile waits for the next lesson.
@@ -15,7 +15,7 @@ object Learn:
     * when''' a lesson does.
     *
     * @param most elements of a lesson
-    * @param onDropped told of every element that is in no lesson
+    * @param onDropped called for every element that is in no lesson
     * @param learn from elements in the order in which they came; not on the stream's thread
     */
   def apply[A, B](

@@ -12,7 +12,7 @@ object Newest:
     * element replaces the held one, which is reported. '''Completes when''' upstream has completed and
     * nothing is held. '''Cancels when''' downstream cancels.
     *
-    * @param onReplaced told of every element that was never taken
+    * @param onReplaced called for every element that was never taken
     */
   def apply[A](onReplaced: A => Unit): Flow[A, A, NotUsed] = Flow[A].conflate: (held, newer) =>
     onReplaced(held)

@@ -17,7 +17,7 @@ import skein.units.*
   *   - '''Completes when''' upstream completes; an element still held is reported as replaced.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param onReplaced told of every element that was never emitted
+  * @param onReplaced called for every element that was never emitted
   */
 final class Pace[A](interval: Span, clock: Clock)(onReplaced: A => Unit) extends GraphStage[FlowShape[A, A]]:
   private val in  = Inlet[A]("Pace.in")

@@ -5,20 +5,20 @@ import org.apache.pekko.stream.scaladsl.Flow
 import skein.forecast.{Estimate, Forecast}
 import skein.units.*
 
-/** Looks ahead: what is known of vehicles, carried to the moment at which a command sent now will act. */
+/** Predicts the states of vehicles for the moment at which a command sent now will act. */
 object Predict:
 
-  /** Joins to each element the estimates of [[Forecast.whenActing]], in the order of the vehicles, and holds
-    * earlier estimates against the readings that have come since.
+  /** Joins to each element the estimates of [[Forecast.whenActing]], in the order of the vehicles, and
+    * compares earlier estimates with the readings that have come since.
     *
     * '''Emits when''' an element arrives by whose forecast every vehicle was seen. '''Backpressures when'''
     * downstream backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream
     * cancels.
     *
-    * @param verified vehicles whose estimates are held against readings
+    * @param verified vehicles whose estimates are compared with readings
     * @param lead how much later than the element's coming its command will be sent, or begin to act; asked
     *   for at each element
-    * @param onVerified told of every prediction whose moment was read, with its error
+    * @param onVerified called for every prediction whose moment was read, with its error
     */
   def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true, lead: => Span = Span.Zero)(
       onVerified: Verified => Unit

@@ -29,8 +29,8 @@ object Sense:
     *   - '''Cancels when''' downstream cancels.
     *
     * @param ask must end by itself, within its own timeout
-    * @param onSkip told of every answer skipped: the error, or the value overtaken
-    * @param onMissed told how many ticks were missed, when some were
+    * @param onSkip called for every answer skipped: the error, or the value overtaken
+    * @param onMissed called with the number of ticks that were missed
     */
   def every[E, A](period: Span, offset: Span = Span.Zero, window: Int = 4, early: Early = Early.Overtakes)(
       ask: () => Future[Either[E, A]]

@@ -9,7 +9,7 @@ import scala.util.control.NonFatal
 import skein.port.Moves
 import skein.units.*
 
-/** What became of a command: every one is `Sent` and later `Ended`, once each. */
+/** What happened to a command: every one is `Sent` and later `Ended`, once each. */
 enum Steered[+C, +R]:
   /** The command left. */
   case Sent(command: C, at: Instant)
@@ -48,7 +48,7 @@ enum Steered[+C, +R]:
   *   last command, and where an answer was lost
   * @param isCertain whether a result says that its command neither flies nor is on its way: the vehicle's own
   *   answer, or that it was never sent. A future that fails never says so
-  * @param onUnsent told of a command that waited for the vehicle to be parked when upstream completed, or
+  * @param onUnsent called for a command that waited for the vehicle to be parked when upstream completed, or
   *   came while it was held
   * @param hold parks the vehicle for as long as it is held
   */

@@ -3,7 +3,7 @@ package skein.flow
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 
-/** Copies what flows by to a function. */
+/** Copies the elements of a stream to a function. */
 object Tap:
 
   /** Gives every element to `take`, which must not block, and passes it on. Unlike `wireTap` it never drops.

@@ -22,7 +22,7 @@ object Duel:
   def paperAt(altitudeM: Double, durationS: Double): Duel =
     of(PaperDuel(altitudeM = altitudeM).fleet, durationS)
 
-/** What an episode came to. Distances are horizontal, taken once a period.
+/** The outcome of an episode. Distances are horizontal, taken once a period.
   *
   * @param captureS when the distance first was at most the capture radius; infinite if never
   * @param pursuerEffortRad control effort: the sum of all changes of the commanded heading, by the shorter
@@ -43,7 +43,7 @@ final case class DuelOutcome(
     skipped: Int
 )
 
-/** What an episode came to for one evader; distances are to the nearest pursuer, once a period.
+/** The outcome of an episode for one evader. Distances are to the nearest pursuer, once a period.
   *
   * @param captureS when the distance first was at most the capture radius; infinite if never
   */

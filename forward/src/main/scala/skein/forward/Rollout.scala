@@ -2,10 +2,10 @@ package skein.forward
 
 /** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in
   * double. Events happen in the order of their times, in whole nanoseconds; between them the vehicles fly by
-  * themselves. Given the delays that a flight in virtual time met ([[RecordedDelays]]) it flies as that did,
-  * which `RolloutParitySimulation` holds it to. Mutable: one per thread; an episode allocates nothing but
-  * what the policies, what they see of a team, the quadrotor's setpoints and the `predictive` loop's forecast
-  * need.
+  * themselves. Given the delays that a flight in virtual time met ([[RecordedDelays]]) it flies exactly as
+  * that did; `RolloutParitySimulation` compares the two. Mutable: one per thread; an episode allocates
+  * nothing but what the policies, what they see of a team, the quadrotor's setpoints and the `predictive`
+  * loop's forecast need.
   *
   * @param link delays of questions, answers, commands and acknowledgements; `Paused` ignores it
   */
