@@ -11,10 +11,10 @@ import skein.search.Judge
 import skein.settings.PolicyFile
 import skein.training.*
 
-/** Is a policy better over a link that was taught under its timing, or does the paused simulator do? The same
-  * learner teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly over
-  * `vpn` under `stream` and `predictive` in virtual time, and where the simulator waits, beside the paper's
-  * policy and the best that a search finds: `./skein search --family lead-pursuit --link vpn`, and
+/** Is a policy better over a link that was trained under its timing, or does the paused simulator do? The
+  * same learner teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly
+  * over `vpn` under `stream` and `predictive` in virtual time, and where the simulator waits, beside the
+  * paper's policy and the best that a search finds: `./skein search --family lead-pursuit --link vpn`, and
   * `--family chauffeur-evader`. Run:
   * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and
   * by a seed; what stands in the folder already is gone on with. The picture stands there too.
@@ -61,7 +61,7 @@ object LearnedUnderDelay:
 
   private def flownBy(side: String, folder: Path, flights: Int, seed: String): Vector[Row] =
     val taught = Vector("paused" -> "none", "stream" -> "vpn").map: (loop, link) =>
-      s"taught under $loop over $link" -> learned(
+      s"trained under $loop over $link" -> learned(
         folder.resolve(s"$side-$loop-$link"),
         question(side, loop, link, seed)
       )

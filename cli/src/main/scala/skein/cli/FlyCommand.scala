@@ -66,9 +66,9 @@ final class FlyCommand(using Scenarios)
       _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
         s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's protocol is always TCP"
       _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
-        "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
+        "--scene is for the built-in simulator; --simulator has a scene of its own"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
-        "--plant is of the built-in simulator; what flies in --simulator is its own affair"
+        "--plant is for the built-in simulator; --simulator has models of its own"
       _     <- Expect.that(options.twins >= 0)(s"--twins: expected 0 or more, came ${options.twins}")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
@@ -77,12 +77,12 @@ final class FlyCommand(using Scenarios)
         if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
       secured <- options.secured.checked(settings.solver)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
-        "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
+        "--learn: a policy learns in the flight's own process; not together with --solver"
       _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
         "--view shows flights in real time; look at what flew by " +
           "--clock virtual with ./skein replay --view FILE"
       _ <- Expect.that(clock == ClockKind.Real || simulator.isEmpty):
-        "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
+        "--clock virtual flies the built-in simulator; not together with --simulator"
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
       scene = if simulator.isEmpty then settings.world.scene else Scene.Empty
       sinks = RecordOptions.Sinks(options.beside, out, scene)

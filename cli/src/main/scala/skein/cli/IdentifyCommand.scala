@@ -83,7 +83,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       )
     yield shown.say(
       s"\nwritten: ${paths.mkString(", ")}\n${flyBy(use, out.resolve("model.conf"), flights)}" +
-        sensor.fold("")(_ => s"\nsee by it: ./skein budget --eye ${out.resolve("sensor.conf")}")
+        sensor.fold("")(_ => s"\nuse it: ./skein budget --eye ${out.resolve("sensor.conf")}")
     )
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
@@ -185,8 +185,8 @@ final class IdentifyCommand(using scenarios: Scenarios)
   private def flyBy(use: Structure, file: Path, flights: Vector[TimeHistory]): String =
     val named = Typed.path(file)
     if Structure.ours.contains(use) then
-      s"fly by it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
-    else s"fly by it, with this program: fly --loop predictive --predictor $named, search --plant $named"
+      s"use it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
+    else s"use it, with this program: fly --loop predictive --predictor $named, search --plant $named"
 
   /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
   private def elsewhere(flights: Vector[TimeHistory]): String =

@@ -219,7 +219,7 @@ final class LearnCommand(program: String)(using Scenarios)
   ): Either[String, Option[RunningStats]] =
     if !setup.isFlownAsTaught then
       shown.say(
-        "no flights: they are flown against the paper's policy, and this one was not taught against it"
+        "no flights: they are flown against the paper's policy, and this one was not trained against it"
       )
       Right(None)
     else measure.distances(policy, flights).map(distances => Some(RunningStats.of(distances.size)(distances)))

@@ -18,8 +18,8 @@ object Figure:
       Figure(
         DeviationFigure.name,
         "Deviation from the paused truth",
-        "What stands for a flight, of the duel the mean distance of the last 10 s, against the truth's, " +
-          "by link and loop. Discs are means over the flights, thick lines reach one standard deviation to " +
+        "The first measure of each flight, for the duel the mean distance over the last 10 s, compared with " +
+          "the paused truth, by link and loop. Discs are means over the flights, thick lines reach one standard deviation to " +
           "either side, thin lines from the least to the most; live flights are ringed.",
         drawing
       )

@@ -36,8 +36,8 @@ object LoopPictures:
       s"graph-${loop.kind.label}" + (if loop.fleet.agents.size == 2 then ""
                                      else s"-${loop.fleet.agents.size}"),
       s"The graph of ${loop.kind.label}",
-      "The parts by their names in the code and what leads where, as the " +
-        "stream's interpreter runs them; below, what is fed back.",
+      "The stages by their names in the code, as the stream's interpreter runs them. The edge below feeds " +
+        "back.",
       GraphFigure(graph)
     )
 

@@ -39,7 +39,7 @@ trait Scenario extends Product:
   def isOver(known: Known): Boolean = false
 
   /** Whether it is the paper's game, beside whose flights the paper's figures stand, and whose policies are
-    * searched and taught against each other.
+    * searched and trained against each other.
     */
   def isPapersGame: Boolean = false
 
