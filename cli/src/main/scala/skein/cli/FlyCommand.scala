@@ -159,11 +159,8 @@ final class FlyCommand(using Scenarios)
       plans: Vector[FlightPlan],
       out: Path
   ): Either[String, Vector[FlightResult]] =
-    val written  = AtomicInteger()
-    def recorded =
-      val goOn = if written.get == 0 then "" else s"; ${FlyCommand.shows(out)}"
-      s"${written.get} of ${Decimals.counted(plans.size, "flight")} have ended and are recorded$goOn"
-    Edge.tellingIfCut(recorded):
+    val written = AtomicInteger()
+    Edge.tellingIfCut(FlyCommand.recorded(written.get, plans.size, out)):
       VirtualFlights.fly(settings, plans, out): (landed, contents) =>
         if landed.written.isRight then written.incrementAndGet(): Unit
         Console.err.println(s"${landed.plan.id} has ended; SHA-256 of its recording: $contents")
@@ -205,6 +202,14 @@ private[cli] object FlyCommand:
 
   /** Loops that this process has compiled: its next command need not. */
   @volatile private var warm = Set.empty[AnyLoop]
+
+  /** How many flights in virtual time are left to somebody who ends them: these are recorded when they have
+    * landed.
+    */
+  def recorded(landed: Int, of: Int, out: Path): String =
+    val flights = Decimals.counted(of, "flight")
+    if landed == 0 then s"none of $flights has landed, and nothing is recorded"
+    else s"$landed of $flights have landed and are recorded, the rest is not; ${shows(out)}"
 
   private def shows(out: Path) = s"./skein report ${Typed.recordings(out)} shows them"
 

@@ -46,6 +46,16 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(OutFolder.unlessRefused(OutFolder.made("--out", s"$folder/kept")).map(_ => ()), Right(()))
     assert(Files.exists(folder.resolve("kept")))
 
+  test("who ends virtual flights is told which are recorded"):
+    assertEquals(
+      FlyCommand.recorded(0, 1, Path.of("f")),
+      "none of 1 flight has landed, and nothing is recorded"
+    )
+    assertEquals(
+      FlyCommand.recorded(1, 3, Path.of("f")),
+      "1 of 3 flights have landed and are recorded, the rest is not; ./skein report f/*.duckdb shows them"
+    )
+
   test("a flight without a decision is a mistake, unless somebody ended it before"):
     val decisions = Seq("stream-vpn" -> 0, "futures-vpn" -> 12, "predictive-vpn" -> 0)
     val told      = FlyCommand.undecided(decisions, ended = Set("predictive-vpn"))
