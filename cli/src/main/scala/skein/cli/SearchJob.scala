@@ -113,7 +113,8 @@ private[cli] final class SearchJob(
       _ = SearchResult.atLimits(ready.space, found.best).foreach(say)
       _ = disagreement(found.best, fresh.min(SearchResult.Checked)).foreach(say)
       pictures <-
-        if state.isDone then landscape(found.best, ready.effort.within(fresh), isStopped) else Right(Vector.empty)
+        if state.isDone then landscape(found.best, ready.effort.within(fresh), isStopped)
+        else Right(Vector.empty)
     yield say(s"written: ${(file ++ pictures).mkString(", ")}")
 
   private def disagreement(best: Vector[Double], episodes: Int): Option[String] =

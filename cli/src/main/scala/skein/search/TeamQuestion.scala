@@ -229,8 +229,9 @@ final case class TeamSetup(
       episodes: Range,
       isCancelled: () => Boolean
   ): Option[(RunningStats, RunningStats)] =
-    by(Judge.Winner).talliesUnless(isCancelled)(Vector(candidate, baseline.candidate), episodes).map(tallies =>
-      (tallies(0), tallies(1))
+    by(Judge.Winner).talliesUnless(isCancelled)(Vector(candidate, baseline.candidate), episodes).map(
+      tallies =>
+        (tallies(0), tallies(1))
     )
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
