@@ -1,6 +1,8 @@
 package skein.airsim
 
+import skein.link.Address
 import skein.rpc.RpcError
+import skein.units.Decimals.brief
 
 /** Why a vehicle of a simulator is not at hand. Expected, so a value. */
 enum AirSimError:
@@ -19,3 +21,11 @@ enum AirSimError:
     case UnknownVehicle(name, existing) =>
       s"the simulator has no vehicle '$name'; it has ${existing.map(n => s"'$n'").mkString(", ")}"
     case Settings(error) => s"the simulator's settings: ${error.message}"
+
+object AirSimError:
+  /** Why the first call of all has failed, where it is not known yet who listens there. */
+  def ofFirst(error: RpcError, at: Address): String = error match
+    case RpcError.Timeout(_, after) =>
+      s"who listens at $at takes the connection, but has said nothing for ${after.toSeconds.brief} s; " +
+        "expected AirSim or ./skein serve there"
+    case other => other.message

@@ -37,4 +37,6 @@ object ClusterCommand
           "Copy each folder to its machine alone. Who has " +
             s"$folder/signer.p12 and its password can make more."
         )
-    case words => Left(s"expected ./skein cluster certificates FOLDER, came '${words.mkString(" ")}'")
+    case words =>
+      val came = if words.isEmpty then "nothing" else words.mkString("'", " ", "'")
+      Left(s"expected ./skein cluster certificates FOLDER, came $came")

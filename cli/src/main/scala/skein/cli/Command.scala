@@ -60,20 +60,31 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     if arguments.exists(word => word == "--help" || word == "-h") then
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
       0
+    else if strange(arguments).nonEmpty then misused(strange(arguments).map(Misuse.noSuch(_, names)).mkString)
     else
       parser.constructRaw(optionsFirst(arguments)) match
-        case failure: Result.Failure =>
-          Misuse.text(failure, names).linesIterator.foreach(mistake =>
-            Console.err.println(s"skein $name: ${TextTable.printable(mistake)}")
-          )
-          Console.err.println(s"skein $name: --help lists the options")
-          2
+        case failure: Result.Failure => misused(Misuse.text(failure, names))
         case Result.Success(options) =>
           OutFolder.unlessRefused(done(options)) match
             case Right(())    => 0
             case Left(reason) =>
               Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
               1
+
+  private def misused(mistakes: String): Int =
+    mistakes.linesIterator.foreach(mistake =>
+      Console.err.println(s"skein $name: ${TextTable.printable(mistake)}")
+    )
+    Console.err.println(s"skein $name: --help lists the options")
+    2
+
+  /** What looks like an option and is none, where mainargs would take it for a file. */
+  private def strange(arguments: Seq[String]): Option[String] =
+    if !parser.main.flattenedArgSigs.exists(_._2.isLeftover) then None
+    else
+      parted(arguments)
+        .map(_.head)
+        .find(word => word.startsWith("-") && word.length > 1 && !names.contains(word.takeWhile(_ != '=')))
 
   /** What code of the user's own threw is bad input. */
   private def done(options: A): Either[String, Unit] =
@@ -85,14 +96,16 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     * first word without a dash for such words.
     */
   private def optionsFirst(arguments: Seq[String]): Seq[String] =
-    val (options, files) = Iterator
-      .unfold(arguments.toList):
-        case word :: value :: rest if takesValue(word) => Some((List(word, value), rest))
-        case word :: rest                              => Some((List(word), rest))
-        case Nil                                       => None
-      .toSeq
-      .partition(_.head.startsWith("-"))
+    val (options, files) = parted(arguments).partition(_.head.startsWith("-"))
     options.flatten ++ files.flatten
+
+  /** Each option with its value, and each file. */
+  private def parted(arguments: Seq[String]): Seq[List[String]] = Iterator
+    .unfold(arguments.toList):
+      case word :: value :: rest if takesValue(word) => Some((List(word, value), rest))
+      case word :: rest                              => Some((List(word), rest))
+      case Nil                                       => None
+    .toSeq
 
   private def names: Seq[String] =
     parser.main.flattenedArgSigs.flatMap((argument, _) => argument.longName(Util.kebabCaseNameMapper)).map(

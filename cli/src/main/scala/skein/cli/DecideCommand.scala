@@ -47,8 +47,9 @@ final class DecideCommand(using scenarios: Scenarios)
 
   protected def execute(options: DecideOptions): Either[String, Unit] =
     for
-      at <- SolverChoice.parse(options.at).left.map("--at: " + _)
-      _  <- options.scenario.fold(Right(()))(name =>
+      at <-
+        SolverChoice.parse(options.at, "tcp://HOST:PORT or kafka://HOST:PORT/PREFIX").left.map("--at: " + _)
+      _ <- options.scenario.fold(Right(()))(name =>
         scenarios.kind(name).left.map("--scenario: " + _).map(_ => ())
       )
       secured <- options.secured.checked(Some(at))

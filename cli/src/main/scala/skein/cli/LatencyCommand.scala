@@ -5,7 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.Sink
 import scala.concurrent.Future
 import scala.util.{Failure, Success, Try}
-import skein.airsim.AirSimClient
+import skein.airsim.{AirSimClient, AirSimError}
 import skein.figures.LatencyFigure
 import skein.link.*
 import skein.measure.Distribution
@@ -85,7 +85,7 @@ object LatencyCommand
         answers <- measured(period, samples)
       yield Right(answers)
     val answers = client(simulator).ping().flatMap:
-      case Left(error)                                  => Future.successful(Left(error.message))
+      case Left(error) => Future.successful(Left(AirSimError.ofFirst(error, simulator)))
       case Right(_) if link.profile == LinkProfile.none => pings(simulator)
       case Right(_)                                     =>
         LinkProxy.start(Address("127.0.0.1", 0), simulator, link, transport).flatMap(proxy =>

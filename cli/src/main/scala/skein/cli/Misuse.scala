@@ -1,6 +1,7 @@
 package skein.cli
 
 import mainargs.{ArgSig, Result, TokensReader, Util}
+import skein.scenario.Nearest
 
 /** What is wrong with the words of a command line, a line for each mistake. */
 private object Misuse:
@@ -25,11 +26,18 @@ private object Misuse:
         .mkString("\n")
     case other => other.toString
 
-  private def noSuch(word: String, options: Seq[String]): String =
+  /** An option that there is none of. */
+  def noSuch(word: String, options: Seq[String]): String =
     val option = word.takeWhile(_ != '=')
     renamed.get(option).flatMap(_.find(options.contains)) match
       case Some(now) => s"$option: no such option any more; it is $now now"
-      case None      => s"$word: no such option or argument"
+      case None      =>
+        val near =
+          options.minByOption(Nearest.distance(option, _)).filter(Nearest.distance(option, _) <= MostWrong)
+        s"$word: no such option or argument${near.fold("")(one => s"; the nearest is $one")}"
+
+  /** Letters of a word that is meant for another. */
+  private val MostWrong = 2
 
   /** `--model` was what predicts in flights, and what flies in forward simulation. */
   private val renamed = Map("--model" -> Seq("--predictor", "--plant"))

@@ -100,6 +100,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
   test("a value that is none of a setting's is told by its option"):
     assertRefused(FlyCommand(), Seq("--link", "vnp"), "skein fly: --link: unknown latency profile \"vnp\"")
     assertRefused(FlyCommand(), Seq("--loop", "streem"), "skein fly: --loop: no loop 'streem'")
+    assertRefused(FlyCommand(), Seq("--loop", "paused,plan"), "; several as --loop ONE --loop OTHER")
     assertRefused(FlyCommand(), Seq("--duration=-5s"), "--duration: expected a duration that is not negative")
     assertRefused(
       FlyCommand(),

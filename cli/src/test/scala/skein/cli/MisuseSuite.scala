@@ -43,9 +43,21 @@ class MisuseSuite extends munit.FunSuite:
         ),
         (
           SearchCommand("skein.cli.Main"),
-          Seq("--sed", "1", "--period", "1s"),
-          "--sed: no such option or argument"
-        )
+          Seq("--seeed", "1", "--period", "1s"),
+          "--seeed: no such option or argument; the nearest is --seed"
+        ),
+        (
+          SearchCommand("skein.cli.Main"),
+          Seq("--latency", "1ms"),
+          "--latency: no such option or argument"
+        ),
+        // Commands that take files.
+        (
+          ReportCommand(),
+          Seq("a.duckdb", "--ouf=x"),
+          "--ouf=x: no such option or argument; the nearest is --out"
+        ),
+        (DigestCommand, Seq("-x", "a.duckdb"), "-x: no such option or argument")
       )
     do
       val (status, lines) = misused(command, arguments*)

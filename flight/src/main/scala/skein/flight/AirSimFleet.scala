@@ -123,7 +123,7 @@ private[flight] final class AirSimFleet(
     val client      = AirSimClient(RpcClient(transport, address, clock))
     val preparation = Preparation(client, clock, () => calledOff(plan.id))
     val prepared    =
-      if startsAirborne then preparation.place(settings.fleet) else preparation.climb(settings.fleet)
+      if startsAirborne then preparation.place(settings.fleet) else preparation.climb(settings.fleet, address)
     prepared
       .flatMap(result => client.close().map(_ => result))
       .map(_.fold(reason => throw CannotFly(reason), identity))

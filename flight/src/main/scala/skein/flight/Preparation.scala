@@ -4,6 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.airsim.*
+import skein.link.Address
 import skein.policy.{Agent, Fleet}
 import skein.rpc.RpcError
 import skein.units.*
@@ -40,10 +41,13 @@ final class Preparation(
   /** Flies there by [[StartPositioning]]; cars brake and are put there. For any simulator, in whatever state
     * it is found: what a vehicle has is not taken again, since a vehicle that flies in AirSim falls if api
     * control is taken anew. Those on the ground take off.
+    *
+    * @param at where it is
     */
-  def climb(fleet: Fleet): Future[Either[String, Vector[VehicleClient]]] = prepared:
+  def climb(fleet: Fleet, at: Address): Future[Either[String, Vector[VehicleClient]]] = prepared:
     for
-      paused   <- call(client.isPaused())
+      paused <-
+        client.isPaused().map(_.fold(error => throw NotReady(AirSimError.ofFirst(error, at)), identity))
       _        <- if paused then call(client.resume()) else Future.unit
       vehicles <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
       _        <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)

@@ -25,7 +25,9 @@ object AnyLoop:
       .toRight(())
       .orElse(LoopKind.parse(name))
       .left
-      .map(_ => s"no loop '$name': expected one of ${names.mkString(", ")}")
+      .map: _ =>
+        val several = if name.contains(',') then "; several as --loop ONE --loop OTHER" else ""
+        s"no loop '$name': expected one of ${names.mkString(", ")}$several"
 
 /** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, flown in
   * virtual time and replayed as ours are; [[StreamLoop]] is written with the same operators and shows how.

@@ -342,7 +342,7 @@ object FlySettings:
 
   private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
 
-  private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse)
+  private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse(_))
   private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)
 
   private given (using Scenarios): ConfigReader[Fallback] = parsed("fallback", Fallback.parse)

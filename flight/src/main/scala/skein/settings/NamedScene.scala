@@ -18,7 +18,9 @@ object NamedScene:
   /** A scene that ships, or that of a file. */
   def read(name: String): Either[String, NamedScene] = shipped(name).map(Right(_)).getOrElse:
     for
-      text <- TextFile.read(name).left.map(error => s"no ${SceneFile.Names.mkString(", ")}, and $error")
+      text <- TextFile.read(name).left.map(error =>
+        s"expected ${SceneFile.Names.mkString(", ")} or a file, came '$name': $error"
+      )
       read <- ofText(name, text)
     yield read
 

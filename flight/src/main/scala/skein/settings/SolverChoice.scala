@@ -22,11 +22,13 @@ enum SolverChoice:
 object SolverChoice:
   private val Expected = "tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link:PROFILE"
 
-  def parse(text: String): Either[String, SolverChoice] = text match
-    case s"tcp://$at"               => address(at, text).map(Tcp(_))
+  /** @param expected told where it is something else
+    */
+  def parse(text: String, expected: String = Expected): Either[String, SolverChoice] = text match
+    case s"tcp://$at"               => address(at, text, expected).map(Tcp(_))
     case s"kafka://$broker/$prefix" =>
       for
-        at   <- address(broker, text)
+        at   <- address(broker, text, expected)
         name <- Either.cond(
           prefix.matches("[A-Za-z0-9._-]{1,100}"),
           prefix,
@@ -36,10 +38,10 @@ object SolverChoice:
     case s"link:$profile" => LatencyProfile.parse(profile, TextFile.read).map(Link(_)).left.map(_.message)
     case s"pekko://$_"    =>
       Left(
-        s"expected $Expected, came '$text': solvers speak a " +
+        s"expected $expected, came '$text': solvers speak a " +
           "protocol of their own over TCP, not Pekko's remoting"
       )
-    case _ => Left(s"expected $Expected, came '$text'")
+    case _ => Left(s"expected $expected, came '$text'")
 
-  private def address(text: String, whole: String): Either[String, Address] =
-    Address.parse(text).left.map(why => s"expected $Expected, came '$whole': $why")
+  private def address(text: String, whole: String, expected: String): Either[String, Address] =
+    Address.parse(text).left.map(why => s"expected $expected, came '$whole': $why")

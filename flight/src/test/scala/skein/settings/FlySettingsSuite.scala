@@ -65,7 +65,9 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(read(s"""skein.fly.scene = "$file" """)).isLeft)
     finally Files.delete(file)
     assert(
-      clue(read("skein.fly.scene = wood").left.getOrElse("")).contains("no empty, forest, pursuit, street")
+      clue(
+        read("skein.fly.scene = wood").left.getOrElse("")
+      ).contains("expected empty, forest, pursuit, street or a file, came 'wood'")
     )
 
   test("a deadline is one where it is set"):

@@ -127,6 +127,8 @@ object TcpTransport:
   private def listenError(at: Address): Explain =
     case e: BindFailedException => e.getCause match
         case c: BindException if c.getMessage.contains("already in use") => TransportError.PortTaken(at)
+        case c: BindException if c.getMessage.contains("Cannot assign")  =>
+          TransportError.CannotListen(at, "it is no address of this machine")
         case null => TransportError.CannotListen(at, e.getMessage)
         case c    => TransportError.CannotListen(at, c.getMessage)
 

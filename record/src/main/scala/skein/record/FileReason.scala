@@ -1,7 +1,7 @@
 package skein.record
 
 import java.io.IOException
-import java.nio.file.FileSystemException
+import java.nio.file.{FileSystemException, Path}
 import java.util.Locale
 
 /** Why a file could not be read or written, for a person. */
@@ -14,5 +14,7 @@ private[skein] object FileReason:
           .stripSuffix("Exception")
           .replaceAll("(?<=.)([A-Z])", " $1")
           .toLowerCase(Locale.ROOT)
-      s"$what (${failed.getFile})"
+      // Files that only try whether one can write are named by nobody.
+      Option(failed.getFile).filterNot(file => Path.of(file).getFileName.toString.startsWith(".skein"))
+        .fold(what)(file => s"$what ($file)")
     case other => other.getMessage
