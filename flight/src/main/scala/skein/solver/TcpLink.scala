@@ -91,7 +91,7 @@ final class TcpLink(
         switch.shutdown()
         refused(
           s"who listens at $to takes the connection, but has said nothing for ${answerWithin.toSeconds.brief} s; " +
-            s"expected ./skein decide there$perhaps"
+            s"expected ./skein decide there"
         )
 
     private def refused(why: String): Unit =
