@@ -109,6 +109,8 @@ final case class FlightOptions(
   /** The same before it is read: `skein.fly` with all that counts. */
   def configuration(using Scenarios): Either[String, Config] =
     for
+      _ <- Expect.that(loop.isEmpty || !asPaper.value):
+        s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       told = FlightOptions.hovering(flags.withFallback(file))
       merged <- FlightOptions.resolved(told.withFallback(ConfigFactory.load()))

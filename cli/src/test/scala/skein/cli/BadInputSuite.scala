@@ -101,6 +101,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     assertRefused(FlyCommand(), Seq("--link", "vnp"), "skein fly: --link: unknown latency profile \"vnp\"")
     assertRefused(FlyCommand(), Seq("--loop", "streem"), "skein fly: --loop: no loop 'streem'")
     assertRefused(FlyCommand(), Seq("--loop", "paused,plan"), "; several as --loop ONE --loop OTHER")
+    assertRefused(
+      FlyCommand(),
+      Seq("--as-paper", "--loop", "plan"),
+      "--as-paper flies the paper's loops: expected no --loop beside it, came plan"
+    )
     assertRefused(FlyCommand(), Seq("--duration=-5s"), "--duration: expected a duration that is not negative")
     assertRefused(
       FlyCommand(),
