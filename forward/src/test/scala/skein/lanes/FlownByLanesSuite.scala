@@ -9,10 +9,9 @@ import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** ARCHITECTURE.md's table of what flies by lanes is what the engines say, cell by cell; and what is said to
-  * fly by lanes or vehicle by vehicle flies as the scalar reference does. Bodies of MuJoCo's have no column:
-  * they need a library that is not everywhere; `skein.mujoco.FlownByVehiclesLiveSuite` holds what is said of
-  * them.
+/** The table of docs/engines.md is what the engines say, cell by cell; and what is said to fly by lanes or
+  * vehicle by vehicle flies as the scalar reference does. Bodies of MuJoCo's have no column: they need a
+  * library that is not everywhere; `skein.mujoco.FlownByVehiclesLiveSuite` holds what is said of them.
   */
 class FlownByLanesSuite extends munit.FunSuite:
   private val root =
@@ -49,7 +48,7 @@ class FlownByLanesSuite extends munit.FunSuite:
   /** What the table says of worlds under a loop, by plant. */
   private val table: Map[(String, String), Map[String, String]] =
     val rows = Files
-      .readString(root.resolve("ARCHITECTURE.md"))
+      .readString(root.resolve("docs/engines.md"))
       .linesIterator
       .dropWhile(!_.startsWith("| worlds | loop |"))
       .takeWhile(_.startsWith("|"))
@@ -68,7 +67,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     else if engine.endsWith("loops by the scalar engine") then "vehicles"
     else
       assert(engine.startsWith("SIMD, "), engine)
-      "lanes"
+      "SIMD"
 
   private def nameOf(timing: LoopTiming) = timing.productPrefix.toLowerCase
 
@@ -101,7 +100,7 @@ class FlownByLanesSuite extends munit.FunSuite:
         .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
       val said    = table((worlds, nameOf(timing)))(plant)
       val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
-      assertEquals(word(engine), if said == "lanes" && isTimed then "lanes" else "scalar", engine)
+      assertEquals(word(engine), if said == "SIMD" && isTimed then "SIMD" else "scalar", engine)
 
   for
     plant  <- Seq(Skating(0.4, 1.5), Tilting(0.95, 0.9, 0.2))
@@ -111,7 +110,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       val model  = PlantResponse(plant)
       val batch  = DuelBatch(duel, LoopTiming.Predictive(predictor = model.predictor), model, threads = 1)
       val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
-      assertEquals(word(engine), "lanes", engine)
+      assertEquals(word(engine), "SIMD", engine)
 
   private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
     val all = new DuelWorlds:

@@ -7,8 +7,8 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 
-/** What ARCHITECTURE.md says of MuJoCo's bodies beside its table of what flies by lanes: they fly as
-  * vehicles. `FlownByLanesSuite` holds the plants that need nothing installed to that table.
+/** What docs/engines.md says of MuJoCo's bodies beside its table: they fly as vehicles. `FlownByLanesSuite`
+  * holds the plants that need nothing installed to that table.
   */
 class FlownByVehiclesLiveSuite extends MujocoHere:
   private lazy val model = MujocoResponse(MujocoRotorcraftLiveSuite.example("quadrotor"))
