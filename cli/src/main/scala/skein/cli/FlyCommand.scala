@@ -204,12 +204,12 @@ private[cli] object FlyCommand:
   @volatile private var warm = Set.empty[AnyLoop]
 
   /** How many flights in virtual time are left to somebody who ends them: these are recorded when they have
-    * landed.
+    * ended.
     */
-  def recorded(landed: Int, of: Int, out: Path): String =
+  def recorded(ended: Int, of: Int, out: Path): String =
     val flights = Decimals.counted(of, "flight")
-    if landed == 0 then s"none of $flights has landed, and nothing is recorded"
-    else s"$landed of $flights have landed and are recorded, the rest is not; ${shows(out)}"
+    if ended == 0 then s"none of $flights has ended, and nothing is recorded"
+    else s"$ended of $flights have ended and are recorded, the rest is not; ${shows(out)}"
 
   private def shows(out: Path) = s"./skein report ${Typed.recordings(out)} shows them"
 

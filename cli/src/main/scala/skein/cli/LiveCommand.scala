@@ -31,7 +31,7 @@ private[cli] final class LiveCommand(
 ):
   import LiveCommand.*
 
-  /** Blocks until all have landed. */
+  /** Blocks until all have ended. */
   def fly(plans: Vector[FlightPlan]): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val assembler             = FlightAssembler(
@@ -49,8 +49,8 @@ private[cli] final class LiveCommand(
     finally
       val _ = Edge.await(system.terminate())
 
-  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C
-    * ends them all.
+  /** On one simulator that runs already. What has ended is kept when a later flight cannot start; Ctrl-C ends
+    * them all.
     */
   private def inTurn(assembler: FlightAssembler, plans: Vector[FlightPlan])(using
       ActorSystem

@@ -103,5 +103,5 @@ final class SpreadCommand(program: String)(using Scenarios)
     yield flown
 
 private object SpreadCommand:
-  /** What all these flights come to is kept until the last has landed: about 40 kB a vehicle and minute. */
+  /** What all these flights come to is kept until the last has ended: about 40 kB a vehicle and minute. */
   private val MostSeeds = 100_000

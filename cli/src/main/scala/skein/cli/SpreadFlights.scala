@@ -32,7 +32,7 @@ private[cli] object SpreadFlights:
         summary
       .map(_.flatten)
 
-  /** How many have landed, told now and then. */
+  /** How many have ended, told now and then. */
   final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):
     @volatile private var landed = 0
     private def progress()       = s"$landed of $of flights have ended"

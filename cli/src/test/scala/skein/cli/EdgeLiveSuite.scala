@@ -13,9 +13,9 @@ class EdgeLiveSuite extends munit.FunSuite:
     assertEquals(process.waitFor(), 3)
     assert(
       clue(said).exists(_.matches("skein: ended by System.exit in EdgeLiveSuite.scala:\\d+")) &&
-        said.contains("skein: 1 of 2 flights have landed")
+        said.contains("skein: 1 of 2 flights have ended")
     )
     assertEquals(said.size, 2)
 
 @main def endsItself(): Unit =
-  Edge.tellingExit(Edge.tellingIfCut("1 of 2 flights have landed")(sys.exit(3)))
+  Edge.tellingExit(Edge.tellingIfCut("1 of 2 flights have ended")(sys.exit(3)))

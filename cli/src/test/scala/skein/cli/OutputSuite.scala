@@ -49,11 +49,11 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
   test("who ends virtual flights is told which are recorded"):
     assertEquals(
       FlyCommand.recorded(0, 1, Path.of("f")),
-      "none of 1 flight has landed, and nothing is recorded"
+      "none of 1 flight has ended, and nothing is recorded"
     )
     assertEquals(
       FlyCommand.recorded(1, 3, Path.of("f")),
-      "1 of 3 flights have landed and are recorded, the rest is not; ./skein report f/*.duckdb shows them"
+      "1 of 3 flights have ended and are recorded, the rest is not; ./skein report f/*.duckdb shows them"
     )
 
   test("a flight without a decision is a mistake, unless somebody ended it before"):
