@@ -29,9 +29,9 @@ final case class FlyOptions(
     clock: String = "real",
     @arg(doc =
       "how often each live flight is flown again in virtual time, " +
-        "for the report's comparison; 0 for not at all"
+        "for the report's comparison; 0 for not at all (default: 1)"
     )
-    twins: Int = 1,
+    twins: Option[Int],
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
     out: Option[String],
     beside: RecordOptions,
@@ -69,7 +69,8 @@ final class FlyCommand(using Scenarios)
         "--scene is for the built-in simulator; --simulator has a scene of its own"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
         "--plant is for the built-in simulator; --simulator has models of its own"
-      _     <- Expect.that(options.twins >= 0)(s"--twins: expected 0 or more, came ${options.twins}")
+      twins = options.twins.getOrElse(FlyCommand.Twins)
+      _     <- Expect.that(twins >= 0)(s"--twins: expected 0 or more, came $twins")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- options.beside.checked(clock)
@@ -81,6 +82,8 @@ final class FlyCommand(using Scenarios)
       _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
         "--view shows flights in real time; look at what flew by " +
           "--clock virtual with ./skein replay --view FILE"
+      _ <- Expect.that(clock == ClockKind.Real || options.twins.forall(_ == 0)):
+        "--twins repeats live flights in virtual time; not together with --clock virtual"
       _ <- Expect.that(clock == ClockKind.Real || simulator.isEmpty):
         "--clock virtual flies the built-in simulator; not together with --simulator"
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
@@ -89,7 +92,7 @@ final class FlyCommand(using Scenarios)
       flown <- clock match
         case ClockKind.Real =>
           for
-            _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(options.twins)), out)
+            _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(twins)), out)
             _ <- OpenFiles.enoughFor(plans.size)
             _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file), images = Nil))
             shows    = Shows()
@@ -98,7 +101,7 @@ final class FlyCommand(using Scenarios)
               Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.imagingSensors))
             live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured, isTcp)
             flown <- options.view.serving(shows, controlled = true)(live.fly(plans))
-          yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), options.twins, out)))
+          yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), twins, out)))
         case ClockKind.Virtual =>
           for
             _      <- nothingToOverwrite(plans, out)
@@ -199,6 +202,9 @@ final class FlyCommand(using Scenarios)
 
 private[cli] object FlyCommand:
   private val Tcp = "tcp://"
+
+  /** Of each live flight. */
+  private val Twins = 1
 
   /** Loops that this process has compiled: its next command need not. */
   @volatile private var warm = Set.empty[AnyLoop]

@@ -2,7 +2,7 @@ package skein.cli
 
 import mainargs.{ParserForClass, arg}
 import skein.policy.Role
-import skein.scenario.{PaperDuel, Scenarios}
+import skein.scenario.{PaperDuel, Scenario, Scenarios}
 import skein.search.Conditions
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.{Expect, Span}
@@ -70,6 +70,21 @@ object ForwardOptions:
       .kind(scenario)
       .flatMap(ScenarioSettings.ofKeys(_, settings))
       .fold(_ => DuelDuration, _.duration)
+
+  /** What a scenario's flights are judged by, which has to be told.
+    *
+    * @param known names of the measures that it may be a sum of
+    */
+  def objectiveOf(told: Option[String], scenario: String, settings: Map[String, String])(
+      known: Scenario => Iterable[String]
+  )(using scenarios: Scenarios): Either[String, String] =
+    for
+      kind      <- scenarios.kind(scenario).left.map("--scenario: " + _)
+      stated    <- ScenarioSettings.ofKeys(kind, settings).left.map("--set: " + _)
+      objective <- told.toRight(
+        s"--objective: expected a sum of the measures of $scenario: ${known(stated).mkString(", ")}"
+      )
+    yield objective
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
 

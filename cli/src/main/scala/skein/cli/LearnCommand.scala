@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
 import skein.learn.LearnerSettings
-import skein.optimise.{Evaluator, RunningStats}
+import skein.optimise.{Evaluator, RunningStats, TeamObjective}
 import skein.measure.FlightSummary
 import skein.policy.{NeuralShape, Role}
 import skein.report.{Section, Typed}
@@ -280,8 +280,9 @@ object LearnCommand:
       opponent   <- forward.opponentOf(role)
       shape      <- NeuralShape.parse(options.network.getOrElse("32x32")).left.map("--network: " + _)
       start      <- range(options.start.getOrElse(if isGame then "3..30" else "0..5"))
-      objective  <- forward.objective.orElse(Option.when(isGame)("last10s")).toRight(
-        "--objective: expected with a scenario: a sum of its measures, for example off-ring"
+      usual = Option.when(isGame)("last10s")
+      objective <- ForwardOptions.objectiveOf(forward.objective.orElse(usual), scenario, set)(
+        TeamObjective.measures(_).keys
       )
     yield LearnQuestion(
       algorithm,

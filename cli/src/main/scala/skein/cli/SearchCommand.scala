@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.gpu.CudaGpu
 import skein.lanes.gpu.GpuAccelerator
-import skein.optimise.{CmaEs, SearchState}
+import skein.optimise.{CmaEs, SearchState, TeamObjective}
 import skein.policy.PolicyFamily
 import skein.report.Typed
 import skein.scenario.Scenarios
@@ -125,11 +125,11 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     import options.forward
     for
       _         <- ForwardOptions.ofDuels("--family" -> options.family, "--role" -> options.role)(forward)
-      objective <- forward.objective.toRight(
-        "--objective: expected with a scenario: a sum of its measures, for example off-ring"
+      set       <- Arguments.settings(options.set)
+      objective <- ForwardOptions.objectiveOf(forward.objective, scenario, set.toMap)(
+        _.measures.map(TeamObjective.keyOf)
       )
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
-      set        <- Arguments.settings(options.set)
       conditions <- forward.conditions(period, ForwardOptions.durationOf(scenario, set.toMap))
       vary       <- Expect.all(options.vary)(Varied.parse(_).left.map("--vary: " + _))
       candidates = options.candidates.getOrElse(1000)

@@ -242,6 +242,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
           "in virtual time expected link:PROFILE"
         ),
         (FlyCommand(), virtual ++ Seq("--solver", "link:vpm"), "vpm"),
+        (FlyCommand(), virtual ++ Seq("--twins", "2"), "not together with --clock virtual"),
         (
           FlyCommand(),
           virtual ++ Seq("--solver", "link:vpn", "--loop", "paused"),

@@ -163,7 +163,11 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assertEquals(err.linesIterator.size, 1)
     refused("--algorithm: expected sac, ddpg, ppo, came 'td3'", "--algorithm", "td3")
     refused("--scenario: expected duel, surround", "--scenario", "surrond")
-    refused("--objective: expected with a scenario", "--scenario", "surround")
+    refused(
+      "--objective: expected a sum of the measures of surround: off-ring, gap",
+      "--scenario",
+      "surround"
+    )
     refused("expected settings of the scenario, came --altitude", "--scenario", "surround", "--altitude", "9")
     def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
     refused("expected one of off-ring, gap, came 'ring'", team("surround", "ring")*)

@@ -31,3 +31,12 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     for why <- CudaGpu.find().left do
       val (status, told) = refused()
       assert(status != 0 && told.contains(s"--gpu: $why"), told)
+
+  test("without an objective, the measures of the scenario are told that there may be"):
+    val ran = Ran.of(Main.run(Seq("search", "--scenario", "crossing", "--vary", "lane-m=4..8")))
+    assertEquals(ran.status, 1)
+    assertEquals(
+      ran.err.linesIterator.toVector,
+      Vector("skein search: --objective: expected a sum of the measures of crossing: closest, at, " +
+        "violations, arrived, to-goal, per-min")
+    )
