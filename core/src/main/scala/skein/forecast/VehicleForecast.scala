@@ -49,11 +49,14 @@ final case class VehicleForecast[S] private (
   def sent(command: Commanded): VehicleForecast[S] =
     copy(commands = (commands :+ command).takeRight(VehicleForecast.CommandLimit))
 
-  /** The vehicle answered that a command was replaced: so the one after it has arrived. */
+  /** The vehicle answered that a command was replaced: so the one after it has arrived. Where that one was in
+    * effect before all that are held, it tells nothing of these.
+    */
   def replaced(sequence: Long, answeredAt: Instant): VehicleForecast[S] =
     commands.indexWhere(_.sequence > sequence) match
-      case -1        => this
-      case successor => copy(commands =
+      case _ if before.exists(_.sequence > sequence) => this
+      case -1                                        => this
+      case successor                                 => copy(commands =
           commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt)))
         )
 

@@ -46,6 +46,16 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(late, 170, 250), 1.2, 1e-4)
     assertEqualsDouble(northAt(late, 200, 250), 1.8, 1e-4)
 
+  test("a receipt of a command that acted before all that are held tells nothing of these"):
+    val several = commanded.sent(command(2, 30, 110)).sent(command(3, 40, 300))
+    val seen    = several.seen(reading(200, at(0)), delays)
+    assertEquals(seen.commands.map(_.sequence), Vector(2L, 3L))
+    assertEquals(seen.replaced(0, controller(390)).commands, seen.commands)
+    assertEquals(
+      seen.replaced(1, controller(395)).commands.map(_.answeredAt),
+      Vector(Some(controller(395)), None)
+    )
+
   test("no command acts before one that was sent earlier"):
     val crossed = commanded
       .sent(command(2, -10, 130))

@@ -20,7 +20,7 @@ import skein.units.Expect
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
   * [[skein.lanes.timetable.TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by
   * lanes under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]).
-  * ARCHITECTURE.md has the table. Which engine flies a world depends on the world and on `shareEpisodes`
+  * `docs/engines.md` has the table. Which engine flies a world depends on the world and on `shareEpisodes`
   * alone, so results do not depend on threads, on a call's other worlds or on their order. One call at a
   * time.
   *

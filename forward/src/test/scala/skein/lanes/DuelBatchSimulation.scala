@@ -88,10 +88,12 @@ class DuelBatchSimulation extends munit.FunSuite:
     for published <- Seq(
         LoopTiming.Predictive(predictor = lag.predictor, asking = Asking(inOrder = true)),
         LoopTiming.Stream(asking = Asking(inOrder = true)),
-        LoopTiming.Stream(asking = Asking(spreadS = 0.1)),
-        LoopTiming.Stream(steering = Steering(mostOutstanding = 6))
+        LoopTiming.Stream(asking = Asking(spreadS = 0.1))
       )
     do assert(clue(engine(published, near)).startsWith("scalar: the lanes"))
+    def most(moves: Int) = LoopTiming.Stream(steering = Steering(mostOutstanding = moves))
+    assert(clue(engine(most(1), near)).startsWith("scalar: with 1 move in flight"))
+    assert(clue(engine(most(6), near)).startsWith("SIMD"))
 
   test("progress counts all worlds, and a cancelled call says how many it flew"):
     val batch = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2)

@@ -114,6 +114,25 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     ):
       agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
 
+  for
+    most <- Seq(3, 6)
+    steering = Steering(mostOutstanding = most)
+    (vehicles, model) <- models.filter((name, _) => name == "lag" || name == "drag")
+    timing            <- Seq(
+      LoopTiming.Sequential(steering = steering),
+      LoopTiming.Futures(steering = steering),
+      LoopTiming.Stream(steering = steering),
+      LoopTiming.Stream(0.04, steering = steering),
+      LoopTiming.Predictive(predictor = model.predictor, steering = steering)
+    )
+    (name, link) <-
+      links.filter((name, _) => name == "vpn" || name.startsWith("300") || name == "one that changes")
+  do
+    test(
+      s"$vehicles, $timing over $name with $most moves in flight: the scalar reference's decisions and flight"
+    ):
+      agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
+
   private val unseenPursuers = Seq[(String, Int => Policy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
     "asks for velocities and ages" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))

@@ -2,6 +2,7 @@ package skein.lanes.loop;
 
 import static jdk.incubator.vector.VectorOperators.ASHR;
 import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LSHL;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
@@ -39,11 +40,14 @@ public abstract class LaneAgents {
   /** In the place of how long ago it decided: never. */
   private static final int NEVER = 1 << 20;
 
+  /** A command is answered when the next one replaces it: no fewer may be under way. */
+  public static final int LEAST_UNDER_WAY = 2;
+
   /** The vehicle's number. */
   public final int self;
 
   public final LaneVehicles vehicles;
-  private final int line, periodGrains, intervalGrains, handoverGrains, deadGrains;
+  private final int line, periodGrains, intervalGrains, leastGrains, handoverGrains, deadGrains;
   private final boolean decidesFirst;
 
   /** Whether all are offered the same at the same time: then all that was sent was sent before. */
@@ -51,6 +55,12 @@ public abstract class LaneAgents {
 
   // When it may be commanded again, and when the last command reaches it.
   private final int[] ready = new int[WORLDS], reaches = new int[WORLDS];
+
+  /**
+   * When commands before are answered, the latest first: as many as may be under way beside the last two. The
+   * one before the last is answered by then, or awaited.
+   */
+  private final int[][] answered;
 
   /** When the last command was sent; not kept where all are offered the same {@link #together}. */
   public final int[] sentAt = new int[WORLDS];
@@ -107,7 +117,9 @@ public abstract class LaneAgents {
     line = Delays.command(self);
     Steering steering = loop.steering();
     periodGrains = LaneViews.grains(loop.periodS());
-    intervalGrains = LaneViews.grains(Math.max(loop.intervalS(), steering.minIntervalS()));
+    leastGrains = LaneViews.grains(steering.minIntervalS());
+    intervalGrains = Math.max(LaneViews.grains(loop.intervalS()), leastGrains);
+    answered = new int[steering.mostOutstanding() - LEAST_UNDER_WAY][WORLDS];
     handoverGrains = LaneViews.grains(steering.handoverS());
     deadGrains = LaneViews.grains(deadTimeS);
   }
@@ -117,6 +129,7 @@ public abstract class LaneAgents {
     now = 0;
     for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
     Arrays.fill(sentAt, -1);
+    for (int[] each : answered) Arrays.fill(each, -1);
     Arrays.fill(decidedLong, NEVER);
     Arrays.fill(goesFirst, 0);
     vehicles.start();
@@ -163,13 +176,17 @@ public abstract class LaneAgents {
   private void drawNear() {
     IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
     for (int i = 0; i < WORLDS; i += LANES) {
-      for (int[] each : new int[][] {ready, reaches, sentAt})
-        IntVector.fromArray(INTS, each, i).sub(begin).max(past).add(begin).intoArray(each, i);
+      for (int[] each : new int[][] {ready, reaches, sentAt}) drawNear(each, i, begin, past);
+      for (int[] each : answered) drawNear(each, i, begin, past);
       IntVector at = IntVector.fromArray(INTS, decidedAt, i);
       IntVector passed = begin.sub(at).lanewise(ASHR, LONG);
       at.add(passed.lanewise(LSHL, LONG)).intoArray(decidedAt, i);
       IntVector.fromArray(INTS, decidedLong, i).add(passed).intoArray(decidedLong, i);
     }
+  }
+
+  private static void drawNear(int[] times, int i, IntVector begin, IntVector past) {
+    IntVector.fromArray(INTS, times, i).sub(begin).max(past).add(begin).intoArray(times, i);
   }
 
   /** Decide where it is their turn, as {@link #choose}; but those who {@link #sees see}. */
@@ -262,7 +279,7 @@ public abstract class LaneAgents {
 
   /** Draws its delays in the same pass: a look into a table takes as long as a dozen other operations. */
   private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors) {
-    boolean isSteady = delays.isSteady;
+    boolean isSteady = delays.isSteady, manyUnderWay = answered.length > 0;
     int[] keys = delays.keysOf(line), tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
     IntVector here = IntVector.broadcast(INTS, place),
         next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
@@ -306,11 +323,19 @@ public abstract class LaneAgents {
       none.blend(arrives.add(dead), goes).intoArray(acts, i);
       // The command before is answered when this one has replaced it; the very first replaces none.
       IntVector again = when.add(interval), answer = arrives.add(back);
+      // So do their answers.
+      if (manyUnderWay)
+        answer = answer.max(IntVector.fromArray(INTS, answered[0], i).sub(begin));
       VectorMask<Integer> replaces = before.compare(LT, never);
       none.blend(answer, replaces).intoArray(answers, i);
-      again = again.blend(answer.add(handover).max(again), replaces);
+      IntVector known = when.blend(answer, replaces);
+      if (!manyUnderWay) again = again.blend(answer.add(handover).max(again), replaces);
+      else {
+        IntVector awaited = keep(i, known, goes, begin);
+        again = again.max(whenFree(i, when, awaited, begin));
+        known = awaited.max(when);
+      }
       if (forecast != null) {
-        IntVector known = when.blend(answer, replaces);
         IntVector.fromArray(INTS, goesFirst, i)
             .blend(zero.blend(1, again.sub(known).compare(GT, period)), goes)
             .intoArray(goesFirst, i);
@@ -335,6 +360,37 @@ public abstract class LaneAgents {
       before.blend(zero, does).intoArray(decidedLong, i);
       IntVector.fromArray(INTS, decidedAt, i).blend(time.add(begin), does).intoArray(decidedAt, i);
     }
+  }
+
+  /**
+   * Keeps when a command is answered, no earlier than those before.
+   *
+   * @param answer or a time that has passed, where none is answered
+   * @return when so many are answered that the next may go: the earliest of those kept until now
+   */
+  private IntVector keep(int i, IntVector answer, VectorMask<Integer> goes, IntVector begin) {
+    IntVector later = answer;
+    for (int[] each : answered) {
+      IntVector held = IntVector.fromArray(INTS, each, i).sub(begin);
+      held.blend(later, goes).add(begin).intoArray(each, i);
+      later = held;
+    }
+    return later;
+  }
+
+  /**
+   * When the vehicle may be commanded again, but for the loop's interval: the handover counts from each answer
+   * that comes before.
+   */
+  private IntVector whenFree(int i, IntVector sent, IntVector awaited, IntVector begin) {
+    IntVector free = sent.add(leastGrains);
+    free = free.blend(awaited.add(handoverGrains).max(free), awaited.compare(GT, sent));
+    for (int n = answered.length - 1; n >= 0; n--) {
+      IntVector answer = IntVector.fromArray(INTS, answered[n], i).sub(begin);
+      VectorMask<Integer> comesBefore = answer.compare(GT, sent).and(answer.compare(LE, free));
+      free = free.blend(answer.add(handoverGrains).max(free), comesBefore);
+    }
+    return free;
   }
 
   /** Nobody decides in the other vectors. */
