@@ -47,8 +47,11 @@ final case class BudgetMap(
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
     def told(text: String, unit: String) = s"$text $unit".trim
     val value                            = Interval.of(mark.tally.mean, mark.tally.halfWidth95).text
+    val came                             =
+      if !off.isFinite then s"$objective comes to no number"
+      else s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
-      s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
+      came
 
   /** One row per cell. */
   def csvRows: Vector[String] = cells.map: (cell, count) =>

@@ -1,6 +1,7 @@
 package skein.cli
 
 import java.util.concurrent.ConcurrentLinkedDeque
+import java.util.logging.{Handler, Level, LogRecord, Logger}
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
@@ -33,11 +34,24 @@ private[cli] object Edge:
     try body
     finally removeHook(hook)
 
-  /** Where a thread waits in `System.exit`, if one does: then nobody has ended the program from outside. */
-  private def exitedAt: Option[String] =
-    Thread.getAllStackTraces.asScala.values
-      .find(_.exists(frame => frame.getClassName == "java.lang.Runtime" && frame.getMethodName == "exit"))
-      .flatMap(OwnFailure.line(_))
+  /** Where `System.exit` was called, if it was: then nobody has ended the program from outside. The JVM tells
+    * a logger, also of virtual threads, which no list of threads has.
+    */
+  private def exitedAt: Option[String] = exited.flatMap(OwnFailure.line(_))
+
+  @volatile private var exited = Option.empty[Vector[StackTraceElement]]
+
+  /** Not `private`: then no field would hold it, and loggers that nobody holds are collected. */
+  private[cli] val exits: Logger = Logger.getLogger("java.lang.Runtime")
+  exits.setUseParentHandlers(false)
+  exits.setLevel(Level.FINE)
+  exits.addHandler(new Handler:
+    def publish(told: LogRecord): Unit =
+      exited = Option(told.getThrown).map(_.getStackTrace.toVector)
+    def flush(): Unit = ()
+    def close(): Unit = ())
+
+  private val OwnExitMillis = 2_000L
 
   private val stops = ConcurrentLinkedDeque[() => Unit]()
 
@@ -45,14 +59,15 @@ private[cli] object Edge:
   def interrupt(): Unit = stops.asScala.foreach(_())
 
   /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most
-    * `graceMillis`.
+    * `graceMillis`. Where code of the user's own ends the program, for a short while: `body` may wait for
+    * that code, and so for ever.
     */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()
     val hook = Thread(() =>
       interrupted = true
       stop()
-      main.join(graceMillis)
+      main.join(if exitedAt.isEmpty then graceMillis else graceMillis.min(OwnExitMillis))
     )
     if !added(hook) then
       interrupted = true

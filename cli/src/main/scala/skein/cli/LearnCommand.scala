@@ -156,17 +156,25 @@ final class LearnCommand(program: String)(using Scenarios)
           line.show(state.rounds, progress(setup, state))
           onShow.step(state, progress(setup, state))
       line.end()
-      learned.flatMap: state =>
+      learned.flatMap: end =>
+        import end.state
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val steps   = (state.rounds - from.rounds) * setup.stepsOfRound
         shown.say(f"$steps%,d steps in $seconds%.1f s, ${steps / seconds.max(1e-3)}%,.0f a second")
         val isDone = state.rounds == setup.rounds
         val goOn   = s"stopped; ./skein learn --resume ${Typed.path(folder)} goes on"
-        if state.best.isEmpty then Right(shown.tables(Nil, goOn))
-        else
-          // Before it measures, which may be cut short: nobody waits long for what is stopped.
-          if !isDone then shown.say(goOn)
-          conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
+        end.failure match
+          case Some(reason) =>
+            // Not measured: what failed may fail again.
+            LearnResult.unmeasured(setup, state).fold(Right(())): file =>
+              OutFolder.write(folder, Seq(OutFolder.text("policy.conf", file))).map: written =>
+                shown.say(s"ended early; the best policy until then: ${written.mkString}")
+            .flatMap(_ => Left(reason))
+          case None if state.best.isEmpty => Right(shown.tables(Nil, goOn))
+          case None                       =>
+            // Before it measures, which may be cut short: nobody waits long for what is stopped.
+            if !isDone then shown.say(goOn)
+            conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
 
   private def against(setup: LearnSetup) = setup.game.opponent match
     case Some(opponent) => s"against ${opponent.label}"

@@ -62,28 +62,12 @@ final case class LearnResult(
       "\n"
     )
 
-  private def scenario =
-    (question.scenario +: question.set.toVector.sorted.map((key, value) => s"$key=$value")).mkString(" ")
-
   /** As a policy file. */
-  def file: String = policy.hocon(
-    SearchResult.objective(game.text, game.unit, fresh, baseline.name, paper) +
-      s"""learned {
-       |  by = "./skein learn"
-       |  complete = ${state.rounds == setup.rounds}
-       |  algorithm = ${question.algorithm}
-       |  loop = ${question.conditions.loop}
-       |  periodMs = ${question.conditions.periodMs}
-       |  link = ${quoteString(question.link)}
-       |  plant = ${quoteString(question.conditions.plant)}
-       |  scenario = ${quoteString(scenario)}
-       |  opponent = ${quoteString(question.opponent)}
-       |  altitudeM = ${question.conditions.altitudeM}
-       |  steps = ${state.rounds * setup.stepsOfRound}
-       |  stepsOfBest = ${state.best.fold(0L)(_.steps)}
-       |  seed = ${question.seed}
-       |}
-       |""".stripMargin
+  def file: String = LearnResult.file(
+    setup,
+    state,
+    policy,
+    SearchResult.objective(game.text, game.unit, fresh, baseline.name, paper)
   )
 
 object LearnResult:
@@ -100,4 +84,32 @@ object LearnResult:
       by(Judge.Winner).tallies(Vector(policy.parameters), range).head,
       by(Judge.Baseline).tallies(Vector(setup.baseline.candidate), range).head,
       None
+    )
+
+  /** The best policy so far as a file, without a measurement of it. */
+  def unmeasured(setup: LearnSetup, state: LearnState): Option[String] =
+    state.best.map(best => file(setup, state, setup.policy(best.weights), ""))
+
+  private def file(setup: LearnSetup, state: LearnState, policy: PolicyFile, measured: String): String =
+    import setup.question
+    val scenario =
+      (question.scenario +: question.set.toVector.sorted.map((key, value) => s"$key=$value")).mkString(" ")
+    policy.hocon(
+      measured +
+        s"""learned {
+           |  by = "./skein learn"
+           |  complete = ${state.rounds == setup.rounds}
+           |  algorithm = ${question.algorithm}
+           |  loop = ${question.conditions.loop}
+           |  periodMs = ${question.conditions.periodMs}
+           |  link = ${quoteString(question.link)}
+           |  plant = ${quoteString(question.conditions.plant)}
+           |  scenario = ${quoteString(scenario)}
+           |  opponent = ${quoteString(question.opponent)}
+           |  altitudeM = ${question.conditions.altitudeM}
+           |  steps = ${state.rounds * setup.stepsOfRound}
+           |  stepsOfBest = ${state.best.fold(0L)(_.steps)}
+           |  seed = ${question.seed}
+           |}
+           |""".stripMargin
     )

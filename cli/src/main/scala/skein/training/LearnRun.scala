@@ -7,6 +7,16 @@ import scala.util.Try
 import skein.learn.{SideTask, Learner, Training, BatchThreads}
 import skein.optimise.{Direction, Evaluator, RunningStats}
 import skein.scenario.Scenarios
+import skein.units.OwnFailure
+
+/** How learning ended.
+  *
+  * @param failure why it came no further, where it neither came to its end nor was stopped
+  */
+final case class Learned(state: LearnState, failure: Option[String]):
+
+  /** The state, if nothing failed. */
+  def unfailing: Either[String, LearnState] = failure.toLeft(state)
 
 /** Learns round by round, judges the policy now and then, and keeps its state on disk.
   *
@@ -28,11 +38,11 @@ final class LearnRun(
 
   /** @param isStopped asked at every step; the round under way is given up then
     * @param onRound told of every state
-    * @return the last state, or why there is none
+    * @return how far it came, or why it could not begin
     */
   def run(from: LearnState, threads: Int, isStopped: () => Boolean)(
       onRound: LearnState => Unit
-  )(using Scenarios): Either[String, LearnState] =
+  )(using Scenarios): Either[String, Learned] =
     setup.task.flatMap: task =>
       try learn(from, threads, isStopped, onRound, task)
       finally task.close()
@@ -43,7 +53,7 @@ final class LearnRun(
       isStopped: () => Boolean,
       onRound: LearnState => Unit,
       task: SideTask
-  ): Either[String, LearnState] =
+  ): Either[String, Learned] =
     val workers = BatchThreads(threads)
     try
       for
@@ -57,9 +67,8 @@ final class LearnRun(
           workers
         )
         _ = if from.rounds == 0 then SideTask.times.foreach(learner.actor.ignore)
-        _     <- folder.fold(Right(()))(LearnFile.load(_, from, learner))
-        state <- rounds(from, task, learner, isStopped, onRound)
-      yield state
+        _ <- folder.fold(Right(()))(LearnFile.load(_, from, learner))
+      yield rounds(from, task, learner, isStopped, onRound)
     finally workers.close()
 
   private def rounds(
@@ -68,7 +77,7 @@ final class LearnRun(
       learner: Learner,
       isStopped: () => Boolean,
       onRound: LearnState => Unit
-  ): Either[String, LearnState] =
+  ): Learned =
     val training = Training(task, learner, setup.stepsPerRound)
     var state    = from
     var judging  = Option.empty[Judging]
@@ -81,26 +90,31 @@ final class LearnRun(
       folder.fold(Right(()))(LearnFile.write(_, question, state, files, learner))
     var savedAt = nanoTime()
 
+    def round(): Either[String, Unit] = training.round(state.rounds, isStopped).flatMap:
+      case None    => Right(())
+      case Some(_) =>
+        state = state.copy(rounds = state.rounds + 1)
+        val isLast = state.rounds == setup.rounds
+        if isLast || state.rounds % setup.roundsPerScore == 0 then
+          judged()
+          judging = Some(judgingOf(state.rounds * setup.stepsOfRound, SideTask.parameters(learner.actor)))
+          if isLast || !isElsewhere then judged()
+        val isDue = isLast || nanoTime() - savedAt > SaveNanos
+        val saved = if isDue then save() else Right(())
+        if isDue then savedAt = nanoTime()
+        onRound(state)
+        saved
+
     var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())
-    while mistake.isRight && state.rounds < setup.rounds && !isStopped() do
-      training.round(state.rounds, isStopped) match
-        case Left(reason)   => mistake = Left(reason)
-        case Right(None)    => ()
-        case Right(Some(_)) =>
-          state = state.copy(rounds = state.rounds + 1)
-          val isLast = state.rounds == setup.rounds
-          if isLast || state.rounds % setup.roundsPerScore == 0 then
-            judged()
-            judging = Some(judgingOf(state.rounds * setup.stepsOfRound, SideTask.parameters(learner.actor)))
-            if isLast || !isElsewhere then judged()
-          if isLast || nanoTime() - savedAt > SaveNanos then
-            mistake = save()
-            savedAt = nanoTime()
-          onRound(state)
+    while mistake.isRight && state.rounds < setup.rounds && !isStopped() do mistake = told(round())
     // A round that was given up is in the learner already, and so is not saved: it is learned again.
-    mistake.map: _ =>
-      judged()
-      state
+    val ended = mistake.flatMap(_ => told(Right(judged())))
+    Learned(state, ended.left.toOption)
+
+  /** What code of the user's own throws ends learning, and leaves what was learned. */
+  private def told(step: => Either[String, Unit]): Either[String, Unit] =
+    try step
+    catch case failure: OwnFailure => Left(failure.getMessage)
 
   private def judgingOf(steps: Long, weights: Vector[Double]): Judging =
     def tally = judge.tallies(Vector(setup.policy(weights).parameters), 0 until question.episodes).head

@@ -5,17 +5,24 @@ import java.nio.file.Path
 /** Programs that end while they run: in other processes. */
 class EdgeLiveSuite extends munit.FunSuite:
 
-  test("where code of the user's own ends the program, that is said, and how far it was"):
-    val java    = Path.of(sys.props("java.home"), "bin", "java").toString
-    val words   = Seq(java, "-cp", sys.props("java.class.path"), "skein.cli.endsItself")
-    val process = ProcessBuilder(words*).redirectErrorStream(true).start()
-    val said    = String(process.getInputStream.readAllBytes()).linesIterator.toSet
-    assertEquals(process.waitFor(), 3)
-    assert(
-      clue(said).exists(_.matches("skein: ended by System.exit in EdgeLiveSuite.scala:\\d+")) &&
-        said.contains("skein: 1 of 2 flights have ended")
-    )
-    assertEquals(said.size, 2)
+  for place <- Seq("main", "virtual") do
+    test(
+      s"where code of the user's own ends the program, that is said, and how far it was: on a $place thread"
+    ):
+      val java    = Path.of(sys.props("java.home"), "bin", "java").toString
+      val words   = Seq(java, "-cp", sys.props("java.class.path"), "skein.cli.endsItself", place)
+      val process = ProcessBuilder(words*).redirectErrorStream(true).start()
+      val said    = String(process.getInputStream.readAllBytes()).linesIterator.toSet
+      assertEquals(process.waitFor(), 3)
+      assert(
+        clue(said).exists(_.matches("skein: ended by System.exit in EdgeLiveSuite.scala:\\d+")) &&
+          said.contains("skein: 1 of 2 flights have ended")
+      )
+      assertEquals(said.size, 2)
 
-@main def endsItself(): Unit =
-  Edge.tellingExit(Edge.tellingIfCut("1 of 2 flights have ended")(sys.exit(3)))
+@main def endsItself(place: String): Unit =
+  Edge.tellingExit(Edge.tellingIfCut("1 of 2 flights have ended"):
+    // A program that has run for a while.
+    System.gc()
+    if place == "main" then sys.exit(3)
+    else Thread.ofVirtual().start(() => sys.exit(3)).join())

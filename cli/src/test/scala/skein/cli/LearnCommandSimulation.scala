@@ -3,11 +3,13 @@ package skein.cli
 import java.io.{DataInput, DataOutput, IOException}
 import java.nio.file.{Files, Path}
 import skein.learn.{Learner, Network, Task}
-import skein.scenario.Scenarios
+import skein.policy.{Agent, Role, Surrounding}
+import skein.scenario.*
 import skein.search.Judge
 import skein.settings.PolicyFile
 import skein.testing.{Optimised, TemporaryFolders}
 import skein.training.*
+import skein.units.{MetresPerSecond, Radians, Vector3}
 
 class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
@@ -103,6 +105,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
         now
       LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => later())
         .run(from, 1, () => done >= rounds)(state => done = state.rounds)
+        .flatMap(_.unfailing)
         .fold(fail(_), identity)
     val whole  = learn(temporaryFolder(), LearnState(), setup.rounds)
     val folder = temporaryFolder()
@@ -125,7 +128,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       now
     LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => later())
       .run(LearnState(), 1, () => done == 1)(state => done = state.rounds)
-      .fold(fail(_), state => assert(state.best.isDefined))
+      .fold(fail(_), learned => assert(learned.state.best.isDefined))
     val interrupting = Thread.ofVirtual().start: () =>
       while !Thread.interrupted() do
         Edge.interrupt()
@@ -148,11 +151,23 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val setup = question.setup.fold(fail(_), identity)
     LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0L)
       .run(LearnState(), 1, () => true)(_ => ())
-      .fold(fail(_), state => assertEquals(state.rounds, 0))
+      .fold(fail(_), learned => assertEquals(learned.state.rounds, 0))
     Files.writeString(link, "150\n200\n"): Unit
     val (status, _, err) = run(Seq("--resume", folder.toString))
     assertEquals(status, 1, err)
     assert(clue(err).contains(s"--resume: $link no longer holds what it held when learning began"))
+
+  test("where a user's own code fails amid learning, that is told, and the best until then is kept"):
+    object Own extends SkeinApp(ScenarioKind(LearnedUntilItFails()))
+    val folder = temporaryFolder().resolve("learned")
+    val words  = "learn --scenario learned-until-it-fails --objective off".split(' ').toSeq ++ short
+    val ran    = Ran.of(Own.run(words ++ Seq("--out", folder.toString)))
+    assertEquals(ran.status, 1)
+    val line = ran.err.linesIterator.toVector.last
+    val why  = "the quantity BreaksLate failed: java.lang.IllegalStateException: no such luck"
+    assert(clue(line).startsWith(s"skein learn: $why (LearnCommandSimulation.scala:"))
+    assert(clue(ran.out).contains(s"the best policy until then: $folder/policy.conf"))
+    assert(PolicyFile.read(folder.resolve("policy.conf").toString).isRight)
 
   test("what cannot be learned is told in a line"):
     def refused(expected: String, words: String*) =
@@ -231,7 +246,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val rounds   = LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0)
     var done     = 0
     assertEquals(
-      rounds.run(LearnState(), 1, () => done == setup.rounds)(_ => done += 1).map(_.rounds),
+      rounds.run(LearnState(), 1, () => done == setup.rounds)(_ => done += 1).map(_.state.rounds),
       Right(done)
     )
     val state   = LearnFile.read(folder).fold(fail(_), identity).state
@@ -257,3 +272,19 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
 
 private def LearnOptionsOf(words: Seq[String]): LearnOptions =
   mainargs.ParserForClass[LearnOptions].constructOrThrow(words)
+
+/** Its quantity fails from some time on, after the policy has been judged for the first time. */
+final case class LearnedUntilItFails() extends Scenario:
+  def agents: Vector[Agent] = Vector(
+    Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Surrounding(1, 8, 4)),
+    Agent("Pursuer", Role.Pursuer, MetresPerSecond(8), Vector3(0, 0, -5), Radians(0), Surrounding(0, 8, 8))
+  )
+  override def measures: Vector[Measure] = Vector(Series.of("off", "m", BreaksLate).mean("off"))
+
+case object BreaksLate extends Quantity:
+  private var calls = 0
+
+  def of(positions: Positions): Double =
+    calls += 1
+    if calls >= 1500 then throw IllegalStateException("no such luck")
+    positions.distanceM(0, 1)

@@ -67,7 +67,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
       LearnRun(short, judge, None, () => 0, isElsewhere).run(LearnState(), 1, () => false)(onRound)
     val beside = learned(elsewhere, isElsewhere = true)(_ => round.countDown())
     assertEquals(beside, learned(here, isElsewhere = false)(_ => ()))
-    assert(beside.exists(_.scores.sizeIs >= 3), beside.toString)
+    assert(beside.exists(_.state.scores.sizeIs >= 3), beside.toString)
 
   test("a worker to whom the question comes to something else refuses"):
     val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")

@@ -119,7 +119,7 @@ object Series:
   /** Of a quantity that a search can judge by, too. */
   def of(name: String, unit: String, quantity: Quantity, bound: Option[Bound] = None): Series =
     new Series(name, unit, bound, Some(quantity))(tracks =>
-      instant => quantity.of(tracks.positions(instant))
+      instant => Quantity.told(quantity, tracks.positions(instant))
     )
 
 /** A value that a quantity is compared with: a line in its figure.

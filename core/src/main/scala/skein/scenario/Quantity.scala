@@ -1,5 +1,7 @@
 package skein.scenario
 
+import skein.units.OwnFailure
+
 /** Where all vehicles are at one moment, by their positions in the scenario. World frame NED, m. */
 final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
@@ -18,6 +20,14 @@ final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM:
   */
 trait Quantity:
   def of(positions: Positions): Double
+
+object Quantity:
+  /** @throws OwnFailure if the quantity throws
+    */
+  private[skein] def told(quantity: Quantity, positions: Positions): Double =
+    OwnFailure.told(whose(quantity))(quantity.of(positions))
+
+  private[skein] def whose(quantity: Quantity): String = OwnFailure.named("quantity", quantity)
 
 /** How a quantity over time becomes one number. */
 enum Reduction:

@@ -23,6 +23,11 @@ object OwnFailure:
       case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError | ControlThrowable) => throw asItIs
       case mistake: Throwable => throw OwnFailure(whose, s"failed: ${text(mistake)}", mistake)
 
+  /** Whose it is, by its class: `the policy Chase`. */
+  private[skein] def named(kind: String, own: Any): String = own.getClass.getSimpleName.stripSuffix("$") match
+    case ""   => s"a $kind without a name"
+    case name => s"the $kind $name"
+
   /** The mistake, and where it was made if that is known. */
   private def text(mistake: Throwable): String = mistake match
     case shell: ExceptionInInitializerError if shell.getCause != null => text(shell.getCause)

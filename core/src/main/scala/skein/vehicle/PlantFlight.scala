@@ -41,5 +41,5 @@ final class PlantFlight[S](val plant: Plant[S]):
     from = now
 
   private def fly(spanS: Double): Unit =
-    now = OwnFailure.told(s"the plant ${plant.getClass.getSimpleName}"):
+    now = OwnFailure.told(OwnFailure.named("plant", plant)):
       plant.step(from, wantedNorthMps, wantedEastMps, spanS)

@@ -5,6 +5,7 @@ import skein.forward.{LoopObserver, Rollout}
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.units.OwnFailure
 
 /** Episodes of a scenario, one after the other, that stop whenever one vehicle is to decide, for which
   * somebody outside does. They are flown by [[Rollout]], whose policy waits for the answer: so whatever
@@ -103,6 +104,19 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
         distanceM = side.distanceM(learner, northM, eastM)
         leastM = leastM.min(distanceM)
         loss += side.loss(distanceM, northM, eastM)
+
+    override def commanded(
+        vehicle: Int,
+        number: Int,
+        atNs: Long,
+        headingRad: Double,
+        speedMps: Double
+    ): Unit =
+      if !headingRad.isFinite || !speedMps.isFinite then
+        throw OwnFailure(
+          s"the policy of ${side.nameOf(vehicle)}",
+          s"decided for what no vehicle can do: to fly at $speedMps m/s with a heading of $headingRad rad"
+        )
 
 private object LearnerRollout:
   private object Anew extends ControlThrowable

@@ -4,10 +4,10 @@ import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, Rollout, VelocityResponse}
 import skein.optimise.TeamObjective
 import skein.policy.{Agent, AgentPolicy, Fleet, PaperPursuer, Policy, Role, TeamPolicy}
-import skein.scenario.{Positions, Reduction, Scenario, Scenarios}
+import skein.scenario.{Positions, Quantity, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
 import skein.signal.SplitMix64
-import skein.units.Expect
+import skein.units.{Expect, OwnFailure}
 import skein.vehicle.VehicleKind
 
 /** A side of a scenario that learns: some vehicle of its role is decided for from outside, the others of the
@@ -31,6 +31,8 @@ private[environment] final case class ScenarioSide(
   private val downM  = IArray.from(agents.map(_.startPositionNed.z))
 
   def count: Int = agents.size
+
+  def nameOf(vehicle: Int): String = agents(vehicle).name
 
   /** What flies in an episode.
     *
@@ -70,7 +72,13 @@ private[environment] final case class ScenarioSide(
       val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
       var sum    = 0.0
       for (weight, measure) <- by.terms; reduced <- measure.reduced do
-        sum += weight * reduced.quantity.of(places)
+        val paid = Quantity.told(reduced.quantity, places)
+        if !paid.isFinite then
+          throw OwnFailure(
+            Quantity.whose(reduced.quantity),
+            s"answered $paid, which nobody can be rewarded by"
+          )
+        sum += weight * paid
       by.direction.sign * sum
 
 private[environment] object ScenarioSide:

@@ -2,10 +2,11 @@ package skein.environment
 
 import java.nio.ByteBuffer
 import skein.forward.{LoopObserver, Rollout}
-import skein.policy.{Decided, ObservingPolicy, PlanarObservation, PurePursuit}
-import skein.scenario.{OffRing, Positions, Scenarios}
+import skein.policy.*
+import skein.scenario.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.units.{MetresPerSecond, OwnFailure, Radians, Vector3}
 
 class ScenarioGroupSuite extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
@@ -149,6 +150,32 @@ class ScenarioGroupSuite extends munit.FunSuite:
     intercept[IllegalStateException](learner.batch.step()): Unit
     learner.batch.close()
 
+  test("a policy or a quantity of the user's own that fails is told by its name"):
+    given Scenarios                            = Scenarios(ScenarioKind(Own()))
+    def told(policy: String, quantity: String) =
+      val settings = EnvironmentSettings(
+        scenario = "own",
+        set = Map("policy" -> policy, "quantity" -> quantity),
+        objective = "off",
+        episodeS = 6
+      )
+      val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, 1))
+      val batch = EnvironmentBatch.of(settings, 1, Autoreset.NextStep, block).fold(fail(_), identity)
+      try
+        intercept[OwnFailure]:
+          batch.reset(Array(1L))
+          for _ <- 0 until 20 do batch.step()
+        .getMessage
+      finally batch.close()
+    val thrown = "failed: java.lang.IllegalStateException: no such luck (ScenarioGroupSuite.scala:"
+    assert(clue(told("throws", "")).startsWith(s"the policy Away $thrown"))
+    assert(clue(told("", "throws")).startsWith(s"the quantity Off $thrown"))
+    assertEquals(
+      told("NaN", ""),
+      "the policy of Evader decided for what no vehicle can do: to fly at 4.0 m/s with a heading of NaN rad"
+    )
+    assertEquals(told("", "NaN"), "the quantity Off answered NaN, which nobody can be rewarded by")
+
   test("what cannot be learned in is told with what was expected"):
     def refused(settings: EnvironmentSettings) = ScenarioSide.of(settings).swap.getOrElse("accepted")
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
@@ -162,3 +189,23 @@ class ScenarioGroupSuite extends munit.FunSuite:
     ))).contains("came formation of leader and follower"))
     for (scenario, why) <- Seq("convoy" -> "which has cars", "forest" -> "which sees by cameras or lidars") do
       assert(clue(refused(surround.copy(scenario = scenario, set = Map.empty))).contains(why))
+
+/** An evader whose policy, and a pursuer whose quantity, answers what a setting says. */
+final case class Own(policy: String = "", quantity: String = "") extends Scenario:
+  def agents: Vector[Agent] = Vector(
+    Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),
+    Agent("Pursuer", Role.Pursuer, MetresPerSecond(8), Vector3(0, 0, -5), Radians(0), Surrounding(0, 8, 8))
+  )
+  override def measures: Vector[Measure] = Vector(Series.of("off", "m", Off(quantity)).mean("off"))
+
+object Own:
+  def answer(how: String): Double = how match
+    case "throws" => throw IllegalStateException("no such luck")
+    case "NaN"    => Double.NaN
+    case _        => 1
+
+final case class Away(how: String) extends TeamPolicy:
+  def course(seen: TeamObservation): Course = Course(Own.answer(how), 4)
+
+final case class Off(how: String) extends Quantity:
+  def of(positions: Positions): Double = Own.answer(how)

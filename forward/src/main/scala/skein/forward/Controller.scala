@@ -231,7 +231,7 @@ private[skein] final class Controller(
   /** @throws OwnFailure if the policy throws
     */
   private def asked[A](answer: => A): A =
-    OwnFailure.told(s"the policy ${policy.getClass.getSimpleName}")(answer)
+    OwnFailure.told(OwnFailure.named("policy", policy))(answer)
 
   private def seen(observation: RolloutView, elapsedS: Double): TeamObservation = TeamObservation(
     agent,

@@ -2,7 +2,7 @@ package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
-import skein.scenario.Positions
+import skein.scenario.{Positions, Quantity}
 
 /** The scalar reference for what a team is judged by. Mutable.
   *
@@ -41,7 +41,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
       if vehicle == downM.length - 1 && candidate.judged.exists(_.counts(timeS)) then
         val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
         for (each, at) <- candidate.judged.zip(found) if each.counts(timeS) do
-          at += ((timeS, each.quantity.of(places)))
+          at += ((timeS, Quantity.told(each.quantity, places)))
 
 /** Teams vehicle by vehicle: their loops by the scalar reference. Mutable. */
 private final class SteppedTeams(timing: LoopTiming, stepped: SteppedRollouts):

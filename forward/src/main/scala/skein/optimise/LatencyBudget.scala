@@ -28,19 +28,20 @@ final case class LatencyBudget(
     cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
   /** Up to which mean latency, at a jitter, the objective stays within a tolerance of the truth: straight
-    * lines between the cells' deviations.
+    * lines between the cells' deviations. Where the objective comes to no number it does not hold.
     *
     * @param tolerance of [[deviation]], for example 0.05
     */
   def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound =
     val known = meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector
-    known.indexWhere((_, off) => off > tolerance) match
+    known.indexWhere((_, off) => !(off <= tolerance)) match
       case -1 if known.isEmpty => LatencyBudget.Bound.Unknown
       case -1                  => LatencyBudget.Bound.Beyond(known.last._1)
       case 0                   => LatencyBudget.Bound.Below(known.head._1)
       case first               =>
         val ((fromMs, fromOff), (toMs, toOff)) = (known(first - 1), known(first))
-        LatencyBudget.Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
+        if !toOff.isFinite then LatencyBudget.Bound.At(fromMs)
+        else LatencyBudget.Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
 
 object LatencyBudget:
   /** The largest mean latency, ms, at which something holds. */

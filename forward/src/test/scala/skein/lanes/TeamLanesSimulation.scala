@@ -12,6 +12,7 @@ import skein.scenario.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 import skein.testing.{Lengthy, Optimised}
+import skein.units.OwnFailure
 import skein.vehicle.ReducedModel
 
 class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
@@ -338,6 +339,12 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.vpn, 4)(0).toFloat
     )
 
+  test("what a quantity of the user's own throws is told by its name"):
+    val broken =
+      TeamCandidate(Engagement.of(Surround(4).fleet, 5), Vector(Judged(Broken, Reduction.Least, 0)))
+    val told = intercept[OwnFailure](ScalarTeam(LoopTiming.Stream(), lag).fly(broken, DelayTable.vpn, 4))
+    assert(clue(told.getMessage).startsWith("the quantity Broken failed: java.lang.IllegalStateException"))
+
   private def assertFliesByLanes(batch: TeamBatch, team: TeamCandidate): Unit =
     val engine = batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn))
     assert(batch.fliesByLanes(team, shareEpisodes = true, Seq(DelayTable.vpn)), engine)
@@ -373,3 +380,6 @@ case object Spread extends Quantity:
     var sum = 0.0
     for i <- numbers.indices do sum += numbers(i)
     sum / numbers.length
+
+private case object Broken extends Quantity:
+  def of(positions: Positions): Double = throw IllegalStateException("no such luck")

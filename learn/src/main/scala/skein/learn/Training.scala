@@ -17,20 +17,42 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
   def round(number: Long, isStopped: () => Boolean = () => false): Either[String, Option[Double]] =
     learner.begin(number)
     task.begin(number, learner.actor)
-    var sum  = 0.0
-    var step = 0
-    while step < stepsPerRound && !isStopped() do
+    var sum   = 0.0
+    var step  = 0
+    var wrong = notShown(number)
+    while wrong.isEmpty && step < stepsPerRound && !isStopped() do
       System.arraycopy(task.seen, 0, seen, 0, seen.length)
       learner.explore(seen, actions)
-      task.step(actions)
-      for reward <- task.rewards do sum += reward
-      learner.learn(seen, actions, task)
-      step += 1
-    if step < stepsPerRound then Right(None)
-    else
-      learner.end()
-      Either.cond(
-        learner.isFinite,
-        Some(sum / stepsOfRound),
-        s"round ${number + 1}: the weights are not finite any more; a smaller learning rate may help"
-      )
+      if !areFinite(actions) then wrong = Some(diverged(number))
+      else
+        task.step(actions)
+        wrong = notRewarded(number).orElse(notShown(number))
+        if wrong.isEmpty then
+          for reward <- task.rewards do sum += reward
+          learner.learn(seen, actions, task)
+          step += 1
+    wrong match
+      case Some(reason)                 => Left(reason)
+      case None if step < stepsPerRound => Right(None)
+      case None                         =>
+        learner.end()
+        Either.cond(learner.isFinite, Some(sum / stepsOfRound), diverged(number))
+
+  private def diverged(round: Long) =
+    s"round ${round + 1}: the weights are not finite any more; a smaller learning rate may help"
+
+  /** What a task that comes to no number did, which would spoil all weights. */
+  private def notRewarded(round: Long) = Option.unless(areFinite(task.rewards)):
+    val environment = task.rewards.indexWhere(!_.isFinite)
+    s"round ${round + 1}: expected a finite reward, came ${task.rewards(environment)} in environment $environment"
+
+  private def notShown(round: Long) =
+    Seq(task.seen, task.reached).find(!areFinite(_)).map: shown =>
+      val at                   = shown.indexWhere(!_.isFinite)
+      val (environment, field) = (at / task.observations, at % task.observations)
+      s"round ${round + 1}: expected finite observations, came ${shown(at)} as number $field in environment $environment"
+
+  private def areFinite(numbers: Array[Float]): Boolean =
+    var at = 0
+    while at < numbers.length && numbers(at).isFinite do at += 1
+    at == numbers.length

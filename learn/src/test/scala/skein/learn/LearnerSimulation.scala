@@ -38,6 +38,33 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
     pass.forward(learner.actor, 0, 1)
     math.tanh(pass.output(0))
 
+  test("a task that comes to no number, and weights that do, end the round with what it was"):
+    /** Shows or rewards what is no number at its last step. */
+    final class Broken(reward: Float, shown: Float) extends SmallTask(4, 2, 1):
+      private var steps                    = 0
+      protected def start(row: Int): Unit  = ()
+      def step(chosen: Array[Float]): Unit =
+        steps += 1
+        if steps == 20 then
+          rewards(2) = reward
+          seen(5) = shown
+    def told(task: Task, spoilt: Boolean = false) =
+      val learner = Algorithm.Ddpg.learner(2, 1, 4, small.copy(randomSteps = 0), 4, BatchThreads(1))
+      if spoilt then java.util.Arrays.fill(learner.actor.parameters, Float.NaN)
+      Training(task, learner, stepsPerRound = 100).round(6)
+    assertEquals(
+      told(Broken(Float.NaN, 0)),
+      Left("round 7: expected a finite reward, came NaN in environment 2")
+    )
+    assertEquals(
+      told(Broken(0, Float.PositiveInfinity)),
+      Left("round 7: expected finite observations, came Infinity as number 1 in environment 2")
+    )
+    assert(clue(told(
+      Broken(0, 0),
+      spoilt = true
+    )).left.exists(_.contains("the weights are not finite any more")))
+
   for algorithm <- Algorithm.values do
     test(s"${algorithm.label} finds the best action of a single step"):
       val learner = trained(algorithm, HalfOfIt(32, 1), rounds = 30)
@@ -86,14 +113,16 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       val other = algorithm.learner(1, 1, 16, small.copy(hidden = Vector(8)), 4, workers)
       intercept[IOException](other.load(DataInputStream(ByteArrayInputStream(bytes.toByteArray)))): Unit
 
-  test("a learner whose weights are no numbers any more says so"):
-    final class Endless extends SmallTask(16, 1, 1):
+  test("a learner whose weights are no numbers any more after the round says so"):
+    final class Spoiling extends SmallTask(16, 1, 1):
+      private var spoil                                     = () => ()
+      override def begin(round: Long, actor: Network): Unit =
+        super.begin(round, actor)
+        spoil = () => java.util.Arrays.fill(actor.parameters, Float.NaN)
       protected def start(row: Int): Unit  = seen(row) = drawn()
-      def step(chosen: Array[Float]): Unit =
-        java.util.Arrays.fill(rewards, Float.NaN)
-    val workers  = BatchThreads(1)
-    val training = Training(Endless(), Algorithm.Ddpg.learner(1, 1, 16, small, 4, workers), 40)
-    assert(clue(training.round(0)).left.exists(_.contains("not finite")))
+      def step(chosen: Array[Float]): Unit = spoil()
+    val training = Training(Spoiling(), Algorithm.Ddpg.learner(1, 1, 16, small, 4, BatchThreads(1)), 1)
+    assert(clue(training.round(0)).left.exists(_.contains("the weights are not finite any more")))
 
   test("settings out of bounds are told"):
     assert(small.copy(discount = 1).mistake.exists(_.contains("discount")))
