@@ -9,6 +9,7 @@ import skein.link.{Address, Transport}
 import skein.units.Clock
 import upack.{Arr, Msg, Null, Obj, Str}
 import upickle.default.Reader
+import upickle.core.{AbortException, TraceVisitor}
 
 /** Calls a MessagePack-RPC server over a pool of connections and never blocks: every call is a future that
   * ends exactly once, with a result or an [[RpcError]], at the latest when its timeout is over. Safe from any
@@ -138,7 +139,7 @@ final class RpcClient(
     catch
       case NonFatal(_) =>
         try Right(readAs(trace = true))
-        catch case NonFatal(e) => Left(RpcError.Malformed(method, s"$e"))
+        catch case NonFatal(e) => Left(RpcError.Malformed(method, RpcClient.unreadable(e)))
 
   private def start(channel: Channel): ChannelInput =
     val stage =
@@ -156,6 +157,15 @@ final class RpcClient(
     RunnableGraph.fromGraph(stage).run()
 
 object RpcClient:
+  /** What was expected in an answer and where, in words: without the names of the classes that say it. */
+  private def unreadable(mistake: Throwable): String = mistake match
+    case at: TraceVisitor.TraceException =>
+      val where = at.jsonPath.stripPrefix("$").replaceAll("\\['?([^'\\]]*)'?\\]", ".$1").stripPrefix(".")
+      unreadable(at.getCause) + (if where.isEmpty then "" else s" in $where")
+    case ended: AbortException    => ended.clue
+    case _: NumberFormatException => "expected a number, came a string"
+    case other                    => Option(other.getMessage).getOrElse(s"$other")
+
   /** Where nil stands in an answer in the place of a part of what was read from it, as names with dots
     * between; absent where it does not. A number's nil reads as 0, and so only the answer itself tells it.
     */

@@ -148,8 +148,20 @@ class HostileServerSuite extends munit.FunSuite:
   do
     rig(s"nil $where is a malformed answer, told in one line"): r =>
       val message = asked(r, answer)
-      assert(message.startsWith("read: malformed answer: ") && message.contains(reason), message)
-      assertEquals(message.linesIterator.size, 1)
+      assertEquals(message, s"read: malformed answer: $reason")
+
+  for (where, answer, reason) <- Seq(
+      ("in the place of everything", Int32(1), "expected dictionary got int32"),
+      ("in a structure", outer(Str("far"), Arr()), "expected dictionary got string in inner"),
+      (
+        "in the place of a number",
+        outer(one(Str("far")), Arr()),
+        "expected a number, came a string in inner.x"
+      )
+    )
+  do
+    rig(s"what is of another type $where is told without the names of classes"): r =>
+      assertEquals(asked(r, answer), s"read: malformed answer: $reason")
 
   rig("a state that is no number is a malformed answer"): r =>
     val state                              = Multirotor(AirSimClient(r.client), "A").status()

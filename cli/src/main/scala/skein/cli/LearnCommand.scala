@@ -160,7 +160,8 @@ final class LearnCommand(program: String)(using Scenarios)
         import end.state
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val steps   = (state.rounds - from.rounds) * setup.stepsOfRound
-        shown.say(f"$steps%,d steps in $seconds%.1f s, ${steps / seconds.max(1e-3)}%,.0f a second")
+        if steps > 0 || end.failure.isEmpty then
+          shown.say(f"$steps%,d steps in $seconds%.1f s, ${steps / seconds.max(1e-3)}%,.0f a second")
         val isDone = state.rounds == setup.rounds
         val goOn   = s"stopped; ./skein learn --resume ${Typed.path(folder)} goes on"
         end.failure match

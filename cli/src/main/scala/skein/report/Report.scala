@@ -8,7 +8,7 @@ import skein.figures.Figure
 import skein.flight.InParallel
 import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.{Png, Svg}
-import skein.record.{RecordError, Recording, RecordingReader}
+import skein.record.{FileReason, RecordError, Recording, RecordingReader}
 import skein.scenario.Scenarios
 import skein.settings.FlightPlan
 import skein.units.Expect
@@ -97,7 +97,7 @@ object Report:
         others(page, flights.map(flight => FlightPlan.fileName(flight.flight.id)).toSet),
         sections.flatMap(_.failure)
       ))
-    catch case failed: IOException => Left(s"cannot write the report to $page: $failed")
+    catch case failed: IOException => Left(s"cannot write the report to $page: ${FileReason.of(failed)}")
 
   private def others(page: Path, shown: Set[String]): Vector[String] =
     Using.resource(Files.list(page.toAbsolutePath.getParent)): files =>

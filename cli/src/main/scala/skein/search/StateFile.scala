@@ -6,6 +6,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, NoSuchFileException, Path, StandardCopyOption, StandardOpenOption}
 import java.util.zip.CRC32C
 import scala.util.Using
+import skein.record.FileReason
 import upickle.default.{ReadWriter, write as writeJson}
 
 /** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it:
@@ -57,7 +58,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
         Left(s"there is no $file; expected the folder of $what")
       case _: java.nio.charset.MalformedInputException =>
         Left(s"$file: expected the state of $what, came no text")
-      case failed: IOException => Left(s"cannot read $file, the state of $what: $failed")
+      case failed: IOException => Left(s"cannot read $file, the state of $what: ${FileReason.of(failed)}")
 
   /** Replaces the file, so that whatever happens there is the old one or the new one.
     *
@@ -89,7 +90,7 @@ private[skein] object StateFile:
     catch
       case failed: IOException =>
         part.toFile.delete(): Unit
-        Left(s"cannot write $target: $failed")
+        Left(s"cannot write $target: ${FileReason.of(failed)}")
 
   /** Bytes read or written at once. */
   val Buffer: Int = 1 << 20

@@ -11,6 +11,7 @@ import java.nio.file.{Files, NoSuchFileException, Path}
 import java.util.zip.{CRC32C, CheckedInputStream, CheckedOutputStream}
 import scala.util.Using
 import skein.learn.Learner
+import skein.record.FileReason
 import skein.search.{NamedFiles, StateFile}
 import skein.units.Expect
 import upickle.default.ReadWriter
@@ -100,5 +101,6 @@ object LearnFile:
         try
           Right(Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
             _.forEach(other => if other != file then Files.delete(other)))
-        catch case failed: IOException => Left(s"cannot delete what was before $file: $failed")
+        catch
+          case failed: IOException => Left(s"cannot delete what was before $file: ${FileReason.of(failed)}")
     yield ()
