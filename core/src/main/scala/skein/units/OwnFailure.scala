@@ -7,7 +7,10 @@ import scala.util.control.ControlThrowable
   * @param whose for example `the policy of Scout 1`
   */
 final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = null)
-    extends RuntimeException(s"$whose $reason", cause)
+    extends RuntimeException(s"$whose $reason", cause):
+
+  /** The message alone: people read it, also where it has come from another process. */
+  override def toString: String = getMessage
 
 object OwnFailure:
 

@@ -19,6 +19,12 @@ class OwnFailureSuite extends munit.FunSuite:
         clue(told(mistake())).startsWith(s"the policy of Scout failed: ${mistake()} (OwnFailureSuite.scala:")
       )
 
+  test("as text it is its message, by whatever process it is told"):
+    assertEquals(
+      s"${OwnFailure("the policy of Scout", "answered null")}",
+      "the policy of Scout answered null"
+    )
+
   test("that memory is full, or that the thread shall end, is told as it is"):
     for asItIs <- Seq(OutOfMemoryError(), InterruptedException()) do
       val thrown =

@@ -58,7 +58,7 @@ class OutsidePolicySimulation extends munit.FunSuite:
     assertEquals(missed(recording).flatMap(_.decision), decided.map(_.sequence).filter(_ % 2 == 0))
     assert(missed(
       recording
-    ).forall(_.detail.contains("by the fallback: Failed(skein.units.OwnFailure: the policy: no such luck)")))
+    ).forall(_.detail.contains("by the fallback: Failed(the policy: no such luck)")))
     assertEquals(headings(recording), headings(flown(settings)._2))
 
   test("where it hangs, the fallback decides from then on"):
