@@ -1,7 +1,7 @@
 package skein.cli
 
 import mainargs.{ArgSig, ParserForClass, Result, Util}
-import skein.units.OwnFailure
+import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
 import skein.report.TextTable
 
@@ -86,11 +86,10 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
         .map(_.head)
         .find(word => word.startsWith("-") && word.length > 1 && !names.contains(word.takeWhile(_ != '=')))
 
-  /** What code of the user's own threw is bad input. */
+  /** What the user can mend is bad input. */
   private def done(options: A): Either[String, Unit] =
     try execute(options)
-    catch
-      case error: Throwable => Left(OwnFailure.behind(error).fold(throw error)(_.getMessage))
+    catch case error: Throwable => Left(NotFlown.mendable(error).getOrElse(throw error))
 
   /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the
     * first word without a dash for such words.

@@ -15,7 +15,7 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
 import skein.units.*
-import skein.vtime.{RunLimits, VirtualTime}
+import skein.vtime.{Problem, RunLimits, VirtualTime, VirtualTimeException}
 
 /** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler
   * and the sockets replaced. Equal settings and plans give equal recordings, byte for byte.
@@ -172,10 +172,19 @@ object NotFlown:
   def message(missing: Seq[NotFlown], planned: Int): String =
     (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
 
-  /** What was thrown and where, and what caused it; of code of the user's own in a line. */
-  private[skein] def trace(error: Throwable): String = OwnFailure.behind(error) match
-    case Some(failure) => failure.getMessage
-    case None          =>
+  /** What the user can mend, in words: code of the user's own failed, or the program was started without
+    * virtual time's agent, as development environments start it.
+    */
+  private[skein] def mendable(error: Throwable): Option[String] =
+    OwnFailure.behind(error).map(_.getMessage).orElse:
+      Iterator.iterate(error)(_.getCause).takeWhile(_ != null).collectFirst:
+        case stopped: VirtualTimeException if stopped.problem.isInstanceOf[Problem.NoAgent] =>
+          stopped.getMessage
+
+  /** What was thrown and where, and what caused it; what the user can mend in words alone. */
+  private[skein] def trace(error: Throwable): String = mendable(error) match
+    case Some(reason) => reason
+    case None         =>
       val text = StringWriter()
       error.printStackTrace(PrintWriter(text))
       text.toString.linesIterator.take(TraceLines).mkString("\n")

@@ -6,7 +6,7 @@ import skein.record.Digest
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.vtime.RunLimits
+import skein.vtime.{Problem, RunLimits, VirtualTimeException}
 
 /** Whole flights in virtual time repeat exactly. */
 class VirtualFlightSimulation extends munit.FunSuite:
@@ -62,3 +62,11 @@ class VirtualFlightSimulation extends munit.FunSuite:
     assert(message.startsWith("3 of 6 flights could not be flown"), message)
     for told <- Seq("seed 1: no link", "seed 3: java.lang.StackOverflowError: too deep", "seed 4: ") do
       assert(message.contains(told), message)
+
+  test("that virtual time has no agent is told in words, and what nobody can mend with where it was"):
+    val missing = VirtualTimeException(Problem.NoAgent("Pekko reads the JVM's clock"))
+    for thrown <- Seq(missing, RuntimeException(missing)) do
+      assertEquals(NotFlown.trace(thrown), missing.getMessage)
+    val blocked = VirtualTimeException(Problem.Blocked("Await.result"))
+    assertEquals(NotFlown.mendable(blocked), None)
+    assert(clue(NotFlown.trace(blocked)).contains("\tat "))
