@@ -48,7 +48,7 @@ final case class BudgetMap(
     def told(text: String, unit: String) = s"$text $unit".trim
     val value                            = Interval.of(mark.tally.mean, mark.tally.halfWidth95).text
     val came                             =
-      if !off.isFinite then s"$objective comes to no number"
+      if !off.isFinite then s"$objective has no value"
       else s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
       came

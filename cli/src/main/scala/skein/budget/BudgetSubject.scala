@@ -90,7 +90,7 @@ final class DuelSubject(
     seed: Long,
     threads: Int
 ) extends BudgetSubject(
-      named.loop,
+      named.loopText,
       named.periodMs,
       named.durationS,
       flown.vehicle.description,

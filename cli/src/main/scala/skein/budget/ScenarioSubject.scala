@@ -160,10 +160,9 @@ object FlownSubject:
       Effort.OfFlights,
       link =>
         WholeFlights.virtual(
+          question.conditions,
           if link.isEmpty then LoopKind.Paused else loop,
           link.fold(LatencyProfile.none)(LatencyProfile.Steady("cell", _)),
-          question.conditions.periodMs,
-          question.conditions.durationS,
           question.seed
         )(question.scenario, _)
     )
@@ -171,7 +170,7 @@ object FlownSubject:
 /** A scenario. */
 sealed abstract class ScenarioSubject(question: ScenarioQuestion, vehicles: String)
     extends BudgetSubject(
-      question.conditions.loop,
+      question.conditions.loopText,
       question.conditions.periodMs,
       question.conditions.durationS,
       vehicles,

@@ -2,6 +2,7 @@ package skein.cli
 
 import mainargs.{ParserForClass, arg}
 import skein.policy.Role
+import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenario, Scenarios}
 import skein.search.Conditions
 import skein.settings.{PolicyFile, ScenarioSettings}
@@ -17,6 +18,12 @@ final case class ForwardOptions(
     objective: Option[String],
     @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
     loop: Option[String],
+    @arg(
+      name = "moves-in-flight",
+      doc =
+        "unanswered moves of one vehicle; over a long round trip, more moves carry more commands (default: 2)"
+    )
+    movesInFlight: Option[Int],
     @arg(doc =
       "model that flies: reduced, drag, quadrotor, ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
         "reduced:FILE for its model of three parameters (default: reduced)"
@@ -50,7 +57,8 @@ final case class ForwardOptions(
       period.toMillis,
       duration.toNanos / 1e9,
       altitude.getOrElse(PaperDuel.AltitudeM),
-      eye
+      eye,
+      movesInFlight.getOrElse(Moves.MostOutstanding)
     )
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)

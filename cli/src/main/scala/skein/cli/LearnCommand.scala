@@ -141,7 +141,7 @@ final class LearnCommand(program: String)(using Scenarios)
     import setup.question
     shown.say(
       s"""${question.algorithm} teaches the ${question.role} ${setup.family.name} ${against(setup)}
-         |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
+         |loop ${question.conditions.loopText} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
          |${question.environments} environments, ${steps(setup)}; engine: ${setup.engine}""".stripMargin

@@ -78,7 +78,8 @@ private[cli] object LearnWork:
         Span.ofSeconds(conditions.durationS),
         Span.ofMillis(conditions.periodMs),
         asked.seed,
-        setup.game.scenario
+        setup.game.scenario,
+        movesInFlight = conditions.movesInFlight
       )
       val plans =
         for plan <- settings.plansWith(ChosenPolicy(policy.name, policy)); number <- 0 until count

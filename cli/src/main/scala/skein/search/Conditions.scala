@@ -1,13 +1,14 @@
 package skein.search
 
 import skein.flight.AirSimFleet
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering, VelocityResponse}
 import skein.lanes.{Accelerator, DuelBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
-import skein.units.{Expect, Span}
+import skein.units.{Decimals, Expect, Span}
 import upickle.default.ReadWriter
 import upickle.implicits.key
 
@@ -15,6 +16,7 @@ import upickle.implicits.key
   *
   * @param plant see [[VehicleChoice.parse]]
   * @param eye a file of [[SensorFile]]: the pursuer knows of the evader by that alone
+  * @param movesInFlight of one vehicle, that may be unanswered
   */
 final case class Conditions(
     loop: String,
@@ -22,8 +24,14 @@ final case class Conditions(
     periodMs: Double,
     durationS: Double,
     altitudeM: Double = PaperDuel.AltitudeM,
-    eye: Option[String] = None
+    eye: Option[String] = None,
+    movesInFlight: Int = Moves.MostOutstanding
 ) derives ReadWriter:
+
+  /** The loop, for a person. */
+  def loopText: String =
+    if movesInFlight == Moves.MostOutstanding || loop == LoopKind.Paused.label then loop
+    else s"$loop with ${Decimals.counted(movesInFlight, "move")} in flight"
 
   /** @return the loop, or what was expected and came */
   def checked: Either[String, LoopKind] =
@@ -35,6 +43,8 @@ final case class Conditions(
         s"--period: expected 1 ms to 10 s, came $periodMs ms"
       _ <- Expect.that(durationS >= 10 && durationS <= 3600):
         s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
+      _ <- Expect.that(movesInFlight >= 1 && movesInFlight <= Steering.MostOutstanding):
+        s"--moves-in-flight: expected 1 to ${Steering.MostOutstanding}, came $movesInFlight"
     yield kind
 
   /** @return or what was expected and came */
@@ -42,8 +52,10 @@ final case class Conditions(
     for
       kind    <- checked
       vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
-      timing  <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
-      sensor  <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)
+      timing  <- Conditions
+        .timing(kind, Span.ofMillis(periodMs), movesInFlight, vehicle.response)
+        .left.map("--loop: " + _)
+      sensor <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)
       duel = Duel.paperAt(altitudeM, durationS)
     yield Conditions.Resolved(timing, vehicle, duel.copy(pursuer = duel.pursuer.copy(eye = sensor)))
 
@@ -69,8 +81,14 @@ object Conditions:
       )
 
   /** As `./skein fly` flies the loop, by the best model of the vehicles where it predicts. */
-  private def timing(loop: LoopKind, period: Span, vehicles: VelocityResponse): Either[String, LoopTiming] =
-    val settings = LoopSettings.every(period).copy(model = _ => vehicles.predictor)
+  private def timing(
+      loop: LoopKind,
+      period: Span,
+      movesInFlight: Int,
+      vehicles: VelocityResponse
+  ): Either[String, LoopTiming] =
+    val settings =
+      LoopSettings.every(period).copy(model = _ => vehicles.predictor, movesInFlight = movesInFlight)
     LoopTimings
       .of(loop, settings, AirSimFleet.askTimeout)
       .toRight(

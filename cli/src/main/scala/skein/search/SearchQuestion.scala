@@ -121,7 +121,7 @@ final case class SearchSetup(
   def space: SearchSpace                       = family.space
   def name: String                             = family.name
   def method: String                           = question.method
-  def loop: String                             = question.conditions.loop
+  def loop: String                             = question.conditions.loopText
   def link: String                             = question.link
   def text: String                             = objective.text
   def formula: String                          = objective.formula
@@ -216,7 +216,7 @@ final case class SearchSetup(
            |  by = "./skein search"
            |  complete = ${found.state.isDone}
            |  method = ${question.method}
-           |  loop = ${question.conditions.loop}
+           |  loop = ${quoteString(question.conditions.loopText)}
            |  periodMs = ${question.conditions.periodMs}
            |  link = ${quoteString(question.link)}
            |  plant = ${quoteString(question.conditions.plant)}

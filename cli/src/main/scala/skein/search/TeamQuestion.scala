@@ -179,7 +179,7 @@ final case class TeamSetup(
 
   def name: String                             = kind.name
   def method: String                           = question.method
-  def loop: String                             = question.conditions.loop
+  def loop: String                             = question.conditions.loopText
   def link: String                             = question.link
   def fresh: Option[Int]                       = Some(question.fresh)
   def label(candidate: Vector[Double]): String = told(candidate, " ")(_.significant(4))
@@ -292,7 +292,7 @@ final case class TeamSetup(
     def interval(tally: RunningStats) = SearchResult.interval(tally, unit)
     val settings                      = TeamQuestion.settings(question.set, space, found.best).toVector.sorted
     val flown                         =
-      s"loop ${question.conditions.loop} every ${question.conditions.periodMs} ms over ${question.link}"
+      s"loop ${question.conditions.loopText} every ${question.conditions.periodMs} ms over ${question.link}"
     "scenario.conf" ->
       s"""# $text
          |# ${interval(found.fresh)}: mean over ${found.fresh.count} fresh episodes, 95 %; ${interval(

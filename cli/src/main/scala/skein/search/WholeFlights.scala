@@ -5,6 +5,7 @@ import skein.forward.*
 import skein.loop.LoopKind
 import skein.optimise.{TeamObjective, ValueEvaluator}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
+import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
 import skein.units.*
@@ -110,12 +111,14 @@ object WholeFlights:
     *
     * @return or why it could not be flown to its end
     */
-  def virtual(loop: LoopKind, link: LatencyProfile, periodMs: Double, durationS: Double, seed: Long)(
+  def virtual(conditions: Conditions, loop: LoopKind, link: LatencyProfile, seed: Long)(
       scenario: Scenario,
       episode: Int
-  ): Either[String, Tracks] = VirtualFlights
-    .result(scenario, loop, link, seed + episode, Span.ofMillis(periodMs), Span.ofSeconds(durationS))
-    .map(_.tracks)
+  ): Either[String, Tracks] =
+    import conditions.{durationS, movesInFlight, periodMs}
+    val (duration, period) = (Span.ofSeconds(durationS), Span.ofMillis(periodMs))
+    val settings           = FlySettings(List(loop), List(link), duration, period, seed + episode, scenario)
+    VirtualFlights.result(settings.copy(movesInFlight = movesInFlight)).map(_.tracks)
 
   /** By forward simulation, world by world.
     *
@@ -150,7 +153,7 @@ object WholeFlights:
     reason,
     Effort.OfFlights,
     blockEpisodes = 4,
-    virtual(loop, link, conditions.periodMs, conditions.durationS, seed)
+    virtual(conditions, loop, link, seed)
   )
 
   /** Why no plant is to be told where flights are virtual.

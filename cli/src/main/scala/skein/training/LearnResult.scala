@@ -100,7 +100,7 @@ object LearnResult:
            |  by = "./skein learn"
            |  complete = ${state.rounds == setup.rounds}
            |  algorithm = ${question.algorithm}
-           |  loop = ${question.conditions.loop}
+           |  loop = ${quoteString(question.conditions.loopText)}
            |  periodMs = ${question.conditions.periodMs}
            |  link = ${quoteString(question.link)}
            |  plant = ${quoteString(question.conditions.plant)}

@@ -65,7 +65,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     assert(clue(swept.map(
       _ => (),
       () => false
-    )).left.exists(_.contains("comes to no number where the world")))
+    )).left.exists(_.contains("has no value in the paused truth")))
 
   test("a truth of 0 has no shares, but distances"):
     assert(Tolerance.Share(0.05).per(0).left.exists(_.contains("--within")))

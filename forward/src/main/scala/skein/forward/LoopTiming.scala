@@ -136,4 +136,12 @@ final case class Steering(
     mostOutstanding: Int = Moves.MostOutstanding,
     handoverS: Double = Moves.HandoverAllowed.toSeconds
 ):
-  require(mostOutstanding > 0 && mostOutstanding <= 16, s"from 1 to 16 outstanding, got $mostOutstanding")
+  import Steering.MostOutstanding
+  require(
+    mostOutstanding > 0 && mostOutstanding <= MostOutstanding,
+    s"from 1 to $MostOutstanding outstanding, got $mostOutstanding"
+  )
+
+object Steering:
+  /** What forward simulation has room for. */
+  val MostOutstanding = 16

@@ -8,6 +8,7 @@ import skein.forward.{
   LoopTiming,
   PlantResponse,
   Rollout,
+  Steering,
   VelocityResponse,
   VelocityResponses
 }
@@ -15,7 +16,9 @@ import skein.identify.Tilting
 import skein.lanes.policy.LanePolicy
 import skein.lanes.timetable.Timetable
 import skein.policy.{PaperEvader, PaperPursuer}
+import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
+import skein.units.Span
 import skein.vehicle.ReducedModel
 
 class TimetableKernelSimulation extends munit.FunSuite:
@@ -114,6 +117,18 @@ class TimetableKernelSimulation extends munit.FunSuite:
     if timing == LoopTiming.Stream() then
       test(s"$vehicles, $timing over $name: the same decisions and captures for 60 s in each world compared"):
         agreement(timing, link, WorldRandom.key(4, 1, 0), 60, model).check(name, 0 until worlds by 6)
+
+  for timing <- Seq(
+      LoopTiming.Futures(steering = Steering(mostOutstanding = 6)),
+      LoopTiming.Stream(steering = Steering(mostOutstanding = 6)),
+      LoopTiming.Predictive(predictor = lag.predictor, steering = Steering(mostOutstanding = 6))
+    )
+  do
+    test(
+      s"$timing over a round trip of 400 ms: the same decisions and captures for 10 s in each world compared"
+    ):
+      val far = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(400)))
+      agreement(timing, far, WorldRandom.key(6, 1, 0), 10, lag).check("far", 0 until worlds by 6)
 
   test("a period that does not divide 10 s: as the scalar reference"):
     agreement(LoopTiming.stream(0.3), DelayTable.direct, WorldRandom.key(5, 1, 0), 12, lag)
