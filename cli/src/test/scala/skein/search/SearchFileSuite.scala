@@ -3,6 +3,7 @@ package skein.search
 import com.typesafe.config.Config
 import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
+import skein.forward.LoopTiming
 import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, SearchState, RunningStats}
 import skein.scenario.{Measure, Scenario, ScenarioKind, Scenarios, Surround}
@@ -198,6 +199,16 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     )
     assert(asked.setup.isRight, asked.setup)
 
+  test("moves in flight are the loop's, and are told where they are not the usual two"):
+    def asked(moves: Int) =
+      question("cma-es").copy(conditions =
+        Conditions("predictive", "reduced", 100, 12, movesInFlight = moves)
+      )
+    for (moves, text) <- Seq(2 -> "predictive", 6 -> "predictive with 6 moves in flight") do
+      val ready = asked(moves).setup.fold(fail(_), identity)
+      assertEquals(ready.loop, text)
+      assertEquals(LoopTiming.steeringOf(ready.conditions.timing).mostOutstanding, moves)
+
   for
     (name, wrong, parts) <- Seq(
       ("family", question("cma-es").copy(family = "nosuch"), Seq("--family", "paper-pursuer", "'nosuch'")),
@@ -218,6 +229,11 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
         "duration",
         question("cma-es").copy(conditions = Conditions("stream", "reduced", 100, 2)),
         Seq("--duration", "10 s")
+      ),
+      (
+        "number of moves in flight",
+        question("cma-es").copy(conditions = Conditions("stream", "reduced", 100, 12, movesInFlight = 17)),
+        Seq("--moves-in-flight", "1 to 16", "17")
       ),
       ("population", question("cma-es").copy(population = 2), Seq("--population", "4")),
       ("episodes", question("grid").copy(episodes = 0), Seq("--episodes", "0")),
