@@ -1,6 +1,7 @@
 package skein.report
 
 import java.util.Locale
+import skein.loop.LoopKind
 import skein.measure.{Compared, Distribution, FlightSet, FlightSummary, Published, TimingObservation, Twin}
 import skein.record.EventKind
 import skein.units.Decimals.{brief, fixed, signed}
@@ -141,7 +142,7 @@ object SummaryTables:
     )
 
   /** What is to be known of single flights, a line each. */
-  def remarks(set: FlightSet): Vector[String] = cutShort(set) ++ paused(set) ++ unknown(set)
+  def remarks(set: FlightSet): Vector[String] = cutShort(set) ++ paused(set) ++ unknown(set) ++ waiting(set)
 
   /** A line for each flight that ended before its time. */
   private def cutShort(set: FlightSet): Vector[String] =
@@ -165,6 +166,26 @@ object SummaryTables:
       span    <- summary.paused
     yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
       "nothing was decided; its times and distances include this, so it is not compared with other flights"
+
+  /** A line for each flight whose moves waited for answers: loops that predict gain by sending more of them.
+    */
+  private def waiting(set: FlightSet): Vector[String] =
+    for
+      summary <- set.all
+      if Predicting(summary.flight.loop)
+      roundTrip <- summary.roundTripsMs.map(_.median)
+      vehicles = summary.tracks.size
+      apartMs  = 1000 * summary.flownS * vehicles / summary.commands
+      periodMs = summary.flight.period.toMillis
+      if vehicles > 0 && roundTrip > periodMs && apartMs > WaitingFrom * periodMs && apartMs.isFinite
+    yield s"${summary.flight.id} moved each vehicle every ${apartMs.brief} ms, not every ${periodMs.brief}: a " +
+      s"move waits for the answer to an earlier one, and a round trip takes ${roundTrip.brief} ms. With " +
+      "--moves-in-flight 6 more are under way at once; the guide to AirSim says when that is safe"
+
+  private val Predicting = Set(LoopKind.Predictive.label, LoopKind.Plan.label)
+
+  /** In periods: some moves are always late. */
+  private val WaitingFrom = 1.25
 
   /** How to read [[twins]]. */
   val twinsNote: String =
