@@ -15,19 +15,20 @@ object Export:
     */
   def parquet(recording: Path, directory: Path): Either[RecordError, Vector[Path]] =
     for
-      _     <- createDirectory(directory)
+      _     <- createDirectory(recording, directory)
       files <- RecordingReader.withRecording(recording): connection =>
-        RecordingFile.attempt(RecordError.ExportFailed(directory, _)):
+        RecordingFile.attempt(RecordError.ExportFailed(recording, directory, _)):
           Table.all.filterNot(_.isMissing(connection)).map(table =>
             write(table, directory.resolve(table.name + ".parquet"), connection)
           )
     yield files
 
-  private def createDirectory(directory: Path): Either[RecordError, Unit] =
+  private def createDirectory(recording: Path, directory: Path): Either[RecordError, Unit] =
     try
       val _ = Files.createDirectories(directory)
       Right(())
-    catch case failed: IOException => Left(RecordError.ExportFailed(directory, FileReason.of(failed)))
+    catch
+      case failed: IOException => Left(RecordError.ExportFailed(recording, directory, FileReason.of(failed)))
 
   private def write(table: Table[?], file: Path, connection: Connection): Path =
     val quoted = "'" + file.toString.replace("'", "''") + "'"

@@ -40,7 +40,7 @@ object McapRecording:
   ): Either[RecordError, Unit] =
     for
       rows <- RecordingReader.records(recording)
-      _    <- attempt(RecordError.ExportFailed(file, _)):
+      _    <- attempt(RecordError.ExportFailed(recording, file, _)):
         if Files.exists(file) && !Files.isRegularFile(file) then
           McapFile.write(file, options)(write(rows, scene, _))
         else

@@ -41,6 +41,6 @@ enum RecordError(val message: String):
         s"$file has recording format $found; this program reads formats $oldest to $newest"
       )
 
-  /** The folder or a file in it could not be written. */
-  case ExportFailed(directory: Path, reason: String)
-      extends RecordError(s"cannot export to $directory: $reason")
+  /** The recording could not be read to its end, or the folder or a file in it not be written. */
+  case ExportFailed(recording: Path, to: Path, reason: String)
+      extends RecordError(s"cannot export $recording to $to: $reason")

@@ -168,6 +168,13 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(rows.getInt(1), 2)
       assertEqualsDouble(rows.getDouble(2), 2 * 0.9776, 1e-12)
 
+  folder.test("an export that fails names the recording and where it was to go"): folder =>
+    val file  = folder.resolve("flight.duckdb")
+    val taken = java.nio.file.Files.writeString(folder.resolve("taken"), "")
+    record(file, Samples.oneOfEach*)
+    val told = Export.parquet(file, taken).left.map(_.message)
+    assert(clue(told).left.exists(_.startsWith(s"cannot export $file to $taken: ")))
+
   test("a recorder in memory fails when it is full instead of dropping silently"):
     val recorder = MemoryRecorder(Samples.heading, capacity = 2)
     Samples.oneOfEach.take(2).foreach(recorder.offer)
