@@ -216,7 +216,8 @@ final case class SearchSetup(
            |  by = "./skein search"
            |  complete = ${found.state.isDone}
            |  method = ${question.method}
-           |  loop = ${quoteString(question.conditions.loopText)}
+           |  loop = ${question.conditions.loop}
+           |  movesInFlight = ${question.conditions.movesInFlight}
            |  periodMs = ${question.conditions.periodMs}
            |  link = ${quoteString(question.link)}
            |  plant = ${quoteString(question.conditions.plant)}

@@ -100,7 +100,8 @@ object LearnResult:
            |  by = "./skein learn"
            |  complete = ${state.rounds == setup.rounds}
            |  algorithm = ${question.algorithm}
-           |  loop = ${quoteString(question.conditions.loopText)}
+           |  loop = ${question.conditions.loop}
+           |  movesInFlight = ${question.conditions.movesInFlight}
            |  periodMs = ${question.conditions.periodMs}
            |  link = ${quoteString(question.link)}
            |  plant = ${quoteString(question.conditions.plant)}
