@@ -60,16 +60,16 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     if arguments.exists(word => word == "--help" || word == "-h") then
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
       0
-    else if strange(arguments).nonEmpty then misused(strange(arguments).map(Misuse.noSuch(_, names)).mkString)
-    else
-      parser.constructRaw(optionsFirst(arguments)) match
-        case failure: Result.Failure => misused(Misuse.text(failure, names))
-        case Result.Success(options) =>
-          OutFolder.unlessRefused(done(options)) match
-            case Right(())    => 0
-            case Left(reason) =>
-              Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
-              1
+    else strange(arguments).fold(parsed(arguments))(word => misused(Misuse.noSuch(word, names)))
+
+  private def parsed(arguments: Seq[String]): Int = parser.constructRaw(optionsFirst(arguments)) match
+    case failure: Result.Failure => misused(Misuse.text(failure, names))
+    case Result.Success(options) =>
+      OutFolder.unlessRefused(done(options)) match
+        case Right(())    => 0
+        case Left(reason) =>
+          Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
+          1
 
   private def misused(mistakes: String): Int =
     mistakes.linesIterator.foreach(mistake =>

@@ -73,11 +73,16 @@ object ForwardOptions:
   private val DuelDuration = Span.ofSeconds(60)
 
   /** Of the scenario's flights, and so of its episodes; what is wrong with its settings is told elsewhere. */
-  def durationOf(scenario: String, settings: Map[String, String])(using scenarios: Scenarios): Span =
-    scenarios
-      .kind(scenario)
-      .flatMap(ScenarioSettings.ofKeys(_, settings))
-      .fold(_ => DuelDuration, _.duration)
+  def durationOf(scenario: String, settings: Map[String, String])(using Scenarios): Span =
+    stated(scenario, settings).fold(_ => DuelDuration, _.duration)
+
+  private def stated(scenario: String, settings: Map[String, String])(using
+      scenarios: Scenarios
+  ): Either[String, Scenario] =
+    for
+      kind <- scenarios.kind(scenario).left.map("--scenario: " + _)
+      read <- ScenarioSettings.ofKeys(kind, settings).left.map("--set: " + _)
+    yield read
 
   /** What a scenario's flights are judged by, which has to be told.
     *
@@ -85,14 +90,11 @@ object ForwardOptions:
     */
   def objectiveOf(told: Option[String], scenario: String, settings: Map[String, String])(
       known: Scenario => Iterable[String]
-  )(using scenarios: Scenarios): Either[String, String] =
-    for
-      kind      <- scenarios.kind(scenario).left.map("--scenario: " + _)
-      stated    <- ScenarioSettings.ofKeys(kind, settings).left.map("--set: " + _)
-      objective <- told.toRight(
-        s"--objective: expected a sum of the measures of $scenario: ${known(stated).mkString(", ")}"
-      )
-    yield objective
+  )(using Scenarios): Either[String, String] = told match
+    case Some(objective) => Right(objective)
+    case None            =>
+      stated(scenario, settings).flatMap: read =>
+        Left(s"--objective: expected a sum of the measures of $scenario: ${known(read).mkString(", ")}")
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
 

@@ -174,10 +174,9 @@ object SummaryTables:
       summary <- set.all
       if Predicting(summary.flight.loop)
       roundTrip <- summary.roundTripsMs.map(_.median)
-      vehicles = summary.tracks.size
-      apartMs  = 1000 * summary.flownS * vehicles / summary.commands
+      apartMs  = 1000 * summary.flownS * summary.tracks.size / summary.commands
       periodMs = summary.flight.period.toMillis
-      if vehicles > 0 && roundTrip > periodMs && apartMs > WaitingFrom * periodMs && apartMs.isFinite
+      if roundTrip > periodMs && apartMs > WaitingFrom * periodMs && apartMs.isFinite
     yield s"${summary.flight.id} moved each vehicle every ${apartMs.brief} ms, not every ${periodMs.brief}: a " +
       s"move waits for the answer to an earlier one, and a round trip takes ${roundTrip.brief} ms. With " +
       "--moves-in-flight 6 more are under way at once; the guide to AirSim says when that is safe"

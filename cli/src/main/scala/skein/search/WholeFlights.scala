@@ -117,8 +117,17 @@ object WholeFlights:
   ): Either[String, Tracks] =
     import conditions.{durationS, movesInFlight, periodMs}
     val (duration, period) = (Span.ofSeconds(durationS), Span.ofMillis(periodMs))
-    val settings           = FlySettings(List(loop), List(link), duration, period, seed + episode, scenario)
-    VirtualFlights.result(settings.copy(movesInFlight = movesInFlight)).map(_.tracks)
+    VirtualFlights
+      .result(FlySettings(
+        List(loop),
+        List(link),
+        duration,
+        period,
+        seed + episode,
+        scenario,
+        movesInFlight = movesInFlight
+      ))
+      .map(_.tracks)
 
   /** By forward simulation, world by world.
     *

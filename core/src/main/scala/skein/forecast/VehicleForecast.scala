@@ -53,12 +53,10 @@ final case class VehicleForecast[S] private (
     * effect before all that are held, it tells nothing of these.
     */
   def replaced(sequence: Long, answeredAt: Instant): VehicleForecast[S] =
-    commands.indexWhere(_.sequence > sequence) match
-      case _ if before.exists(_.sequence > sequence) => this
-      case -1                                        => this
-      case successor                                 => copy(commands =
-          commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt)))
-        )
+    val successor = commands.indexWhere(_.sequence > sequence)
+    if successor < 0 || before.exists(_.sequence > sequence) then this
+    else
+      copy(commands = commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt))))
 
   /** A call failed: unless its command is known to have arrived, or the vehicle already flies under it, it is
     * taken for lost.

@@ -3,7 +3,7 @@ package skein.environment
 import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 import skein.flight.AirSimFleet
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering}
 import skein.lanes.{LearnerDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
@@ -105,7 +105,7 @@ final case class EnvironmentSettings(
       _       <- within("capture_radius_m", captureRadiusM, 0, MostM)
       _       <- within("start_within_m", startWithinM._1, 0, MostM)
       _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
-      _       <- within("moves_in_flight", movesInFlight, 1, 16)
+      _       <- within("moves_in_flight", movesInFlight, 1, Steering.MostOutstanding)
       _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
       _       <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
       vehicle <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
