@@ -46,38 +46,50 @@ addCommandAlias("testAll", "cli/stage; python/testedWheel; testOnly *")
 lazy val root =
   project
     .in(file("."))
-    .aggregate(recognition)
-    .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
-    .aggregate(mcap, mavlink, view, python, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
-    .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, mujoco, docs)
+    .aggregate(core, testing, onnx, flow, link, vtime, vtimeAgent, forward, gpu)
+    .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, mcap, record, view)
+    .aggregate(flight, kafka, torture, environment, learn, recognition, blocks, cluster, cli, python)
+    .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
 
 /** What a part is published as: `skein-core` and so on. */
 def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)
 
 /** What tests of several modules share. */
-lazy val testing = project.settings(publish / skip := true, libraryDependencies ++= munit.map(_.withConfigurations(None)))
+lazy val testing = project.in(file("core/testing")).settings(publish / skip := true, libraryDependencies ++= munit.map(_.withConfigurations(None)))
 
 /** Pure: units, signals, vehicle dynamics, policies, scenarios. No Pekko, no I/O. */
-lazy val core = project
+lazy val core = project.in(file("core/core"))
   .settings(artifact("core", "Pure: units, signals, dynamics, policies, scenarios"))
   .settings(libraryDependencies ++= munit)
 
+/** ONNX files of dense networks, converted to policies and back. Its library of Protocol Buffers is large. */
+lazy val onnx = project.in(file("core/onnx"))
+  .settings(artifact("onnx", "ONNX files of dense networks, as policies"))
+  .dependsOn(core)
+  .settings(libraryDependencies ++= protobuf +: munit)
+
 /** Forward simulation, search, identification, planning. No Pekko. */
-lazy val forward = project
+lazy val forward = project.in(file("forward/forward"))
   .settings(artifact("forward", "Forward simulation, search, identification, planning"))
   .dependsOn(core % "compile->compile;test->test", testing % Test)
   .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
+/** Forward simulation on NVIDIA's GPUs, by their driver alone. No Pekko. */
+lazy val gpu = project.in(file("forward/gpu"))
+  .settings(artifact("gpu", "Forward simulation on NVIDIA's GPUs"))
+  .dependsOn(forward % "compile->compile;test->test", testing % Test)
+  .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
+
 /** Bodies whose physics is MuJoCo's, by its C library, which is found where it is installed. No Pekko. */
-lazy val mujoco = project
+lazy val mujoco = project.in(file("vehicles/mujoco"))
   .settings(artifact("mujoco", "Multirotors whose bodies are MuJoCo's"))
   .dependsOn(forward, testing % Test)
   .settings(libraryDependencies ++= munit)
 
 /** Rewrites clock readings as classes load. Java alone; the JVM is started with its jar as `-javaagent`. */
 lazy val vtimeAgent = project
-  .in(file("vtime-agent"))
+  .in(file("stream/vtime-agent"))
   .settings(
     name             := "skein-vtime-agent",
     description      := "Rewrites clock readings of Pekko as classes load",
@@ -99,130 +111,136 @@ lazy val underAgent = Seq(
 lazy val atRoot = run / baseDirectory := (ThisBuild / baseDirectory).value
 
 /** Any Pekko graph in virtual time. Depends on Pekko alone. */
-lazy val vtime = project
+lazy val vtime = project.in(file("stream/vtime"))
   .settings(artifact("vtime", "Any Pekko graph in virtual time"))
   .dependsOn(vtimeAgent, testing % Test)
   .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit ++ pekkoTyped.map(_ % Test))
 
 /** Transport, and the emulated network. */
-lazy val link = project
+lazy val link = project.in(file("stream/link"))
   .settings(artifact("link", "Transport, and an emulated network"))
   .dependsOn(core, vtime % Test, testing % Test)
   .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit :+ streamTestkit)
 
 /** Operators for control: ordinary Pekko flows, usable with nothing else of ours but the core. */
-lazy val flow = project
+lazy val flow = project.in(file("stream/flow"))
   .settings(artifact("flow", "Operators for control: ordinary Pekko flows"))
   .dependsOn(core, vtime % Test)
   .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit :+ streamTestkit)
 
 /** MessagePack-RPC; AirSim's typed client and wire. */
-lazy val airsim = project
+lazy val airsim = project.in(file("vehicles/airsim"))
   .settings(artifact("airsim", "MessagePack-RPC and a typed client for AirSim"))
   .dependsOn(link % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= upickle +: munit ++: Seq(streamTestkit, msgpackOracle))
 
 /** A world to see: scenes, cameras' images, lidars' rays. No Pekko, no I/O, no clock. */
-lazy val scene = project
+lazy val scene = project.in(file("vehicles/scene"))
   .settings(artifact("scene", "Scenes: drawn by software, scanned by rays"))
   .dependsOn(core)
   .settings(libraryDependencies ++= hocon +: munit)
 
 /** The built-in simulator, which speaks AirSim's wire. */
-lazy val simulator = project
+lazy val simulator = project.in(file("vehicles/simulator"))
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
   .dependsOn(scene, autopilot, hil % "compile->compile;test->test", airsim % "compile->compile;test->test")
   .dependsOn(vtime % Test, testing % Test)
   .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
-lazy val mcap = project
+lazy val mcap = project.in(file("record/mcap"))
   .settings(artifact("mcap", "MCAP files, read and written"))
   .dependsOn(testing % Test)
   .settings(libraryDependencies ++= zstd +: munit ++: Seq(lz4Oracle, upickle % Test))
 
 /** The field's protocol of vehicles. Depends on nothing of ours. */
-lazy val mavlink = project
+lazy val mavlink = project.in(file("vehicles/mavlink"))
   .settings(artifact("mavlink", "MAVLink 2: frames, signatures, the common messages"))
   .settings(libraryDependencies ++= munit)
 
 /** An autopilot's decisions behind MAVLink, as values. No Pekko, no I/O, no clock. */
-lazy val autopilot = project
+lazy val autopilot = project.in(file("vehicles/autopilot"))
   .settings(artifact("autopilot", "What an autopilot like PX4 decides and says, as pure functions"))
   .dependsOn(core, mavlink)
   .settings(libraryDependencies ++= munit)
 
 /** What a simulator says to autopilots, and hears of them, as values. No Pekko, no I/O, no clock. */
-lazy val hil = project
+lazy val hil = project.in(file("vehicles/hil"))
   .settings(artifact("hil", "Sensors with noise for autopilots in simulation: PX4, ArduPilot, Betaflight"))
   .dependsOn(core, mavlink)
   .settings(libraryDependencies ++= munit)
 
 /** Vehicles that speak MAVLink, flown by our loops. */
-lazy val offboard = project
+lazy val offboard = project.in(file("vehicles/offboard"))
   .settings(artifact("offboard", "Vehicles that speak MAVLink, as ports"))
   .dependsOn(core, mavlink, link)
   .settings(libraryDependencies ++= pekkoStream ++ munit)
 
 /** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */
-lazy val recognition = project
+lazy val recognition = project.in(file("learn/recognition"))
   .settings(artifact("recognition", "What is in an image: AprilTags, and any ONNX model"))
   .dependsOn(airsim, flight % "test->test")
   .settings(underAgent, libraryDependencies ++= Seq(boofcv, onnxruntime) ++ munit)
 
 /** Work cut into blocks for many machines, each counted once. Depends on nothing. */
-lazy val blocks = project
+lazy val blocks = project.in(file("cluster/blocks"))
   .settings(artifact("blocks", "Work for many machines, each block of it counted once"))
   .dependsOn(core % Test, testing % Test)
   .settings(libraryDependencies ++= munit)
 
 /** Blocks computed by any number of machines that come and go, over Pekko Cluster. */
-lazy val cluster = project
+lazy val cluster = project.in(file("cluster/cluster"))
   .settings(artifact("cluster", "Work on many machines that come and go, counted once, over Pekko Cluster"))
   .dependsOn(blocks, link, testing % Test)
   .settings(libraryDependencies ++= pekkoCluster ++ munit)
 
 /** Recordings. */
-lazy val record = project
+lazy val record = project.in(file("record/record"))
   .settings(artifact("record", "Recordings of flights"))
   .dependsOn(core, scene, mcap % "compile->compile;test->test")
   .settings(libraryDependencies ++= Seq(duckdb, postgres, postgresHere, zstd, protobuf) ++ pekkoStream ++ munit)
 
 /** What a browser and Foxglove see of a flight, over WebSockets. */
-lazy val view = project
+lazy val view = project.in(file("record/view"))
   .settings(artifact("view", "Flights in the browser and in Foxglove, live and replayed"))
   .dependsOn(record % "compile->compile;test->test")
   .settings(libraryDependencies ++= Seq(httpCore, upickle) ++ pekkoStream ++ munit)
 
-/** The loops; flights put together, live and in virtual time, and through faults. */
-lazy val flight = project
+/** The loops; flights put together, live and in virtual time. */
+lazy val flight = project.in(file("fly/flight"))
   .settings(artifact("flight", "Control loops, and flights put together"))
-  .dependsOn(forward, flow, simulator, offboard, mujoco % "compile->compile;test->test", record % "compile->compile;test->test", vtime)
+  .dependsOn(forward, flow, onnx, simulator, offboard, mujoco % "compile->compile;test->test", record % "compile->compile;test->test", vtime)
   .settings(underAgent)
-  .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, protobuf, streamTestkit) ++ munit)
+  .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, streamTestkit) ++ munit)
+
+/** Seeded flights through faults, checked from outside. */
+lazy val torture = project.in(file("fly/torture"))
+  .settings(artifact("torture", "Seeded flights through faults, checked from outside"))
+  .dependsOn(flight % "compile->compile;test->test")
+  .settings(underAgent, libraryDependencies ++= munit)
 
 /** Episodes step by step, for learners. */
-lazy val environment = project
+lazy val environment = project.in(file("learn/environment"))
   .settings(artifact("environment", "Episodes under a loop's timing, step by step, for learners"))
   .dependsOn(flight)
   .settings(testsCompute := true, libraryDependencies ++= munit)
 
 /** Learners of policies. */
-lazy val learn = project
+lazy val learn = project.in(file("learn/learn"))
   .settings(artifact("learn", "SAC, DDPG and PPO for policies under a loop's timing"))
   .dependsOn(environment, testing % Test)
   .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
 /** Solvers behind a Kafka broker, and such a broker for tests and for the first try. Its libraries are large. */
-lazy val kafka = project
+lazy val kafka = project.in(file("fly/kafka"))
   .settings(artifact("kafka", "Solvers behind a Kafka broker"))
   .dependsOn(flight % "compile->compile;test->test")
   .settings(underAgent, libraryDependencies ++= (kafkaClients +: kafkaBroker) ++ munit)
 
 /** Commands and reports. */
-lazy val cli = project
+lazy val cli = project.in(file("app/cli"))
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, learn, cluster, recognition, kafka)
+  .dependsOn(flight % "compile->compile;test->test", view, learn, cluster, recognition, kafka, gpu, torture)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
@@ -282,8 +300,8 @@ lazy val docs = project
     }.taskValue
   )
 
-/** From Python: `skein_uav`. Its tests run by `pytest python`, and from here where its packages can be installed. */
-lazy val python = project
+/** From Python: `skein_uav`. Its tests run by `pytest app/python`, and from here where its packages can be installed. */
+lazy val python = project.in(file("app/python"))
   .dependsOn(cli, testing % Test)
   .settings(
     publish / skip := true,

@@ -26,9 +26,34 @@ class ArchitectureSuite extends munit.FunSuite:
   private val floor: Map[String, Int] = rooms.map(_._2).zipWithIndex.toMap.withDefaultValue(-1)
 
   test("every package stands in the page's table, in its module, and every row has sources"):
-    val there = house.sources.map(source => (source.module.replace('/', '-'), source.room)).toSet
+    val there = house.sources.map(source => (source.module, source.room)).toSet
     assertEquals(there -- rooms, Set.empty)
     assertEquals(rooms.toSet -- there, Set.empty)
+
+  /** By room: the modules of its table, and the rooms that its line lets it import. */
+  private val tables: Map[String, (Set[String], String)] =
+    """(?s)### `(\w+)`\n\n[^\n]*May import: ([^\n]*)\n(.*?)(?=\n#|\n`docs`)""".r
+      .findAllMatchIn(Files.readString(root.resolve("ARCHITECTURE.md")))
+      .map: found =>
+        val modules = found.group(3).linesIterator.collect { case row(module, _) if module != null => module }
+        found.group(1) -> (modules.toSet, found.group(2))
+      .toMap
+
+  test("every module stands in the folder of its room"):
+    val there = house.sources.map(source => (house.room(root, source), source.module)).toSet
+    val told  = for (room, (modules, _)) <- tables.toSet; module <- modules yield (room, module)
+    assertEquals(there -- told, Set.empty)
+    assertEquals(told -- there, Set.empty)
+
+  test("a room imports only the rooms that its line names"):
+    val found =
+      for
+        (source, used) <- house.uses.toVector
+        other          <- used
+        (from, to) = (house.room(root, source), house.room(root, other)) if from != to
+        may        = tables(from)._2 if !may.startsWith("everything") && !may.contains(s"`$to`")
+      yield s"$from imports $to: $source uses $other"
+    assertEquals(found.sorted, Vector.empty)
 
   test("packages import only what stands below them"):
     val upwards =
@@ -45,9 +70,7 @@ class ArchitectureSuite extends munit.FunSuite:
         .mkString("\n")
     assert(circles.isEmpty, circles.mkString("\n\n"))
 
-  test(
-    "the core and forward simulation know no streams, no files, no sockets and no clock of their own, but for the GPU's driver"
-  ):
+  test("the core and forward simulation know no streams, no files, no sockets and no clock of their own"):
     val forbidden =
       Vector(
         "org.apache.pekko",
@@ -59,11 +82,10 @@ class ArchitectureSuite extends munit.FunSuite:
         "nanoTime",
         "currentTimeMillis"
       )
-    val drivers = Set("Cuda.scala", "CudaGpu.scala").map("skein/gpu/" + _)
     val found   =
       for
         source <- house.sources if source.module == "core" || source.module == "forward"
-        if !source.path.endsWith("units/Clock.scala") && !drivers.exists(source.path.endsWith)
+        if !source.path.endsWith("units/Clock.scala")
         word <- forbidden if source.says(word)
       yield s"$source says $word"
     assertEquals(found, Vector.empty)

@@ -25,10 +25,11 @@ class DocstringSuite extends munit.FunSuite:
     yield s"${at + 1}: $line"
 
   private val sources: Vector[Path] =
-    val groups  = Vector(".", "bench", "examples").map(Documentation.root.resolve)
-    val modules = groups.flatMap(Files.list(_).iterator.asScala).map(_.resolve("src/main")).filter(
-      Files.isDirectory(_)
-    )
+    val rooms   = Files.list(Documentation.root).iterator.asScala.filter(Files.isDirectory(_)).toVector
+    val modules = rooms
+      .flatMap(room => room +: Files.list(room).iterator.asScala.toVector)
+      .map(_.resolve("src/main"))
+      .filter(Files.isDirectory(_))
     modules
       .flatMap(Files.walk(_).iterator.asScala)
       .filter(path => path.toString.endsWith(".scala") || path.toString.endsWith(".java"))

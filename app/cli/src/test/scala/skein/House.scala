@@ -30,6 +30,9 @@ final case class House(sources: Vector[House.Source]):
     val said    = source.words.flatMap(visible.get) ++ source.qualified
     said.flatMap(byName.getOrElse(_, Vector.empty)).filterNot(_ == source)
 
+  /** The folder of the root that a file stands in. */
+  def room(root: Path, source: Source): String = root.relativize(source.path).getName(0).toString
+
   /** Files that use one another around a circle, largest circle first. */
   def circles: Vector[Vector[Source]] =
     val reached = sources.map(source => source -> reachedFrom(source)).toMap
@@ -71,14 +74,17 @@ object House:
   /** All sources of the product that stand under a folder. */
   def under(root: Path): House =
     def inside(folder: Path) = Files.list(folder).iterator.asScala.filter(Files.isDirectory(_)).toVector
-    val folders              = inside(root) ++ inside(root.resolve("bench"))
+    val rooms                = inside(root).filterNot(folder => noRooms(folder.getFileName.toString))
+    val folders              = rooms.flatMap(room => room +: inside(room))
     House(
       for
         folder <- folders
         main = folder.resolve("src/main") if Files.isDirectory(main)
         path <- Files.walk(main).iterator.asScala if isSource(path)
-      yield read(path, root.relativize(folder).toString)
+      yield read(path, if folder.getParent.endsWith("bench") then s"bench-${folder.getFileName}" else folder.getFileName.toString)
     )
+
+  private val noRooms = Set("docs", "examples", "project", "target")
 
   private def isSource(path: Path) = path.toString.endsWith(".scala") || path.toString.endsWith(".java")
 

@@ -7,11 +7,11 @@ import skein.docs.Documentation
 
 /** Node, its packages and a browser, where this machine has them. */
 object JavaScriptTools:
-  private val scripts = Documentation.root.resolve("cli/src/test/js")
+  private val scripts = Documentation.root.resolve("app/cli/src/test/js")
 
   /** The folder of the packages, or why there is none. */
   lazy val packages: Either[String, Path] =
-    val folder = Files.createDirectories(Documentation.root.resolve("cli/target/js"))
+    val folder = Files.createDirectories(Documentation.root.resolve("app/cli/target/js"))
     val named  = Seq("package.json", "package-lock.json")
     for name <- named do
       Files.copy(scripts.resolve(name), folder.resolve(name), StandardCopyOption.REPLACE_EXISTING): Unit
@@ -22,7 +22,7 @@ object JavaScriptTools:
     if isThere then Right(folder)
     else
       run(120, "npm", "ci", "--no-audit", "--no-fund", "--prefix", folder.toString).map(_ => folder).left.map(
-        "npm cannot install the packages of cli/src/test/js: " + _
+        "npm cannot install the packages of app/cli/src/test/js: " + _
       )
 
   /** Debian's, or that of the environment's `CHROMIUM`. */

@@ -20,9 +20,9 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
         folder.resolve(name).toFile.setExecutable(true): Unit
       script(
         folder.resolve("sbtw"),
-        """mkdir -p cli/target/universal/stage/bin
-          |printf '#!/usr/bin/env bash\necho "flown from $0: $*"\n' >cli/target/universal/stage/bin/skein
-          |chmod +x cli/target/universal/stage/bin/skein""".stripMargin
+        """mkdir -p app/cli/target/universal/stage/bin
+          |printf '#!/usr/bin/env bash\necho "flown from $0: $*"\n' >app/cli/target/universal/stage/bin/skein
+          |chmod +x app/cli/target/universal/stage/bin/skein""".stripMargin
       )
       Files.writeString(folder.resolve("build.sbt"), "")
       folder
@@ -56,7 +56,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))
     val (status, said) = run(links, Map.empty, "./two", "fly", "--seed 1")
     assertEquals(status, 0, said)
-    assert(clue(said).contains(s"$folder/cli/target/universal/stage/bin/skein: fly --seed 1"))
+    assert(clue(said).contains(s"$folder/app/cli/target/universal/stage/bin/skein: fly --seed 1"))
 
   copy.test("it is started without HOME"): folder =>
     val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")

@@ -13,7 +13,7 @@ object Launchers:
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get.toPath
 
   /** As `./sbtw cli/stage` makes it; it need not be there. */
-  val staged: Path = checkout.resolve("cli/target/universal/stage/bin/skein")
+  val staged: Path = checkout.resolve("app/cli/target/universal/stage/bin/skein")
 
   private def prepared(command: Seq[String], javaHome: String): ProcessBuilder =
     val builder = ProcessBuilder(command*).redirectErrorStream(true)

@@ -21,7 +21,7 @@ import skein.scenario.Scenarios
   given Scenarios = Scenarios.ours
   val launcher    = Iterator
     .iterate(Path.of("").toAbsolutePath)(_.getParent)
-    .map(_.resolve("cli/target/universal/stage/bin/skein"))
+    .map(_.resolve("app/cli/target/universal/stage/bin/skein"))
     .find(Files.exists(_))
     .getOrElse(throw IllegalStateException("expected a launcher, made by ./sbtw cli/stage"))
   val folder = Files.createDirectory(Path.of(out)).toAbsolutePath

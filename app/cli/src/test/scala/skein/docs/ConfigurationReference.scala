@@ -10,7 +10,7 @@ import skein.settings.ConfigKeys
   * and from the scenarios and their docstrings.
   */
 object ConfigurationReference:
-  private val file = "flight/src/main/resources/reference.conf"
+  private val file = "fly/flight/src/main/resources/reference.conf"
 
   def markdown: String =
     val settings = ConfigFactory.parseFile(Documentation.root.resolve(file).toFile)
@@ -75,7 +75,7 @@ object ConfigurationReference:
       parameters.getOrElse(name, throw java.util.NoSuchElementException(s"no @param $name: $text"))
 
   private def docstring(scenario: String): Docstring =
-    val source = Seq("core/src/main/scala/skein/scenario", "recognition/src/main/scala/skein/recognition")
+    val source = Seq("core/core/src/main/scala/skein/scenario", "learn/recognition/src/main/scala/skein/recognition")
       .map(folder => Documentation.root.resolve(s"$folder/$scenario.scala"))
       .find(Files.exists(_))
       .fold(throw java.util.NoSuchElementException(s"no source of $scenario"))(Files.readString)

@@ -9,7 +9,7 @@ import scala.jdk.CollectionConverters.*
 /** What `deploy` holds fits together, and passes the programs that will read it, where they are installed. */
 class DeploymentSuite extends munit.FunSuite:
   private val root      = Documentation.root
-  private val manifests = root.resolve("deploy/kubernetes")
+  private val manifests = root.resolve("cluster/deploy/kubernetes")
 
   /** A document's values by their paths; elements of lists have their place for a name. */
   private def paths(of: Any, at: String = ""): Map[String, String] = of match
@@ -87,7 +87,7 @@ class DeploymentSuite extends munit.FunSuite:
     val here = said("docker", "compose", "version").filterOrElse(_._1 == 0, "no plugin compose")
     assume(here.isRight, s"docker compose is not here: ${here.left.getOrElse("")}")
     val Right((status, text)) =
-      said("docker", "compose", "-f", "deploy/compose.yaml", "config"): @unchecked
+      said("docker", "compose", "-f", "cluster/deploy/compose.yaml", "config"): @unchecked
     assertEquals(status, 0, text)
 
   test("an image is built without history and without what was built here"):
@@ -95,7 +95,7 @@ class DeploymentSuite extends munit.FunSuite:
     for name <- Seq(".git", "**/target") do assert(left.contains(name), name)
 
   test("workers in the compose file reach the coordinator's port on its loopback"):
-    val Vector(file) = documents(Files.readString(root.resolve("deploy/compose.yaml")))
+    val Vector(file) = documents(Files.readString(root.resolve("cluster/deploy/compose.yaml")))
     val Some(at)     =
       "--cluster (\\S+)".r.findFirstMatchIn(file("/services/coordinator/command")).map(_.group(1)): @unchecked
     assert(file("/services/worker/command").contains(s"--join $at "))

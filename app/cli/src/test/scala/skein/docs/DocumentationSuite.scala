@@ -46,7 +46,7 @@ class DocumentationSuite extends munit.FunSuite:
 
   test("the README and the configuration name every scenario"):
     val names = OurScenarios.all.kinds.map(_.name)
-    for page <- Seq("README.md", "flight/src/main/resources/reference.conf") do
+    for page <- Seq("README.md", "fly/flight/src/main/resources/reference.conf") do
       val text = Files.readString(root.resolve(page))
       assertEquals(names.filterNot(text.contains), Vector.empty, page)
 

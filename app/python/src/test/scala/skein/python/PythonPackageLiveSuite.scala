@@ -16,7 +16,7 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     .iterate(Path.of("").toAbsolutePath)(_.getParent)
     .find(at => Files.exists(at.resolve("sbtw")))
     .get
-  private val target = root.resolve("python/target")
+  private val target = root.resolve("app/python/target")
 
   /** Or why there is none. */
   private def wheel: Either[String, Path] =
@@ -64,7 +64,7 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     val needed = ran("python3", "-c", "import duckdb, gymnasium, jpype, pandas, pettingzoo, pytest")
     assume(needed.isRight, needed.left.getOrElse("").linesIterator.toSeq.lastOption.getOrElse(""))
     assume(
-      Files.exists(root.resolve("cli/target/universal/stage/bin/skein")),
+      Files.exists(root.resolve("app/cli/target/universal/stage/bin/skein")),
       "./sbtw cli/stage was not run before"
     )
     val passed = ran("python3", "-m", "pytest", "-q", ".")

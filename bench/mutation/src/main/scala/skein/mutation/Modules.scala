@@ -8,11 +8,11 @@ import scala.util.Using
 private object Modules:
 
   val all: Vector[Module] = Vector(
-    Module("signal", "core/src/main/scala/skein/signal", Vector("skein.signal.*")),
-    Module("flow", "flow/src/main/scala/skein/flow", Vector("skein.flow.*")),
+    Module("signal", "core/core/src/main/scala/skein/signal", Vector("skein.signal.*")),
+    Module("flow", "stream/flow/src/main/scala/skein/flow", Vector("skein.flow.*")),
     Module(
       "loop",
-      "flight/src/main/scala/skein/loop",
+      "fly/flight/src/main/scala/skein/loop",
       Vector(
         "skein.loop.*Suite",
         "skein.loop.planning.*",
@@ -28,19 +28,19 @@ private object Modules:
     ),
     Module(
       "record",
-      "record/src/main/scala/skein/record",
+      "record/record/src/main/scala/skein/record",
       Vector("skein.record.*", "skein.record.DuckDbRecorderLiveSuite")
     ),
-    Module("report", "cli/src/main/scala/skein/report", Vector("skein.report.*")),
-    Module("measure", "flight/src/main/scala/skein/measure", Vector("skein.measure.*", "skein.report.*")),
+    Module("report", "app/cli/src/main/scala/skein/report", Vector("skein.report.*")),
+    Module("measure", "fly/flight/src/main/scala/skein/measure", Vector("skein.measure.*", "skein.report.*")),
     Module(
       "scenario",
-      "core/src/main/scala/skein/scenario",
+      "core/core/src/main/scala/skein/scenario",
       Vector("skein.scenario.*", "skein.measure.*", "skein.report.*")
     ),
     Module(
       "torture",
-      "flight/src/main/scala/skein/torture",
+      "fly/flight/src/main/scala/skein/torture",
       Vector("skein.torture.*Suite", "skein.torture.ChecksSimulation", "skein.torture.RestartSimulation")
     )
   )

@@ -20,9 +20,9 @@ final case class Named(file: String, before: String, after: String):
       case _ => sys.error(s"$file: '$before' does not occur once")
 
 object Named:
-  private val View      = "flight/src/main/scala/skein/loop/TeamView.scala"
-  private val Rows      = "flight/src/main/scala/skein/loop/Rows.scala"
-  private val Alignment = "core/src/main/scala/skein/signal/ClockAlignment.scala"
+  private val View      = "fly/flight/src/main/scala/skein/loop/TeamView.scala"
+  private val Rows      = "fly/flight/src/main/scala/skein/loop/Rows.scala"
+  private val Alignment = "core/core/src/main/scala/skein/signal/ClockAlignment.scala"
 
   /** By who should notice: the units' own tests, and whole flights through faults. */
   def all(root: Path): Vector[(Module, Vector[Mutant])] = Vector(
@@ -32,7 +32,7 @@ object Named:
     case ((who, suites), named) => (Module(s"named, by $who", "", suites), named.map(_.mutant(root)))
 
   private val units = Vector(
-    Named("flight/src/main/scala/skein/measure/Distribution.scala", "quantile(0.99)", "quantile(0.95)"),
+    Named("fly/flight/src/main/scala/skein/measure/Distribution.scala", "quantile(0.99)", "quantile(0.95)"),
     Named(Rows, "toController(opponent.state.validAt)", "toController(own.state.validAt)"),
     Named(Alignment, "fromSimulator - toSimulator", "toSimulator - fromSimulator"),
     Named(Alignment, "(lower - slack).max(one.lower)", "lower.max(one.lower)"),
@@ -46,18 +46,18 @@ object Named:
   private val torture = Vector(
     Named(View, ".forall(held => aligned(reading).isNewer(reading.state, held.state))", ".forall(_ => true)"),
     Named(
-      "flow/src/main/scala/skein/flow/JoinLatest.scala",
+      "stream/flow/src/main/scala/skein/flow/JoinLatest.scala",
       "held.get(key).forall(isNewer(value, _))",
       "true"
     ),
     Named(Rows, "toController(opponent.state.validAt)", "toController(own.state.validAt)"),
     Named(
-      "record/src/main/scala/skein/record/MemoryRecorder.scala",
+      "record/record/src/main/scala/skein/record/MemoryRecorder.scala",
       "else if !closed then",
       "else if !closed && record.hashCode % 50 != 0 then"
     ),
     Named(
-      "flight/src/main/scala/skein/torture/FaultyRecorder.scala",
+      "fly/flight/src/main/scala/skein/torture/FaultyRecorder.scala",
       "else recorder.offer(record)",
       "else ()"
     ),

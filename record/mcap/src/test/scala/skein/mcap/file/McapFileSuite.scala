@@ -39,7 +39,7 @@ class McapFileSuite extends munit.FunSuite, TemporaryFolders:
     )(_.getParent).map(_.resolve("docs/mcap.md")).find(Files.exists(_))
     val shown = Files.readString(source.get)
     val own   = Files.readString(
-      source.get.resolveSibling("../mcap/src/test/scala/skein/mcap/file/McapFileSuite.scala")
+      source.get.resolveSibling("../record/mcap/src/test/scala/skein/mcap/file/McapFileSuite.scala")
     )
     val example =
       own.split("    // begin\n")(1).split("    // end\n")(0).linesIterator.map(_.drop(4)).mkString("\n")
