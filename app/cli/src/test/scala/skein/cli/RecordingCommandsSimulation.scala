@@ -7,6 +7,7 @@ import skein.docs.Documentation
 import skein.flight.VirtualFlights
 import skein.forecast.Structure
 import skein.loop.LoopKind
+import skein.mcap.Record as McapRecord
 import skein.mcap.file.McapFile
 import skein.record.{FlightTopics, MemoryRecorder, Recording, ImagingSensor}
 import skein.policy.{Axis, SearchSpace}
@@ -212,14 +213,13 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString, "--mcap", mcap.toString)._1,
       0
     )
-    val schemas = McapFile
-      .read(mcap): reader =>
-        reader.summary.channels.values
-          .map(channel =>
-            channel.topic -> ujson.read(reader.summary.schemas(channel.schemaId).data.utf8)
-          ).toMap
-      .toOption
-      .get
+    val schemas = McapFile.stream(mcap): records =>
+      records
+        .map(_.fold(error => fail(error.message), _.record))
+        .collect { case channel: McapRecord.Channel =>
+          channel.topic -> ujson.read(records.schema(channel.schemaId).get.data.utf8)
+        }
+        .toMap
     val layout = ujson.read(Files.readString(Documentation.root.resolve("docs/guides/foxglove-layout.json")))
     val panels = layout("configById").obj
     val plots  = panels.values.flatMap(_.obj.get("paths").toSeq.flatMap(_.arr)).map(_("value").str).toSeq

@@ -1,12 +1,15 @@
 package skein.mcap
 
+import java.io.ByteArrayOutputStream
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Arrays
+import net.jpountz.lz4.{LZ4Exception, LZ4Factory, LZ4FrameOutputStream}
+import net.jpountz.lz4.LZ4FrameOutputStream.{BLOCKSIZE, FLG}
+import net.jpountz.xxhash.XXHashFactory
 
-/** LZ4 frames (https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md), to and from one array. Reads
-  * every frame that needs no dictionary, with blocks that look back into earlier ones and without, one behind
-  * another, and steps over skippable ones. Writes blocks of at most 4 MiB, each for itself, and the size of
-  * the content.
+/** LZ4 frames (https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md), to and from one array. Blocks
+  * and checksums are lz4-java's. That library's own reader of frames refuses blocks that refer to earlier
+  * ones, which the MCAP libraries for C++ and Python write.
   */
 private[mcap] object Lz4Frame:
   private val Number          = 0x184d2204
@@ -19,37 +22,24 @@ private[mcap] object Lz4Frame:
   private val ContentChecksum = 0x04
   private val Dictionary      = 0x01
   private val Stored          = 0x80000000
-  private val FourMiB         = 4 << 20
+  private val MaxDistance     = 65535
+  private val MinMatch        = 4
 
+  private val blocks = LZ4Factory.fastestInstance.safeDecompressor
+  private val sums   = XXHashFactory.fastestInstance.hash32
+
+  /** One frame of independent blocks of 64 KiB: of a frame that is cut off, all blocks but the last are read.
+    */
   def compress(source: Array[Byte], from: Int, until: Int): Bytes =
-    val length = until - from
-    val blocks = (length.toLong + FourMiB - 1) / FourMiB
-    val target = new Array[Byte](Math.toIntExact(19 + 4 + length.toLong + blocks * (4 + FourMiB / 255 + 16)))
-    val view   = ByteBuffer.wrap(target).order(ByteOrder.LITTLE_ENDIAN)
-    view.putInt(0, Number)
-    target(4) = (Version | Independent | ContentSize).toByte
-    target(5) = (7 << 4).toByte
-    view.putLong(6, length)
-    target(14) = (XxHash32.of(target, 4, 14) >>> 8).toByte
-    val memory = Lz4Block.Memory()
-    var out    = 15
-    var at     = from
-    while at < until do
-      val end     = until.min(at + FourMiB)
-      val written = Lz4Block.compress(source, at, end, target, out + 4, memory)
-      if written - out - 4 < end - at then
-        view.putInt(out, written - out - 4)
-        out = written
-      else
-        view.putInt(out, (end - at) | Stored)
-        System.arraycopy(source, at, target, out + 4, end - at)
-        out += 4 + end - at
-      at = end
-    view.putInt(out, 0)
-    Bytes.of(target, 0, out + 4)
+    val out   = ByteArrayOutputStream((until - from) / 2 + 64)
+    val frame =
+      LZ4FrameOutputStream(out, BLOCKSIZE.SIZE_64KB, until - from, FLG.Bits.BLOCK_INDEPENDENCE, FLG.Bits.CONTENT_SIZE)
+    frame.write(source, from, until - from)
+    frame.close()
+    Bytes.of(out.toByteArray)
 
-  /** What the frames hold, at most `size` bytes. Throws `Damaged`; where they are cut off (`cut`), gives what
-    * there is.
+  /** What the frames hold, at most `size` bytes. Throws `Damaged`; where they are cut off (`cut`), gives the
+    * blocks before the cut.
     */
   def decompress(source: Bytes, size: Int, cut: Boolean): Bytes =
     Reading(source.array, source.from, source.from + source.size, size, cut).all()
@@ -65,13 +55,15 @@ private[mcap] object Lz4Frame:
       while !ended && at < until do frame()
       Bytes.of(if cut then Arrays.copyOf(target, out) else target, 0, out)
 
-    /** Whether so many bytes are left; where not, and the frames may be cut off, that was all. */
+    /** Whether `count` bytes are left. If not, reading ends where a cut is allowed, and fails elsewhere. */
     private def has(count: Long): Boolean =
       val there = count <= until - at
       if !there then
         if cut then ended = true
         else throw Damaged(s"a frame that ends where ${count - (until - at)} bytes miss")
       there
+
+    private def checksum(array: Array[Byte], start: Int, end: Int) = sums.hash(array, start, end - start, 0)
 
     private def frame(): Unit =
       if has(4) then
@@ -86,48 +78,69 @@ private[mcap] object Lz4Frame:
 
     private def content(): Unit =
       val flags = source(at + 4) & 0xff
+      val most  = (source(at + 5) >>> 4) & 7
       if (flags & VersionMask) != Version then throw Damaged(s"a frame of version ${flags >>> 6}, not 1")
       if (flags & Dictionary) != 0 then throw Damaged("a frame that needs a dictionary")
+      if most < 4 then throw Damaged(s"a frame whose blocks have the unknown size $most")
       val header = 2 + (if (flags & ContentSize) != 0 then 8 else 0)
       if has(4L + header + 1) then
-        val checksum = (XxHash32.of(source, at + 4, at + 4 + header) >>> 8) & 0xff
-        if checksum != (source(at + 4 + header) & 0xff) then
+        if ((checksum(source, at + 4, at + 4 + header) >>> 8) & 0xff) != (source(at + 4 + header) & 0xff) then
           throw Damaged("a frame whose header's checksum differs")
         at += 4 + header + 1
         val start = out
         var open  = true
-        while open && !ended do open = block(flags, start)
+        while open && !ended do open = block(flags, 1 << (8 + 2 * most), start)
         if !ended && (flags & ContentChecksum) != 0 && has(4) then
-          val written = view.getInt(at)
-          if XxHash32.of(target, start, out) != written then
+          if checksum(target, start, out) != view.getInt(at) then
             throw Damaged("a frame whose content's checksum differs")
           at += 4
 
-    /** Whether another follows. */
-    private def block(flags: Int, start: Int): Boolean =
+    /** Reads a block of at most `most` bytes, uncompressed. Gives whether another follows. */
+    private def block(flags: Int, most: Int, start: Int): Boolean =
       has(4) && {
         val word   = view.getInt(at)
         val length = word & ~Stored
+        val summed = (flags & BlockChecksum) != 0
         at += 4
-        word != 0 && {
-          val there = length.min(until - at)
-          if there < length && !cut then throw Damaged(s"a block of $length bytes where $there are left")
-          val oldest = if (flags & Independent) != 0 then out else start
-          if (word & Stored) == 0 then
-            out = Lz4Block.decompress(source, at, at + there, target, out, size, oldest, there < length)
-          else if there > size - out then throw Damaged("more bytes than it claims")
+        word != 0 && has(length.toLong + (if summed then 4 else 0)) && {
+          if summed && checksum(source, at, at + length) != view.getInt(at + length) then
+            throw Damaged("a block whose checksum differs")
+          val room = most.min(size - out)
+          if (word & Stored) != 0 then
+            if length > room then throw Damaged("more bytes than it claims")
+            System.arraycopy(source, at, target, out, length)
+            out += length
           else
-            System.arraycopy(source, at, target, out, there)
-            out += there
-          if (flags & BlockChecksum) != 0 && there == length then checkBlock(length)
-          at += there + (if (flags & BlockChecksum) != 0 && there == length then 4 else 0)
-          if there < length then ended = true
-          !ended
+            try out += expand(length, room, if (flags & Independent) != 0 then 0 else out - start)
+            catch case _: LZ4Exception => throw Damaged("a block that is damaged, or larger than it claims")
+          at += length + (if summed then 4 else 0)
+          true
         }
       }
 
-    private def checkBlock(length: Int): Unit =
-      if until - at - length < 4 then
-        if cut then ended = true else throw Damaged("a frame that ends within a block's checksum")
-      else if XxHash32.of(source, at, at + length) != view.getInt(at + length) then
-        throw Damaged("a block whose checksum differs")
+    /** Expands a block that may refer to the last `before` bytes. Gives its length. */
+    private def expand(length: Int, room: Int, before: Int): Int =
+      if before == 0 then blocks.decompress(source, at, length, target, out, room)
+      else
+        // lz4-java takes no earlier bytes, so they are put before the block: as literals, but the last four
+        // first, and a match that copies these to the end. So the earlier bytes lie right before the block's.
+        val history  = before.max(MinMatch).min(MaxDistance)
+        val known    = before.min(history)
+        val literals = new Array[Byte](history)
+        System.arraycopy(target, out - known, literals, history - known, known)
+        val linked = ByteBuffer.allocate(history + history / 255 + 8 + length).order(ByteOrder.LITTLE_ENDIAN)
+        linked.put((history.min(15) << 4).toByte)
+        if history >= 15 then
+          for _ <- 0 until (history - 15) / 255 do linked.put(255.toByte)
+          linked.put(((history - 15) % 255).toByte)
+        linked.put(literals, history - MinMatch, MinMatch).put(literals, 0, history - MinMatch)
+        linked.putShort(history.toShort).put(source, at, length)
+        val expanded = new Array[Byte](MinMatch + history + room)
+        val whole    = blocks.decompress(linked.array, 0, linked.position, expanded, 0, expanded.length)
+        val own      = whole - MinMatch - history
+        System.arraycopy(expanded, MinMatch + history, target, out, own)
+        own
+
+/** What a compressed chunk holds instead of what it should. */
+private[mcap] final class Damaged(why: String) extends RuntimeException(why)
+    with scala.util.control.NoStackTrace

@@ -4,20 +4,12 @@ package skein.mcap
   *
   * @param recordBytes one record, thus one message, one attachment, or one chunk as it is in the file
   * @param chunkBytes the records of one chunk, uncompressed
-  * @param summaryBytes the summary with its offsets
-  * @param openBytes chunks that a reader in order of log time holds at once because their times overlap,
-  *   uncompressed
   */
 final case class McapLimits(
     recordBytes: Int = 256 << 20,
-    chunkBytes: Int = 256 << 20,
-    summaryBytes: Int = 256 << 20,
-    openBytes: Long = 1L << 30
+    chunkBytes: Int = 256 << 20
 ):
-  require(
-    recordBytes >= 32 && chunkBytes > 0 && summaryBytes > 0 && openBytes > 0,
-    s"no limit below that: $this"
-  )
+  require(recordBytes >= 32 && chunkBytes > 0, s"no limit below that: $this")
 
   private[mcap] def hold(claimed: Long, limit: Long, what: String, at: Place): Unit =
     if java.lang.Long.compareUnsigned(claimed, limit) > 0 then

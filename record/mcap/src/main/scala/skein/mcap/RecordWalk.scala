@@ -31,24 +31,7 @@ private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Bool
   private def missing(expected: String): Boolean =
     if cut then false else Refused.malformed(place, expected, s"${(end - at - 9).max(0)} bytes to the end")
 
-  /** Goes back to a record that has been stepped over. */
-  def goTo(start: Int): Unit =
-    at = records.from + start
-    next = at + 9 + view.getLong(at + 1).toInt
-
-  def size: Int      = records.size
   def opcode: Int    = array(at) & 0xff
-  def start: Int     = at - records.from
   def length: Int    = next - at
-  def place: Place   = if inChunk then Place(offset, start) else Place(offset + start)
+  def place: Place   = if inChunk then Place(offset, at - records.from) else Place(offset + at - records.from)
   def record: Record = RecordCodec.decode(opcode, array, at + 9, next, place)
-
-  /** Of a message, without decoding it. */
-  def channelId: Int = view.getShort(at + 9) & 0xffff
-  def logTime: Long  = view.getLong(at + 9 + 6)
-
-  /** Refuses a message that is shorter than its fixed fields. */
-  def isMessage: Boolean =
-    val is = opcode == Opcode.Message
-    if is && length < 9 + 22 then Refused.malformed(place, "22 bytes of Message", s"${length - 9} bytes")
-    is

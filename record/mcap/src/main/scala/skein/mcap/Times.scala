@@ -6,9 +6,8 @@ private[mcap] final class Times:
   private var least = 0L
   private var most  = 0L
 
-  def start: Long      = least
-  def end: Long        = most
-  def isEmpty: Boolean = !any
+  def start: Long = least
+  def end: Long   = most
 
   def add(time: Long): Unit =
     if !any then

@@ -48,22 +48,6 @@ class McapLimitsSuite extends munit.FunSuite:
       "byte 25: a chunk, uncompressed, claims 1099511627776 bytes, expected at most 268435456"
     )
 
-  test("chunks that overlap are held open up to the limit"):
-    val sink   = MemorySink()
-    val writer = McapWriter(sink, WriterOptions(chunkBytes = 1000))
-    val one    = writer.channel("/a", "")
-    for at <- 0 until 100 do
-      writer.message(one, at, at, at, Bytes.of(new Array[Byte](500)))
-      writer.message(one, at, 1000, 0, Bytes.of(new Array[Byte](500)))
-    writer.finish()
-    def read(limits: McapLimits) =
-      IndexedReader.open(ByteSource.of(sink.bytes), limits).toOption.get.messages().toVector
-    assertEquals(read(McapLimits()).count(_.isRight), 200)
-    read(McapLimits(openBytes = 20000)).last match
-      case Left(McapError.TooLarge(_, what, _, limit)) =>
-        assertEquals((what, limit), ("what overlaps in time", 20000L))
-      case other => fail(s"$other")
-
   test("errors say what was expected, what came, and where"):
     assertEquals(
       errorOf(Bytes.utf8("SQLite format 3")),

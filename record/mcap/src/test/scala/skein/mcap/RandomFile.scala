@@ -16,19 +16,8 @@ final case class RandomFile(
 ):
   def show: String = s"seed $seed, ${bytes.size} bytes, $options"
 
-  def topic(message: Record.Message): String = channels(message.channelId).topic
-
-  /** Without an index, what a query finds. */
-  def asked(query: Query): Vector[Record.Message] =
-    val found = messages.filter(message =>
-      query.wants(message.logTime) && query.topics.forall(_(topic(message)))
-    )
-    val byTime = Ordering.fromLessThan[Record.Message]: (a, b) =>
-      java.lang.Long.compareUnsigned(a.logTime, b.logTime) < 0
-    query.order match
-      case Query.Order.File        => found
-      case Query.Order.LogTime     => found.sorted(using byTime)
-      case Query.Order.LatestFirst => found.sorted(using byTime).reverse
+  def byTime: Vector[Record.Message] =
+    messages.sortWith((a, b) => java.lang.Long.compareUnsigned(a.logTime, b.logTime) < 0)
 
 object RandomFile:
 

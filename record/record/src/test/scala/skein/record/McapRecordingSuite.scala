@@ -1,7 +1,7 @@
 package skein.record
 
 import java.nio.file.{Files, Path}
-import skein.mcap.{Bytes, McapWriter, Query, TopicMessage}
+import skein.mcap.{Bytes, McapWriter, TopicMessage, Record as McapRecord}
 import skein.mcap.file.McapFile
 import skein.testing.TemporaryFolders
 
@@ -20,11 +20,10 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     mcap
 
   private def messages(mcap: Path, topic: String): Vector[TopicMessage] =
-    McapFile
-      .read(mcap)(_.messages(Query(topics =
-        Some(Set(topic))
-      )).map(_.fold(e => fail(e.message), identity)).toVector)
-      .fold(e => fail(e.message), identity)
+    McapFile.read(mcap, _.channel.topic == topic)(_.map(_.fold(e => fail(e.message), identity)).toVector)
+
+  private def records(mcap: Path): Vector[McapRecord] =
+    McapFile.stream(mcap)(_.map(_.fold(e => fail(e.message), _.record)).toVector)
 
   folder.test("what is exported and imported is the same recording, with the same digest"): folder =>
     val again = folder.resolve("again.duckdb")
@@ -39,7 +38,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
 
   folder.test("every table is a topic, with a schema that names its columns"): folder =>
     val mcap   = exported(folder)
-    val topics = McapFile.read(mcap)(_.summary.topics).toOption.get
+    val topics = records(mcap).collect { case channel: McapRecord.Channel => channel.topic }.toSet
     assertEquals(Table.all.map(table => s"/skein/${table.name}").toSet.diff(topics), Set.empty[String])
     val decision = messages(mcap, "/skein/decision").head
     val schema   = decision.schema.get.data.utf8
@@ -57,10 +56,9 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
       case ujson.Str("array")                                     => refused(s"$at[]", schema("items"))
       case ujson.Str("number" | "integer" | "string" | "boolean") => Vector.empty
       case other                                                  => Vector(s"$at is of type $other")
-    val (binary, schemas) = McapFile
-      .read(exported(folder))(_.summary.schemas.values.toVector)
-      .toOption
-      .get
+    val (binary, schemas) = records(exported(folder))
+      .collect { case schema: McapRecord.Schema => schema }
+      .distinct
       .partition(_.encoding == "protobuf")
     assertEquals(schemas.size, Table.all.size + FoxgloveSchemas.all.size)
     assertEquals(binary.map(_.name).toSet, Set("foxglove.RawImage", "foxglove.PointCloud"))

@@ -19,10 +19,12 @@ object McapFile:
       writer.finish()
       result
 
-  /** Reads by index; the reader must not be used after `body` returns. */
-  def read[A](path: Path, limits: McapLimits = McapLimits())(body: IndexedReader => A): Either[McapError, A] =
-    Using.resource(FileChannel.open(path, READ)): channel =>
-      IndexedReader.open(FileSource(channel), limits).map(body)
+  /** Reads the messages that `wanted` accepts, in the file's order. After an error they end. They must not be
+    * used after `body` returns.
+    */
+  def read[A](path: Path, wanted: TopicMessage => Boolean = _ => true, limits: McapLimits = McapLimits())(
+      body: Iterator[Either[McapError, TopicMessage]] => A
+  ): A = stream(path, limits)(records => body(records.messages.filter(_.forall(wanted))))
 
   /** Reads all records in the file's order and holds every CRC; the stream must not be used after `body`
     * returns.

@@ -2,7 +2,7 @@ package skein.mcap.file
 
 import java.nio.ByteBuffer
 import java.nio.channels.ReadableByteChannel
-import skein.mcap.{McapLimits, McapError, Parsed, Record, StreamParser}
+import skein.mcap.{McapError, McapLimits, Parsed, Record, StreamParser, TopicMessage}
 
 /** The records of a file that can be read once, from its start on, such as a pipe or a socket. After an error
   * it ends. Reading blocks while the channel does, and throws its `IOException`.
@@ -36,6 +36,14 @@ final class RecordStream(channel: ReadableByteChannel, limits: McapLimits = Mcap
     val found = ahead.get
     ahead = None
     found
+
+  /** The messages alone. */
+  def messages: Iterator[Either[McapError, TopicMessage]] = collect:
+    case Right(Parsed.Found(message: Record.Message, _, _)) =>
+      // The parser refuses a message of a channel that is not known.
+      val channel = parser.channel(message.channelId).get
+      Right(TopicMessage(channel, parser.schema(channel.schemaId), message))
+    case Left(error) => Left(error)
 
   private def refill(): Unit =
     piece.clear()
