@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.nio.file.Path
-import mainargs.{Flag, ParserForClass, arg}
+import mainargs.{ParserForClass, arg}
 import skein.cluster.{Endpoint, Tls}
 import skein.link.Address
 import skein.search.SearchBlock
@@ -22,10 +22,6 @@ final case class ClusterOptions(
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
     @arg(doc =
-      "offers this program, with your own classes, to workers that accept it (./skein worker --accept-jars)"
-    )
-    ship: Flag,
-    @arg(doc =
       "port, or HOST:PORT, where Prometheus reads the progress; without " +
         "HOST, on this machine's loopback alone; 0 for any free port"
     )
@@ -37,9 +33,9 @@ final case class ClusterOptions(
   def checked: Either[String, Option[ClusterOptions.Checked]] =
     if workers.isEmpty && cluster.isEmpty then
       Either.cond(
-        block.isEmpty && tls.isEmpty && metrics.isEmpty && !ship.value,
+        block.isEmpty && tls.isEmpty && metrics.isEmpty,
         None,
-        "--block, --tls, --ship, --metrics: expected with --workers or --cluster"
+        "--block, --tls, --metrics: expected with --workers or --cluster"
       )
     else
       for
@@ -47,12 +43,10 @@ final case class ClusterOptions(
           s"--workers: expected 1 to $MostWorkers, came ${workers.getOrElse(0)}"
         _ <- Expect.that(block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes)):
           s"--block: expected 1 to ${SearchBlock.MostEpisodes}, came ${block.getOrElse(0)}"
-        _ <- Expect.that(!ship.value || cluster.isDefined):
-          "--ship: expected with --cluster; workers on this machine have this program already"
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
         seen   <- metrics.fold(Right(None))(portOrEndpoint(_).map(Some(_)))
-      yield Some(Checked(workers.getOrElse(0), listen, block, tls, ship.value, seen))
+      yield Some(Checked(workers.getOrElse(0), listen, block, tls, seen))
 
 object ClusterOptions:
   given ParserForClass[ClusterOptions] = ParserForClass[ClusterOptions]
@@ -62,7 +56,6 @@ object ClusterOptions:
       listen: Endpoint,
       block: Option[Int],
       tls: Option[Tls],
-      ship: Boolean,
       metrics: Option[Endpoint]
   )
 

@@ -6,9 +6,7 @@ import java.security.MessageDigest
 import java.util.concurrent.atomic.AtomicReference
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.{ExecutionContext, Future}
-import scala.util.Using
 import skein.blocks.Ledger
-import skein.cluster.jars.Shipment
 import skein.cluster.{CoordinatorNode, WorkerProcesses}
 import skein.report.TextTable
 import skein.search.{BlockExecutor, BlocksFailed}
@@ -20,8 +18,7 @@ private[cli] final class ClusterRun private (
     program: String,
     folder: Path,
     threads: Int,
-    shown: Shown,
-    shipment: Option[Shipment]
+    shown: Shown
 ) extends BlockExecutor:
   private val failure = AtomicReference(Option.empty[String])
 
@@ -55,8 +52,7 @@ private[cli] final class ClusterRun private (
       catch case cannot: IOException => failed(s"cannot start workers: ${cannot.getMessage}")
 
   private def run[A](body: ClusterRun => Either[String, A]): Either[String, A] =
-    val accepting = shipment.fold("")(shipped => s" --accept-jars ${shipped.program.digest}")
-    shown.say(s"workers join by ./skein worker --join ${node.address}$accepting")
+    shown.say(s"workers join by ./skein worker --join ${node.address}")
     try
       val done = options.metrics match
         case None       => body(this)
@@ -158,17 +154,8 @@ private[cli] object ClusterRun:
         )
       ended <-
         try
-          shipping(options, program): shipment =>
-            CoordinatorNode
-              .start(options.listen, options.tls, question, ledger, shipment = shipment)(news =>
-                Console.err.println(news.text)
-              )
-              .flatMap(node => ClusterRun(node, options, program, folder, threads, shown, shipment).run(body))
+          CoordinatorNode
+            .start(options.listen, options.tls, question, ledger)(news => Console.err.println(news.text))
+            .flatMap(node => ClusterRun(node, options, program, folder, threads, shown).run(body))
         finally ledger.close()
     yield ended
-
-  private def shipping[A](options: ClusterOptions.Checked, program: String)(
-      body: Option[Shipment] => Either[String, A]
-  ): Either[String, A] =
-    if !options.ship then body(None)
-    else Shipment.of(program).flatMap(shipment => Using.resource(shipment)(one => body(Some(one))))

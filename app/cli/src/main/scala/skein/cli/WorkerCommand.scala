@@ -5,7 +5,6 @@ import java.time.LocalTime
 import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.duration.DurationLong
-import skein.cluster.jars.{Acceptance, JarStore, Sha256}
 import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
 import skein.scenario.Scenarios
 import skein.units.{Expect, Span}
@@ -25,11 +24,6 @@ final case class WorkerOptions(
     patience: String = "60s",
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
-    @arg(doc =
-      "SHA-256 of a program that is run instead of this one if the coordinator " +
-        "ships it (--ship, which prints it); several with commas between"
-    )
-    acceptJars: Option[String],
     @arg(doc = "ends when its standard input ends, and so with the process that started it")
     attached: Flag
 )
@@ -58,42 +52,14 @@ final class WorkerCommand(using Scenarios)
         s"--patience: expected a week at most, came ${options.patience}"
       _ <- Expect.that(join.isLoopback || options.listen.isDefined):
         s"--listen: expected where the coordinator at $join reaches this worker, for example ${"HOST"}:25521"
-      programs <- accepted(options.acceptJars)
-      node = WorkerNode(
-        join,
-        listen,
-        tls,
-        threads,
-        QuestionKind.solvers,
-        patience.toNanos.nanos,
-        programs = programs
-      )(say)
-      child = FetchedWorker(again(options), programs.store.folder)
-      stop  = () =>
-        node.stop()
-        child.stop()
-      _ = if options.attached.value then
+      node = WorkerNode(join, listen, tls, threads, QuestionKind.solvers, patience.toNanos.nanos)(say)
+      _    = if options.attached.value then
         WorkerProcesses.endWithParent: () =>
-          stop()
+          node.stop()
           Thread.sleep(Grace)
           Runtime.getRuntime.halt(1)
-      _ <- Edge.untilInterrupted(stop, Grace)(node.run().flatMap(_.map(child.run).getOrElse(Right(()))))
+      _ <- Edge.untilInterrupted(() => node.stop(), Grace)(node.run())
     yield ()
-
-  /** What a worker is told that works in the place of this one. */
-  private def again(options: WorkerOptions): Seq[String] =
-    import options.*
-    val told =
-      Seq("--join" -> Some(join), "--listen" -> listen, "--threads" -> threads.map(_.toString)) ++
-        Seq("--patience" -> Some(patience), "--tls" -> tls)
-    "worker" +: "--attached" +: told.collect { case (flag, Some(value)) => Seq(flag, value) }.flatten
-
-  private def accepted(digests: Option[String]): Either[String, Acceptance] = digests match
-    case None       => Right(Acceptance.none)
-    case Some(text) =>
-      Expect
-        .all(text.split(',').toSeq)(Sha256.parse(_).left.map("--accept-jars: " + _))
-        .map(accepted => Acceptance(accepted.toSet, JarStore.ofUser))
 
   private def say(line: String): Unit =
     Console.out.println(s"${LocalTime.now().format(WorkerCommand.Time)} $line")

@@ -1,7 +1,8 @@
 package skein.search
 
 import java.nio.file.{Files, InvalidPathException, Path}
-import skein.cluster.jars.Sha256
+import java.security.MessageDigest
+import java.util.HexFormat
 import skein.units.Expect
 
 /** Files that a question names: what they held when it was asked. */
@@ -13,7 +14,10 @@ object NamedFiles:
     (for
       name <- names
       path <- Seq(name, name.dropWhile(_ != ':').drop(1)).filter(isFile)
-    yield path -> Sha256.of(Path.of(path)).hex).toMap
+    yield path -> sha256(Path.of(path))).toMap
+
+  private def sha256(file: Path) =
+    HexFormat.of.formatHex(MessageDigest.getInstance("SHA-256").digest(Files.readAllBytes(file)))
 
   private def isFile(name: String) =
     try name.nonEmpty && Files.isRegularFile(Path.of(name))

@@ -125,4 +125,3 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     assert(clue(refused("--block", "7")).contains("--workers"))
     assert(clue(refused("--workers", "0")).contains("expected 1 to"))
     assert(clue(refused("--cluster", "0.0.0.0:0")).contains("certificates"))
-    assert(clue(refused("--workers", "1", "--ship")).contains("--ship: expected with --cluster"))

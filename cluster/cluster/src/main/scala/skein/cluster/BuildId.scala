@@ -1,12 +1,12 @@
 package skein.cluster
 
+import java.io.File
 import java.nio.file.{Files, Path}
 import java.security.MessageDigest
 import java.util.HexFormat
 import java.util.zip.{CRC32, ZipFile}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
-import skein.cluster.jars.ClassPath
 
 /** Names what a process would compute with: the classes on its class path, wherever they lie. */
 object BuildId:
@@ -14,7 +14,9 @@ object BuildId:
   /** 16 hexadecimal digits. Processes of the same name have the same classes; a class more, as of somebody's
     * scenario, is another name.
     */
-  lazy val current: String = of(ClassPath.current)
+  lazy val current: String = of(
+    sys.props("java.class.path").split(File.pathSeparatorChar).toVector.filter(_.nonEmpty).map(Path.of(_))
+  )
 
   private[cluster] def of(classPath: Vector[Path]): String =
     val classes = classPath.flatMap(part =>
@@ -40,5 +42,5 @@ object BuildId:
       files.iterator.asScala.filter(file => isClass(file.getFileName.toString)).map: file =>
         val crc = CRC32()
         crc.update(Files.readAllBytes(file))
-        (folder.relativize(file).toString.replace(java.io.File.separatorChar, '/'), crc.getValue)
+        (folder.relativize(file).toString.replace(File.separatorChar, '/'), crc.getValue)
       .toVector

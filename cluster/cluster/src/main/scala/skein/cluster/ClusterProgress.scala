@@ -45,6 +45,3 @@ enum WorkerEvent(val text: String):
       extends WorkerEvent(
         s"somebody is not trusted here, or does not trust this side: $reason"
       )
-  case Fetching(worker: String) extends WorkerEvent(s"$worker fetches this program, for its own is another")
-  case Unread(worker: String, reason: String)
-      extends WorkerEvent(s"$worker cannot have this program: $reason")

@@ -9,20 +9,13 @@ import scala.collection.mutable
 import scala.concurrent.Promise
 import scala.concurrent.duration.DurationInt
 import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
-import skein.cluster.jars.Shipment
 
 /** What a coordinator works on.
   *
   * @param run names this coordinator's life; not 0
   * @param build that workers must have
-  * @param shipment of that build, for workers that have another
   */
-private[cluster] final case class Job(
-    run: Long,
-    build: String,
-    question: ArraySeq[Byte],
-    shipment: Option[Shipment] = None
-)
+private[cluster] final case class Job(run: Long, build: String, question: ArraySeq[Byte])
 
 /** The edge of [[Coordinator]], which decides: hears workers, keeps answers, tells how it goes. One call at a
   * time.
@@ -69,7 +62,6 @@ private[cluster] final class CoordinatorBehavior private (
       case Message.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case Message.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
-      case fetch: Message.Fetch                    => fetched(fetch)
       case _: ToCoordinator                        => () // Of an earlier run.
       case asked: Compute                          => compute(asked)
       case Cancel                                  =>
@@ -99,11 +91,8 @@ private[cluster] final class CoordinatorBehavior private (
   private def asked(ask: Message.Ask): Unit =
     if ask.build != job.build then
       val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
-      job.shipment match
-        case Some(shipment) => say(ask.replyTo, Message.Offered(job.run, reason, shipment.program.digest))
-        case None           =>
-          say(ask.replyTo, Message.Refused(reason))
-          once(WorkerEvent.Refused(ask.worker, reason))
+      say(ask.replyTo, Message.Refused(reason))
+      once(WorkerEvent.Refused(ask.worker, reason))
     else if isDone then say(ask.replyTo, Message.Goodbye)
     else
       addresses += ask.worker -> ask.replyTo
@@ -117,16 +106,6 @@ private[cluster] final class CoordinatorBehavior private (
   private def say(to: ActorRef[ToWorker], message: ToWorker): Unit =
     traffic = traffic.saying(message)
     to ! message
-
-  private def fetched(fetch: Message.Fetch): Unit = for shipment <- job.shipment do
-    import fetch.*
-    once(WorkerEvent.Fetching(worker))
-    val bytes = shipment.piece(content, offset) match
-      case Right(piece) => piece
-      case Left(reason) =>
-        once(WorkerEvent.Unread(worker, reason))
-        ArraySeq.empty[Byte]
-    say(replyTo, Message.Piece(content, offset, bytes))
 
   private def once(news: WorkerEvent): Unit =
     if !told(news) && told.size < MostTold then

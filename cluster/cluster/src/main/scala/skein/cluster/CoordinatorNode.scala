@@ -20,7 +20,6 @@ import scala.concurrent.ExecutionContext.parasitic
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.blocks.Ledger
-import skein.cluster.jars.Shipment
 
 /** The process that hands out blocks and keeps their answers. */
 final class CoordinatorNode private (
@@ -85,7 +84,6 @@ object CoordinatorNode:
 
   /** @param listen port 0 for any that is free
     * @param ledger of this question
-    * @param shipment this program, for workers of another that accept it
     * @param tell on a thread of the node's own
     * @return or why it cannot listen
     */
@@ -94,8 +92,7 @@ object CoordinatorNode:
       tls: Option[Tls],
       question: ArraySeq[Byte],
       ledger: Ledger,
-      build: String = BuildId.current,
-      shipment: Option[Shipment] = None
+      build: String = BuildId.current
   )(tell: WorkerEvent => Unit): Either[String, CoordinatorNode] =
     for
       _ <- Either.cond(
@@ -109,7 +106,7 @@ object CoordinatorNode:
         catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${reason(failed)}")
     yield
       val latest  = AtomicReference(ClusterProgress())
-      val job     = Job(SecureRandom().nextLong() | 1, build, question, shipment)
+      val job     = Job(SecureRandom().nextLong() | 1, build, question)
       val manager = Cluster(system.toTyped).manager
       val actor   =
         system.spawn(CoordinatorBehavior(job, ledger, tell, latest.set, manager ! Down(_)), Name)

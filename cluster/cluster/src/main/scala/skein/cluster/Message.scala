@@ -2,7 +2,6 @@ package skein.cluster
 
 import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
-import skein.cluster.jars.Sha256
 
 /** What workers say. Any message may come late, twice or never. */
 private[cluster] sealed trait ToCoordinator extends Product
@@ -35,7 +34,7 @@ private[cluster] enum Message:
   /** A block cannot be computed: nobody could. */
   case Failed(run: Long, worker: String, number: Long, reason: String) extends Message, ToCoordinator
 
-  /** This worker cannot answer the run's question, or does not run its program. */
+  /** This worker cannot answer the run's question. */
   case Unable(run: Long, worker: String, reason: String) extends Message, ToCoordinator
 
   case Welcome(run: Long, question: ArraySeq[Byte])        extends Message, ToWorker
@@ -46,15 +45,3 @@ private[cluster] enum Message:
 
   /** All is done. */
   case Goodbye extends Message, ToWorker
-
-  /** Its build is another, and it may have the coordinator's. */
-  case Offered(run: Long, reason: String, program: Sha256) extends Message, ToWorker
-
-  /** Of the coordinator's program, as it was asked for; empty where there are no such bytes. */
-  case Piece(content: Sha256, offset: Long, bytes: ArraySeq[Byte]) extends Message, ToWorker
-
-  /** A worker wants bytes of the program that it was offered: of its text or of one of its jars, from an
-    * offset on.
-    */
-  case Fetch(worker: String, content: Sha256, offset: Long, replyTo: ActorRef[ToWorker])
-      extends Message, ToCoordinator

@@ -1,10 +1,8 @@
 package skein.cluster
 
-import java.io.IOException
 import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
 import skein.bytes.Codec
-import skein.cluster.jars.Sha256
 
 /** Messages as bytes, as [[Codec]] writes them. No size that a peer states is believed before it is seen to
   * be within its bound.
@@ -26,9 +24,6 @@ private[cluster] final class MessageCodec(
     out.writeInt(held.size)
     held.foreach(out.writeLong)
   )(in => Set.from(Iterator.fill(Codec.length(in, MostHeld))(in.readLong())))
-
-  private given Codec[Sha256] =
-    Codec[String].imap(Sha256.parse(_).fold(wrong => throw IOException(wrong), identity))(_.hex)
 
   private given Codec[ActorRef[ToWorker]] = Codec[String].imap(actorOf)(nameOf)
 

@@ -6,7 +6,6 @@ import org.apache.pekko.actor.typed.{ActorRef, Behavior}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
-import skein.cluster.jars.{Acceptance, Sha256}
 import skein.units.Decimals.fixed
 
 /** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the
@@ -79,16 +78,10 @@ private[cluster] final class WorkerBehavior private (
         case Left(reason) => coordinator ! Message.Failed(run, self.name, number, reason)
       ask()
       this
-    case Message.Refused(reason)              => end(End.Refused(reason))
-    case Message.Offered(of, reason, program) =>
-      self.programs.of(program) match
-        case Right(accepted) => end(End.Offered(of, accepted))
-        case Left(why)       =>
-          coordinator ! Message.Unable(of, self.name, s"$reason; $why")
-          end(End.Refused(s"$reason; $why"))
-    case Message.Goodbye => end(End.Finished)
-    case Unreachable     => end(End.Lost)
-    case _               => this // Of an earlier run, or a block that it has.
+    case Message.Refused(reason) => end(End.Refused(reason))
+    case Message.Goodbye         => end(End.Finished)
+    case Unreachable             => end(End.Lost)
+    case _                       => this // Of an earlier run, or a block that it has.
 
   private def askIfReady(): Unit = if member && solvers.isDefined then ask()
 
@@ -135,16 +128,13 @@ private[cluster] final class WorkerBehavior private (
     Solved(of, number, answer, System.nanoTime() - begun)
 
 private[cluster] object WorkerBehavior:
-  /** @param build see [[BuildId]]
-    * @param programs that it runs in the place of its own
-    */
+  /** @param build see [[BuildId]] */
   final case class Self(
       name: String,
       cores: Int,
       build: String,
       solvers: BlockSolverFactory,
-      startedAt: Long,
-      programs: Acceptance = Acceptance.none
+      startedAt: Long
   ):
     /** For a person; it started at `startedAt` by `System.nanoTime`. */
     def age: String = s"${((System.nanoTime() - startedAt) * 1e-9).fixed(1)} s after its start"
@@ -152,9 +142,6 @@ private[cluster] object WorkerBehavior:
   enum End:
     case Finished, Lost
     case Refused(reason: String)
-
-    /** The coordinator of this run has a program that this worker is to run. */
-    case Offered(run: Long, program: Sha256)
 
   sealed trait Local
   private case object Beat extends Local

@@ -3,7 +3,6 @@ package skein.cluster
 import com.typesafe.config.Config
 import java.net.InetAddress
 import java.util.concurrent.{ExecutorService, Executors, TimeUnit, TimeoutException}
-import org.apache.pekko.actor.typed.scaladsl.AskPattern.*
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, ActorRefResolver, Behavior}
@@ -15,20 +14,16 @@ import org.apache.pekko.cluster.ClusterEvent.{
   UnreachableMember
 }
 import org.apache.pekko.cluster.typed.{Cluster, JoinSeedNodes, SelfUp, Subscribe}
-import org.apache.pekko.util.Timeout
-import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.{Duration, DurationInt, DurationLong, FiniteDuration}
 import scala.concurrent.{Await, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.cluster.WorkerBehavior.End
-import skein.cluster.jars.{Acceptance, Fetched, NotFetched, Sha256}
 import skein.link.TlsProbe
 
 /** A process that computes blocks.
   *
   * @param patience for how long it tries to reach a coordinator that it has not reached yet, or has lost
-  * @param programs that it runs in the place of its own
   * @param tell what it does, in lines for a person
   */
 final class WorkerNode(
@@ -39,8 +34,7 @@ final class WorkerNode(
     solvers: BlockSolverFactory,
     patience: FiniteDuration,
     name: String = WorkerNode.nameOf(ProcessHandle.current().pid()),
-    build: String = BuildId.current,
-    programs: Acceptance = Acceptance.none
+    build: String = BuildId.current
 )(tell: String => Unit):
   require(
     cores >= 1 && cores <= MessageCodec.MostCores,
@@ -60,29 +54,27 @@ final class WorkerNode(
 
   /** Works until the coordinator has no more to do. Blocks the calling thread.
     *
-    * @return the coordinator's program, where that is another, and is accepted: it is to work in the place of
-    *   this one. Or why it could not
+    * @return or why it could not
     */
-  def run(): Either[String, Option[Fetched]] =
+  def run(): Either[String, Unit] =
     NodeConfig.of(listen, tls, joins = Some(coordinator)).flatMap: config =>
       val pool = Executors.newFixedThreadPool(cores, WorkerNode.thread(_))
-      val self = WorkerBehavior.Self(name, cores, build, solvers, System.nanoTime(), programs)
+      val self = WorkerBehavior.Self(name, cores, build, solvers, System.nanoTime())
       try
         tell(s"$name, $cores ${if cores == 1 then "core" else "cores"}, build $build: joining $coordinator")
         contactAt = self.startedAt
-        var outcome = Option.empty[Either[String, Option[Fetched]]]
+        var outcome = Option.empty[Either[String, Unit]]
         while outcome.isEmpty do
           val how    = once(config, self, pool)
           val waited = System.nanoTime() - contactAt
           outcome = how match
             case _ if stopped =>
               tell("told to end")
-              Some(Right(None))
+              Some(Right(()))
             case End.Finished =>
               tell("the work is done: the coordinator has all that it asked")
-              Some(Right(None))
+              Some(Right(()))
             case End.Refused(reason)            => Some(Left(reason))
-            case program: Fetched               => Some(Right(Some(program)))
             case _ if waited > patience.toNanos =>
               val why = refusal.fold("")("; " + _)
               Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s$why"))
@@ -102,7 +94,7 @@ final class WorkerNode(
         "who listens there asks for certificates: expected --tls FOLDER with this machine's"
 
   /** From joining to the end, once. */
-  private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End | Fetched =
+  private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End =
     val promise            = Promise[End]()
     @volatile var isMember = false
     ending = promise
@@ -128,57 +120,11 @@ final class WorkerNode(
       val how  = WorkerNode.within(left)(promise).getOrElse:
         if isMember then Await.result(promise.future, Duration.Inf) else End.Lost
       if isMember then contactAt = System.nanoTime()
-      how match
-        case End.Offered(run, program) => fetched(run, program, to, system)
-        case other                     => other
+      how
     finally
       val _ = Try(Await.result(system.terminate(), Duration(10, TimeUnit.SECONDS)))
 
-  private def fetched(
-      run: Long,
-      program: Sha256,
-      from: ActorRef[ToCoordinator],
-      system: ActorSystem
-  ): End | Fetched =
-    tell(s"fetches the coordinator's program, $program")
-    val came = programs.fetch(program, tell): (content, offset) =>
-      Iterator
-        .continually(piece(content, offset, from, system))
-        .take(WorkerNode.Attempts)
-        .takeWhile(_ => !stopped)
-        .collectFirst { case Some(bytes) => bytes }
-        .toRight(NotFetched.CutOff)
-    contactAt = System.nanoTime()
-    came match
-      case Right(program)                   => program
-      case Left(NotFetched.CutOff)          => End.Lost
-      case Left(NotFetched.Refused(reason)) =>
-        from ! Message.Unable(run, name, reason)
-        End.Refused(reason)
-
-  private def piece(
-      content: Sha256,
-      offset: Long,
-      from: ActorRef[ToCoordinator],
-      system: ActorSystem
-  ): Option[ArraySeq[Byte]] =
-    // It fails at once where this node ended meanwhile, since nobody let it join.
-    Try(Await.result(
-      from.ask[ToWorker](Message.Fetch(name, content, offset, _))(
-        using
-        Timeout(WorkerNode.AnswerWithin),
-        system.toTyped.scheduler
-      ),
-      Duration.Inf
-    )).toOption.collect:
-      case Message.Piece(`content`, `offset`, bytes) => bytes
-
 object WorkerNode:
-  /** Pieces of a program are asked for so often, each time for so long, until the coordinator counts as lost.
-    */
-  private val Attempts     = 5
-  private val AnswerWithin = 3.seconds
-
   /** A worker's name, by its process. */
   def nameOf(pid: Long): String = s"$host-$pid"
 

@@ -1,13 +1,11 @@
 package skein.cluster
 
-import java.io.File
 import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
-import skein.cluster.jars.Fetched
 
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from
   * it, whose end it watches for ([[WorkerProcesses.endWithParent]]).
@@ -124,20 +122,8 @@ object WorkerProcesses:
     * @param program the class with `main`
     */
   def likeThis(program: String, words: Seq[String]): Seq[String] =
-    command(ofWorkers, sys.props("java.class.path"), program, words)
-
-  /** A command that runs a program that was fetched as this one runs, by classes of its own.
-    *
-    * @param archives folder for what the JVM keeps of them
-    */
-  def fetched(program: Fetched, archives: Path, words: Seq[String]): Seq[String] =
-    val archive                = archives.resolve(s"${program.digest}.jsa")
-    def option(ofThis: String) = if ofThis.startsWith(Archive) then s"$Archive$archive" else ofThis
-    command(option, program.classPath.mkString(File.pathSeparator), program.main, words)
-
-  private def command(option: String => String, classPath: String, main: String, words: Seq[String]) =
     val options = ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
       .filterNot(option => option.startsWith("-agentlib") || option.startsWith("-Xrun"))
-      .map(option)
+      .map(ofWorkers)
     val java = Path.of(sys.props("java.home"), "bin", "java").toString
-    (java +: options.toSeq) ++ Seq("-cp", classPath, main) ++ words
+    (java +: options.toSeq) ++ Seq("-cp", sys.props("java.class.path"), program) ++ words

@@ -10,7 +10,6 @@ import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
 import skein.blocks.Ledger
-import skein.cluster.jars.{Acceptance, Fetched, JarStore, Sha256, Shipment}
 import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Coordinator and workers as nodes of their own in one JVM, over loopback. */
@@ -46,14 +45,13 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       val folder: Path,
       port: Int = 0,
       host: String = loopback.host,
-      tls: Option[Tls] = None,
-      shipment: Option[Shipment] = None
+      tls: Option[Tls] = None
   ) extends AutoCloseable:
     val news   = ConcurrentLinkedQueue[WorkerEvent]()
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
-      .start(Endpoint(host, port), tls, question, ledger, "one", shipment)(heard)
+      .start(Endpoint(host, port), tls, question, ledger, "one")(heard)
       .fold(fail(_), identity)
 
     private def heard(one: WorkerEvent): Unit =
@@ -77,12 +75,11 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       build: String = "one",
       cores: Int = 1,
       tls: Option[Tls] = None,
-      patience: FiniteDuration = 60.seconds,
-      programs: Acceptance = Acceptance.none
+      patience: FiniteDuration = 60.seconds
   ) =
     val told = ConcurrentLinkedQueue[String]()
     val node =
-      WorkerNode(to, loopback, tls, cores, solvers, patience, name, build, programs)(told.add(_): Unit)
+      WorkerNode(to, loopback, tls, cores, solvers, patience, name, build)(told.add(_): Unit)
     (node, Future(blocking(node.run())), told)
 
   /** Folders of a lab, of a host each. Made by other processes while other tests run, which mostly wait. */
@@ -112,7 +109,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(solvers.solved.get, solved, "nothing is computed twice")
       assertEquals(coordinator.ledger.size, works.size)
       coordinator.node.close(): Unit
-      for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(None))
+      for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(()))
 
   test("workers join where an IPv6 address is listened at"):
     val address = Try(ServerSocket(0, 1, InetAddress.ofLiteral("::1"))).map(_.close())
@@ -126,7 +123,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("a worker that is not ready yet when all is done is told so, and ends at once"):
     val asked = CountDownLatch(1)
     val never = CountDownLatch(1)
-    var ended = Option.empty[(Future[Either[String, Option[Fetched]]], ConcurrentLinkedQueue[String])]
+    var ended = Option.empty[(Future[Either[String, Unit]], ConcurrentLinkedQueue[String])]
     coordinating: coordinator =>
       val (_, end, told) = worker(
         coordinator.node.address,
@@ -139,7 +136,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       ended = Some((end, told))
       asked.await()
     for (end, told) <- ended do
-      assertEquals(Await.result(end, 15.seconds), Right(None))
+      assertEquals(Await.result(end, 15.seconds), Right(()))
       assert(clue(told.asScala.last).contains("the work is done"))
 
   test("a worker of another build is refused with both told, and one that cannot answer the question too"):
@@ -152,32 +149,6 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(unable).contains("no scenario 'ridge'"))
       val told = coordinator.news.asScala.map(_.text).toVector
       assert(clue(told).exists(_.contains("refused anna: its build is two")))
-
-  test(
-    "a worker of another build has the coordinator's program " +
-      "from it if it accepts that one, and else is refused"
-  ):
-    val jar = Files.write(temporaryFolder().resolve("ridge.jar"), scala.util.Random(1).nextBytes(3 << 20))
-    val shipment = Shipment.of("ridge.Main", Vector(jar)).fold(fail(_), identity)
-    val shipping = Coordinating(temporaryFolder(), shipment = Some(shipment))
-    try
-      def ended(name: String, digests: Sha256*) =
-        val programs = Acceptance(digests.toSet, JarStore(temporaryFolder()), Vector.empty)
-        val to       = shipping.node.address
-        Await.result(worker(to, name, Reversing(), build = "two", programs = programs)._2, 60.seconds)
-      val fetched = ended("anna", shipment.program.digest).fold(fail(_), _.get)
-      assertEquals(fetched.main, "ridge.Main")
-      assertEquals(fetched.classPath.map(Files.mismatch(_, jar)), Vector(-1L))
-      val refusal = ended("ben").swap.getOrElse(fail("was taken"))
-      assert(clue(refusal).contains("its build is two") && refusal.contains("--accept-jars"))
-      val other = ended("cleo", Sha256.of(Array[Byte](1))).swap.getOrElse(fail("was taken"))
-      assert(clue(other).contains("another program than those"))
-      val told = shipping.news.asScala.map(_.text).toVector
-      assert(clue(told).exists(_.startsWith("anna fetches this program")))
-      assert(told.exists(_.startsWith("refused ben")))
-    finally
-      shipping.close()
-      shipment.close()
 
   private def garbage(port: Int): Unit =
     Garbage.send(port, 0 until 330)(Garbage.of)
