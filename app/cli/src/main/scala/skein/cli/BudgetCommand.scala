@@ -3,7 +3,6 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.budget.*
-import skein.optimise.WeightedSum
 import skein.record.LoopKind
 import skein.scenario.Scenarios
 import skein.search.TeamQuestion
@@ -11,7 +10,6 @@ import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.significant
 import skein.units.{Expect, Span}
-import skein.view.TaskShow
 
 /** Options of `./skein budget`. */
 final case class BudgetOptions(
@@ -52,7 +50,6 @@ final case class BudgetOptions(
     @arg(doc = "folder for map.svg, map.png, map.csv and map.json")
     out: String = "budget",
     cluster: ClusterOptions,
-    view: ViewOptions,
     @arg(doc = "the map as JSON on standard output, as in map.json; everything else goes to standard error")
     json: Flag
 )
@@ -92,9 +89,8 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       folder <- OutFolder.made("--out", options.out)
       _      <- OutFolder.alone(folder):
         for
-          maps <- options.view.serving("budget"): task =>
-            elsewhere(cluster, options, questions, subjects, folder, threads):
-              fly(options, _, tolerance, axes, legs, task)
+          maps <- elsewhere(cluster, options, questions, subjects, folder, threads):
+            fly(options, _, tolerance, axes, legs)
           isWhole = maps.size == subjects.size && maps.forall(_.budget.jittersMs == axes.jittersMs)
           _       = tell(options, maps, atJitterMs)
           files <- write(maps, isWhole, folder)
@@ -209,8 +205,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       flown: Vector[BudgetSubject],
       tolerance: Tolerance,
       axes: BudgetAxes,
-      legs: Legs,
-      task: TaskShow
+      legs: Legs
   ): Either[String, Vector[BudgetMap]] =
     val shown             = Shown(options.json.value)
     @volatile var stopped = false
@@ -225,17 +220,8 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
         )
         val startedAt = System.nanoTime()
         val line      = ProgressLine(sweep.expected, Console.err)
-        val measured  = WeightedSum.withUnit(subject.formula, subject.unit)
-        val onShow    = BudgetOnShow(task, what, sweep.expected, axes, measured)
         for
-          budget <- sweep.map(
-            done =>
-              line.show(done, "")
-              onShow.flown(done)
-            ,
-            () => stopped,
-            onShow.rows
-          )
+          budget <- sweep.map(line.show(_, ""), () => stopped)
           _ = line.end()
           _ = shown.say(
             f"${budget.cells.flatten.flatten.size.toLong * sweep.episodes}%,d episodes in ${(System.nanoTime() - startedAt) * 1e-9}%.1f s"

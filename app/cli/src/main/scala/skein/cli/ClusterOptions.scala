@@ -20,12 +20,7 @@ final case class ClusterOptions(
     )
     block: Option[Int],
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
-    tls: Option[String],
-    @arg(doc =
-      "port, or HOST:PORT, where Prometheus reads the progress; without " +
-        "HOST, on this machine's loopback alone; 0 for any free port"
-    )
-    metrics: Option[String]
+    tls: Option[String]
 ):
   import ClusterOptions.*
 
@@ -33,9 +28,9 @@ final case class ClusterOptions(
   def checked: Either[String, Option[ClusterOptions.Checked]] =
     if workers.isEmpty && cluster.isEmpty then
       Either.cond(
-        block.isEmpty && tls.isEmpty && metrics.isEmpty,
+        block.isEmpty && tls.isEmpty,
         None,
-        "--block, --tls, --metrics: expected with --workers or --cluster"
+        "--block, --tls: expected with --workers or --cluster"
       )
     else
       for
@@ -45,8 +40,7 @@ final case class ClusterOptions(
           s"--block: expected 1 to ${SearchBlock.MostEpisodes}, came ${block.getOrElse(0)}"
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
-        seen   <- metrics.fold(Right(None))(portOrEndpoint(_).map(Some(_)))
-      yield Some(Checked(workers.getOrElse(0), listen, block, tls, seen))
+      yield Some(Checked(workers.getOrElse(0), listen, block, tls))
 
 object ClusterOptions:
   given ParserForClass[ClusterOptions] = ParserForClass[ClusterOptions]
@@ -55,21 +49,13 @@ object ClusterOptions:
       workers: Int,
       listen: Endpoint,
       block: Option[Int],
-      tls: Option[Tls],
-      metrics: Option[Endpoint]
+      tls: Option[Tls]
   )
 
   private val MostWorkers = 256
 
   /** Any port of this machine alone. */
   val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
-
-  private def portOrEndpoint(text: String): Either[String, Endpoint] =
-    if text.contains(':') then endpoint("--metrics", text)
-    else
-      endpoint("--metrics", s"${Loopback.host}:$text").left.map(_ =>
-        s"--metrics: expected a port, 0 to 65535, or HOST:PORT, came '$text'"
-      )
 
   def endpoint(option: String, text: String): Either[String, Endpoint] =
     Address.parse(text).map(address => Endpoint(address.host, address.port)).left.map(s"$option: " + _)

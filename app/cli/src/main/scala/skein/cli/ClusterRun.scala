@@ -54,9 +54,7 @@ private[cli] final class ClusterRun private (
   private def run[A](body: ClusterRun => Either[String, A]): Either[String, A] =
     shown.say(s"workers join by ./skein worker --join ${node.address}")
     try
-      val done = options.metrics match
-        case None       => body(this)
-        case Some(seen) => MetricsServer.serving(seen, () => node.metrics, Console.err.println(_))(body(this))
+      val done = body(this)
       shown.say(account)
       done
     catch case failed: BlocksFailed => Left(failed.getMessage)

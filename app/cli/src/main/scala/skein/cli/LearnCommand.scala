@@ -71,7 +71,6 @@ final case class LearnOptions(
       "a folder whose learning was stopped: continues it, with the result of learning that was not stopped"
     )
     resume: Option[String],
-    view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -99,19 +98,14 @@ final class LearnCommand(program: String)(using Scenarios)
       setup <- question.setup
       _     <- OutFolder.alone(folder):
         val shown = Shown(options.json.value)
-        options.view.serving("learn"): task =>
-          measuring(setup, cluster, folder, threads, shown): measure =>
-            run(setup, folder, state, threads, flights, measure, shown, LearnOnShow(task, setup))
+        measuring(setup, cluster, folder, threads, shown): measure =>
+          run(setup, folder, state, threads, flights, measure, shown)
     yield ()
 
   private type Begun = (Path, LearnQuestion, LearnState)
 
   private def resume(options: LearnOptions, folder: String): Either[String, Begun] =
-    val may = Seq(options.cluster, options.view).flatMap(Arguments.told).toSet ++ Set(
-      "--threads",
-      "--flights",
-      "--json"
-    )
+    val may = Arguments.told(options.cluster) ++ Set("--threads", "--flights", "--json")
     for
       _    <- Arguments.resumed(options, may, "--threads, --flights and who judges")
       file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
@@ -135,8 +129,7 @@ final class LearnCommand(program: String)(using Scenarios)
       threads: Int,
       flights: Int,
       measure: Measuring,
-      shown: Shown,
-      onShow: LearnOnShow
+      shown: Shown
   ): Either[String, Unit] =
     import setup.question
     shown.say(
@@ -154,7 +147,6 @@ final class LearnCommand(program: String)(using Scenarios)
       val learned   = LearnRun(setup, judge, Some(folder), () => System.nanoTime(), measure.isElsewhere)
         .run(from, threads, () => stopped): state =>
           line.show(state.rounds, progress(setup, state))
-          onShow.step(state, progress(setup, state))
       line.end()
       learned.flatMap: end =>
         import end.state

@@ -60,7 +60,6 @@ final case class SearchOptions(
       "a folder whose search was stopped: continues it, with the result of a search that was not stopped"
     )
     resume: Option[String],
-    view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -95,17 +94,14 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _ <- Expect.that(accelerator.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
-        options.view.serving("search"): task =>
-          EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>
-            SearchJob(ready, question, folder, threads, runner, shown, task)
-              .run(state.getOrElse(ready.search.start))
+        EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>
+          SearchJob(ready, question, folder, threads, runner, shown).run(state.getOrElse(ready.search.start))
     yield ()
 
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
-    val may =
-      Seq(options.cluster, options.view).flatMap(Arguments.told).toSet ++ Set("--threads", "--gpu", "--json")
+    val may = Arguments.told(options.cluster) ++ Set("--threads", "--gpu", "--json")
     for
       _    <- Arguments.resumed(options, may, "--threads and who computes")
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)

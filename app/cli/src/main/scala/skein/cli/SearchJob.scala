@@ -5,7 +5,6 @@ import skein.optimise.SearchState
 import skein.report.Typed
 import skein.search.*
 import skein.units.Decimals.significant
-import skein.view.TaskShow
 
 /** A search in a terminal, to its end or until it is stopped. */
 private[cli] final class SearchJob(
@@ -14,15 +13,12 @@ private[cli] final class SearchJob(
     folder: Path,
     threads: Int,
     runner: EpisodeRunner,
-    shown: Shown,
-    task: TaskShow
+    shown: Shown
 ):
   import SearchJob.*
 
   /** Notes who does not fly as the others do. */
   private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))
-
-  private val onShow = SearchOnShow(task, ready.title, ready.search.expected, ready.measure)
 
   def run(from: SearchState): Either[String, Unit] =
     say(introduction)
@@ -39,7 +35,6 @@ private[cli] final class SearchJob(
           .run(from, () => isStopped): state =>
             last = state
             line.show(state.flown, progress(state))
-            onShow.step(state, progress(state))
       line.end()
       runner.onWait((_, _) => ())
       searched.flatMap: state =>
@@ -140,9 +135,7 @@ private[cli] final class SearchJob(
       isStopped,
       onCurve = effort.onCurve,
       onMap = effort.onMap,
-      onRow = rows =>
-        line.show(rows.cells.size, "rows of the landscape")
-        onShow.landscape(rows)
+      onRow = rows => line.show(rows.cells.size, "rows of the landscape")
     )
     line.end()
     land match

@@ -4,9 +4,9 @@ import java.util.concurrent.Executors
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.ExecutionContext
 import skein.units.Clock
-import skein.view.{Shows, TaskShow, Token, ViewServer}
+import skein.view.{Shows, Token, ViewServer}
 
-/** Whether and where a flight, or other work, can be looked at. */
+/** Whether and where a flight can be looked at. */
 final case class ViewOptions(
     @arg(doc = "shows it in the browser and in Foxglove; the address is printed")
     view: Flag,
@@ -60,13 +60,6 @@ final case class ViewOptions(
             try body
             finally Edge.await(server.close()): Unit
         finally threads.shutdown()
-
-  /** The same of a long task that is not a flight. */
-  def serving[A](name: String)(body: TaskShow => Either[String, A]): Either[String, A] =
-    val shows = Shows()
-    val task  = TaskShow(name)
-    shows.add(task)
-    serving(shows)(body(task))
 
   /** What would be ignored, or could never be. */
   private[cli] def mistake: Option[String] =

@@ -5,18 +5,18 @@ import mainargs.ParserForClass
 class ArgumentsSuite extends munit.FunSuite:
 
   private val options = ParserForClass[LearnOptions].constructOrThrow(
-    "--resume here --steps 7 --turn-rate 2 --plant drag --workers 2 --view --json".split(' ').toSeq
+    "--resume here --steps 7 --turn-rate 2 --plant drag --workers 2 --json".split(' ').toSeq
   )
 
   test("what was told is known by its flags, in groups of options too"):
     assertEquals(
       Arguments.told(options),
-      Set("--resume", "--steps", "--turn-rate", "--plant", "--workers", "--view", "--json")
+      Set("--resume", "--steps", "--turn-rate", "--plant", "--workers", "--json")
     )
     assertEquals(Arguments.told(ParserForClass[LearnOptions].constructOrThrow(Nil)), Set.empty)
 
   test("where a folder is gone on with, what else was told is named"):
-    val may = Arguments.told(options.cluster) ++ Arguments.told(options.view) + "--json"
+    val may = Arguments.told(options.cluster) + "--json"
     assertEquals(
       Arguments.resumed(options, may, "--threads"),
       Left(

@@ -77,7 +77,7 @@ import skein.signal.SplitMix64
 
   val posed   = QuestionKind.Search.of(VerifiedQuestion.bytes(question, ready))
   val options =
-    ClusterOptions.Checked(workers = 2, ClusterOptions.Loopback, Some(block), None, None)
+    ClusterOptions.Checked(workers = 2, ClusterOptions.Loopback, Some(block), None)
   val done = ClusterRun.using(options, "skein.cli.Main", posed, folder, threads = 2, Shown(false)): run =>
     val elsewhere = ClusterEvaluator(run, Judge.Candidates, block, _ => ())
     for _ <- 1 to 2 do timed(elsewhere, candidates(count)): Unit

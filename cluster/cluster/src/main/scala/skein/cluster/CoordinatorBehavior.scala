@@ -41,7 +41,6 @@ private[cluster] final class CoordinatorBehavior private (
   private var died    = 0
   private var unsaved = false
   private var isDone  = false
-  private var traffic = Traffic()
 
   /** Where each worker is to be answered, also one that has the question alone. */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
@@ -53,9 +52,6 @@ private[cluster] final class CoordinatorBehavior private (
   private var told = Set.empty[WorkerEvent]
 
   def onMessage(command: Command): Behavior[Command] =
-    command match
-      case heard: ToCoordinator => traffic = traffic.hearing(heard)
-      case _                    => ()
     command match
       case ask: Message.Ask                                    => asked(ask)
       case Message.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
@@ -82,7 +78,7 @@ private[cluster] final class CoordinatorBehavior private (
       case Farewell           =>
         // Stays until the node ends: there are some who ask only now.
         isDone = true
-        addresses.values.foreach(say(_, Message.Goodbye))
+        addresses.values.foreach(_ ! Message.Goodbye)
         save()
         ended(Right(None))
     publish()
@@ -91,21 +87,17 @@ private[cluster] final class CoordinatorBehavior private (
   private def asked(ask: Message.Ask): Unit =
     if ask.build != job.build then
       val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
-      say(ask.replyTo, Message.Refused(reason))
+      ask.replyTo ! Message.Refused(reason)
       once(WorkerEvent.Refused(ask.worker, reason))
-    else if isDone then say(ask.replyTo, Message.Goodbye)
+    else if isDone then ask.replyTo ! Message.Goodbye
     else
       addresses += ask.worker -> ask.replyTo
-      if ask.run != job.run then say(ask.replyTo, Message.Welcome(job.run, job.question))
+      if ask.run != job.run then ask.replyTo ! Message.Welcome(job.run, job.question)
       else
         val isNew = !state.workers.get(ask.worker).exists(_.isHere)
         state = state.joined(ask.worker, ask.cores)
         if isNew then announce(WorkerEvent.Joined(ask.worker, ask.cores))
         serve(ask.worker, ask.holding)
-
-  private def say(to: ActorRef[ToWorker], message: ToWorker): Unit =
-    traffic = traffic.saying(message)
-    to ! message
 
   private def once(news: WorkerEvent): Unit =
     if !told(news) && told.size < MostTold then
@@ -117,7 +109,7 @@ private[cluster] final class CoordinatorBehavior private (
     state = after
     block match
       case Some(one) =>
-        say(addresses(worker), Message.Give(job.run, one.number, one.work))
+        addresses(worker) ! Message.Give(job.run, one.number, one.work)
         serve(worker, holding + one.number)
       case None =>
         val record = state.workers(worker)
@@ -205,9 +197,7 @@ private[cluster] final class CoordinatorBehavior private (
       call.fold(0)(_.answers.size),
       call.fold(0)(_.asked),
       resumed,
-      died,
-      traffic,
-      ledger.bytes
+      died
     ))
 
 private[cluster] object CoordinatorBehavior:

@@ -36,9 +36,6 @@ final class CoordinatorNode private (
 
   def progress: ClusterProgress = latest.get
 
-  /** How it goes, for Prometheus. */
-  def metrics: String = Metrics.text(progress, Cluster(system.toTyped).state.members.size)
-
   /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed
     * again. One call at a time.
     *
@@ -78,9 +75,6 @@ object CoordinatorNode:
 
   /** Pekko's remoting waits without a limit for the streams of its peers to end (apache/pekko#3247). */
   private val MostClosing = 20.seconds
-
-  /** Of [[CoordinatorNode.metrics]], in HTTP's words. */
-  val MetricsType: String = Metrics.ContentType
 
   /** @param listen port 0 for any that is free
     * @param ledger of this question

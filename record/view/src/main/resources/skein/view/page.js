@@ -4,7 +4,6 @@ import { FlightMap } from "/map.js";
 import { Graph } from "/graph.js";
 import { Plots } from "/plots.js";
 import { Cameras, pointsOf } from "/cameras.js";
-import { Task } from "/task.js";
 
 // Where a graphics card is imitated by software, canvases are drawn several times faster without it.
 const gl = document.createElement("canvas").getContext("webgl");
@@ -16,11 +15,10 @@ if (/none|swiftshader|llvmpipe|software/i.test(card)) {
 gl?.getExtension("WEBGL_lose_context")?.loseContext();
 
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "graph", "progress", "curve", "landscape"];
+const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "graph"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
 const graph = new Graph(find("graph"));
-const task = new Task(find("task"));
 const cameras = new Cameras(find("cameras"));
 const isWanted = topic => topic.startsWith("/skein/") ? tables.includes(topic.slice(7)) : topic === "/scene" || /\/(image|cloud)$/.test(topic);
 
@@ -31,7 +29,6 @@ window.skein = { get flight() { return flight; }, get recorded() { return record
 
 function show(id) {
   connection?.close();
-  task.clear();
   cameras.clear();
   find("graph").hidden = true;
   find("control").hidden = !flights.find(one => one.id === id).controls.length;
@@ -62,7 +59,7 @@ function show(id) {
     row(topic, row, logNs) {
       if (topic === "/scene") flight.scene(row);
       else if (topic === "/skein/graph") graph.draw(row, flight.seconds(logNs));
-      else if (!task.row(topic.slice(7), row)) flight.row(topic.slice(7), row, logNs);
+      else flight.row(topic.slice(7), row, logNs);
       changed = true;
     },
     sight(topic, bytes, logNs) {
@@ -111,8 +108,7 @@ let drawn = 0, told = -1;
 function words() {
   const { heading } = flight;
   if (heading) find("what").textContent =
-    heading.loop === "none" ? `${heading.scenario}, simulator at ${heading.simulator}`
-      : `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
+    `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
   find("time").textContent = `${flight.now.toFixed(1)} s`;
   if (flight.ending) state(`${flight.ending.how}${flight.ending.reason ? `: ${flight.ending.reason}` : ""}`, flight.ending.how === "Failed");
   else if (find("state").textContent !== "not connected") state(flight.paused ? "paused: vehicles hover, nothing is decided" : "", flight.paused);

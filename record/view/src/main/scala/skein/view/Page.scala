@@ -20,7 +20,6 @@ private[view] object Page:
     "/plots.js"        -> ("plots.js", code),
     "/graph.js"        -> ("graph.js", code),
     "/cameras.js"      -> ("cameras.js", code),
-    "/task.js"         -> ("task.js", code),
     "/language.js"     -> ("language.js", code),
     "/uplot/uPlot.js"  -> ("uplot/uPlot.iife.min.js", code),
     "/uplot/uPlot.css" -> ("uplot/uPlot.min.css", css)

@@ -219,34 +219,3 @@ class ShowSuite extends munit.FunSuite:
     val Some(ServerText(told)) = viewer.take(): @unchecked
     assert(told.contains("20 older messages are not shown"), told)
     assertEquals(seen(show, viewer).map(_.row("sequence").num), (21 to 30).map(_.toDouble).toVector)
-
-  test("of work that is no flight the newest of each title is shown, also to whoever comes late"):
-    val show   = TaskShow("search")
-    val viewer = watching(show, "/skein/progress", "/skein/curve", "/skein/landscape")
-    for done <- 1 to 3 do show.progress("search", done, 10, "episodes", "")
-    show.curve("best", "episodes", "m", Vector((1.0, 2.0), (3.0, 1.5)))
-    show.landscape(
-      "map",
-      TaskShow.Axis("x", Vector(0, 1)),
-      TaskShow.Axis("y", Vector(0, 1)),
-      Vector(Vector(Some(1), None))
-    )
-    show.turn(at(1))
-    val told = seen(show, viewer)
-    assertEquals(told.map(_.topic), Vector("/skein/progress", "/skein/curve", "/skein/landscape"))
-    assertEquals(told(0).row("done").num, 3.0)
-    assertEquals(told(1).row("points"), ujson.Arr(ujson.Arr(1, 2), ujson.Arr(3, 1.5)))
-    assertEquals(told(2).row("rows"), ujson.Arr(ujson.Arr(1, ujson.Null)))
-    show.turn(at(2))
-    assertEquals(seen(show, viewer), Vector.empty)
-    assertEquals(seen(show, watching(show, "/skein/progress")).map(_.row("done").num), Vector(3.0))
-
-  test("a long curve is thinned out evenly, and keeps its end"):
-    for size <- Seq(1, 999, 1000, 1001, 5000, 5001) do
-      val thinned = TaskShow.thinned((0 until size).toVector)
-      assert(
-        thinned.size <= TaskShow.MostPoints + 1 && thinned.last == size - 1 && thinned.head == 0,
-        s"$size"
-      )
-      val steps = thinned.dropRight(1).sliding(2).collect { case Vector(one, next) => next - one }
-      assert(steps.toSet.size <= 1, s"$size: ${steps.toSet}")
