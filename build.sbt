@@ -231,16 +231,17 @@ lazy val learn = project.in(file("learn/learn"))
   .dependsOn(environment, testing % Test)
   .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
-/** Solvers behind a Kafka broker, and such a broker for tests and for the first try. Its libraries are large. */
+/** Solvers behind a Kafka broker. Kafka's clients are a large library. */
 lazy val kafka = project.in(file("fly/kafka"))
   .settings(artifact("kafka", "Solvers behind a Kafka broker"))
   .dependsOn(flight % "compile->compile;test->test")
-  .settings(underAgent, libraryDependencies ++= (kafkaClients +: kafkaBroker) ++ munit)
+  .settings(underAgent, libraryDependencies ++= (kafkaClients +: kafkaBroker.map(_ % Test)) ++ munit)
 
 /** Commands and reports. */
 lazy val cli = project.in(file("app/cli"))
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, learn, cluster, recognition, kafka, gpu, torture)
+  .dependsOn(flight % "compile->compile;test->test", kafka % "compile->compile;test->test")
+  .dependsOn(view, learn, cluster, recognition, gpu, torture)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(

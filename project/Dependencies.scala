@@ -36,7 +36,7 @@ object Dependencies {
   val progressbar   = "me.tongfei"             % "progressbar"          % "0.10.2"
   val scalatags     = "com.lihaoyi"           %% "scalatags"            % "0.13.1"
   val kafkaClients  = "org.apache.kafka"       % "kafka-clients"        % "4.3.1"
-  // A whole broker, of Scala 2.13. It logs by Log4j's interface, here through SLF4J as everything does.
+  // A whole broker, of Scala 2.13, for tests. It logs by Log4j's interface, here through SLF4J as everything does.
   val kafkaBroker   = Seq(
     ("org.apache.kafka" % "kafka_2.13" % "4.3.1").exclude("org.apache.logging.log4j", "log4j-core"),
     "org.apache.logging.log4j" % "log4j-to-slf4j" % "2.25.4"

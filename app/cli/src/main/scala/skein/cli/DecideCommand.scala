@@ -1,18 +1,17 @@
 package skein.cli
 
-import java.nio.file.{Files, Path}
 import java.security.SecureRandom
 import java.time.LocalTime
 import java.time.temporal.ChronoUnit
 import java.util.concurrent.ConcurrentHashMap
-import mainargs.{Flag, ParserForClass, arg}
+import mainargs.{ParserForClass, arg}
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
 import scala.concurrent.{ExecutionContext, Future, Promise}
-import skein.cluster.{BuildId, Endpoint}
+import skein.cluster.BuildId
 import skein.flight.{FlightAssembler, WarmUp}
-import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
+import skein.kafka.{KafkaSolver, KafkaTopics}
 import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
 import skein.scenario.Scenarios
 import skein.settings.{PredictionModel, RecordedPlan, SolverChoice}
@@ -27,11 +26,6 @@ final case class DecideOptions(
         "this machine, or kafka://HOST:PORT/PREFIX of a broker"
     )
     at: String = "tcp://127.0.0.1:7400",
-    @arg(doc =
-      "starts Kafka's own broker there, in this process; its messages are " +
-        "deleted at the end; without --tls, it is reachable from this machine only"
-    )
-    broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
     scenario: Option[String],
     secured: SolverSecurity
@@ -55,10 +49,7 @@ final class DecideCommand(using scenarios: Scenarios)
       secured <- options.secured.checked(Some(at))
       _       <- at match
         case SolverChoice.Kafka(at, prefix) =>
-          brokerMistake(options, at).toLeft(()).flatMap: _ =>
-            served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka), options.broker.value))
-        case _ if options.broker.value =>
-          Left(s"--broker: expected with --at kafka://127.0.0.1:9092/PREFIX, came with ${options.at}")
+          served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka)))
         case SolverChoice.Tcp(address) => served(options)(tcp(address, secured))
         case SolverChoice.Link(_)      =>
           Left(
@@ -75,22 +66,6 @@ final class DecideCommand(using scenarios: Scenarios)
 
   private type Serving = SolverDesk => ActorSystem ?=> Either[String, Served]
 
-  /** A broker of this process that cannot be, or is not to be. */
-  private def brokerMistake(options: DecideOptions, at: Address): Option[String] =
-    val isHere = Endpoint(at.host, at.port).isLoopback
-    if !options.broker.value then None
-    else if options.secured.kafkaSecurity.isDefined then
-      Some(
-        "--broker: expected without --kafka-security; the broker of " +
-          "this process has the certificates of --tls, or none"
-      )
-    else if at.port == 0 || !isHere && options.secured.tls.isEmpty then
-      Some(
-        "--broker: expected a port of 127.0.0.1, such as " +
-          s"kafka://127.0.0.1:9092/skein, or of any address with --tls, came $at"
-      )
-    else None
-
   private given ExecutionContext = ExecutionContext.global
 
   private def tcp(address: Address, secured: SolverSecurity.Checked): Serving = desk =>
@@ -101,29 +76,13 @@ final class DecideCommand(using scenarios: Scenarios)
       Right(Served(() => server.close()))
     catch case error: TransportError => Left(error.getMessage)
 
-  private def kafka(topics: KafkaTopics, withBroker: Boolean): Serving = desk =>
-    import topics.broker as at
-    def started(folder: Path): Either[String, Option[KafkaBroker]] =
-      if !withBroker then Right(None)
-      else
-        say(s"a Kafka broker starts at $at")
-        KafkaBroker.start(folder, at, topics.security).map(Some(_)).left.map("--broker: " + _)
-    val folder = Files.createTempDirectory("skein-broker")
-    started(folder) match
-      case Left(reason) =>
-        KafkaBroker.delete(folder)
-        Left(reason)
-      case Right(broker) =>
-        val solver  = KafkaSolver(topics, desk, say)
-        def close() = solver.close().map: _ =>
-          broker.foreach(_.close())
-          KafkaBroker.delete(folder)
-          Done
-        say(s"looks for the broker at $at")
-        val failed = solver.start().flatMap: _ =>
-          Console.out.println(s"decides at kafka://$at/${topics.prefix}; Ctrl-C ends it")
-          Future.never
-        Right(Served(() => close(), failed))
+  private def kafka(topics: KafkaTopics): Serving = desk =>
+    val solver = KafkaSolver(topics, desk, say)
+    say(s"looks for the broker at ${topics.broker}")
+    val failed = solver.start().flatMap: _ =>
+      Console.out.println(s"decides at kafka://${topics.broker}/${topics.prefix}; Ctrl-C ends it")
+      Future.never
+    Right(Served(() => solver.close().map(_ => Done), failed))
 
   private def served(options: DecideOptions)(serving: Serving): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-decide")

@@ -268,16 +268,10 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
         (FlyCommand(), Seq("--solver", "tcp://10.0.0.1:7400"), "--tls: expected certificates of both sides"),
         (FlyCommand(), Seq("--tls", "certificates"), "--tls, --kafka-security: expected with a solver"),
         (DecideCommand(), Seq("--at", "link:vpn"), "expected tcp://HOST:PORT"),
-        (DecideCommand(), Seq("--broker"), "--broker: expected with --at kafka://"),
         (
           DecideCommand(),
-          Seq("--at", "kafka://10.0.0.1:9092/skein", "--broker"),
+          Seq("--at", "kafka://10.0.0.1:9092/skein"),
           "--tls: expected certificates where the Kafka broker at 10.0.0.1:9092 is of another machine"
-        ),
-        (
-          DecideCommand(),
-          Seq("--at", "kafka://127.0.0.1:0/skein", "--broker"),
-          "--broker: expected a port of 127.0.0.1"
         ),
         (DecideCommand(), Seq("--scenario", "moon"), "--scenario: ")
       )

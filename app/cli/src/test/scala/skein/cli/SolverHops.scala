@@ -4,6 +4,8 @@ import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
+import skein.kafka.KafkaBroker
+import skein.link.Address
 import skein.measure.{Distribution, FlightSummary}
 import skein.record.RecordingReader
 import skein.scenario.Scenarios
@@ -43,13 +45,10 @@ import skein.scenario.Scenarios
       s"${solver.answers} answers, added ${spread(solver.roundTripsMs)}, ${solver.missed} missed"
     s"${summary.name}: $hop; age at command ${spread(summary.commandAgesMs)}; result $headline"
 
-  for (kind, at, broker) <- Seq(
-      ("tcp", "tcp://127.0.0.1:7400", Nil),
-      ("kafka", "kafka://127.0.0.1:9092/skein", Seq("--broker"))
-    )
-  do
+  val broker = KafkaBroker.start(folder.resolve("broker"), Address("127.0.0.1", 9092)).fold(sys.error, identity)
+  for (kind, at) <- Seq("tcp" -> "tcp://127.0.0.1:7400", "kafka" -> s"kafka://${broker.address}/skein") do
     val log    = folder.resolve(s"$kind-decide.log")
-    val solver = started(log, Seq("decide", "--at", at) ++ broker*)
+    val solver = started(log, "decide", "--at", at)
     try
       while solver.isAlive && !said(log).contains("decides at") do Thread.sleep(50)
       for number <- 1 to flights do
@@ -68,3 +67,4 @@ import skein.scenario.Scenarios
     finally
       solver.destroy()
       if !solver.waitFor(30, TimeUnit.SECONDS) then solver.destroyForcibly(): Unit
+  broker.close()

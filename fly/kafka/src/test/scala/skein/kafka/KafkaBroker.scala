@@ -13,9 +13,9 @@ import scala.util.Using
 import scala.util.control.NonFatal
 import skein.link.Address
 
-/** Kafka's own broker in this process, one node that is its own controller: for tests, and for labs that have
-  * no other. What it holds lies in a folder. One that fails while it runs answers no longer, and says why on
-  * standard error; Kafka itself would end the process.
+/** Kafka's own broker in this process, one node that is its own controller. What it holds lies in a folder.
+  * One that fails while it runs answers no longer, and says why on standard error; Kafka itself would end the
+  * process.
   */
 final class KafkaBroker private (server: KafkaRaftServer, val address: Address) extends AutoCloseable:
 
