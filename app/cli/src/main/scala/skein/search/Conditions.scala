@@ -1,6 +1,5 @@
 package skein.search
 
-import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering, VelocityResponse}
 import skein.lanes.{Accelerator, DuelBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
@@ -90,7 +89,7 @@ object Conditions:
     val settings =
       LoopSettings.every(period).copy(model = _ => vehicles.predictor, movesInFlight = movesInFlight)
     LoopTimings
-      .of(loop, settings, AirSimFleet.askTimeout)
+      .of(loop, settings)
       .toRight(
         s"forward simulation has no ${loop.label} loop; expected " +
           "paused, sequential, futures, stream or predictive"

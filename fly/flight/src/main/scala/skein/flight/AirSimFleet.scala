@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.*
 import skein.link.*
-import skein.loop.{AnyLoop, LoopKind}
+import skein.loop.{AnyLoop, LoopKind, LoopTimings}
 import skein.record.*
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
 import skein.settings.{FlightPlan, FlySettings}
@@ -110,7 +110,7 @@ private[flight] final class AirSimFleet(
   ): Future[Unit] =
     ContactWatch
       .start(
-        AirSimClient(RpcClient(transport, address, clock), AirSimFleet.askTimeout),
+        AirSimClient(RpcClient(transport, address, clock), LoopTimings.AskTimeout),
         vehicles,
         settings.period,
         clock,
@@ -147,13 +147,10 @@ private[flight] final class AirSimFleet(
           recorder.offer(Event(clock.now(), kind, None, detail))
         )
     )
-    AirSimClient(rpc, timeout = AirSimFleet.askTimeout)
+    AirSimClient(rpc, timeout = LoopTimings.AskTimeout)
 
 /** How long AirSim is waited for, and what of its client a recording keeps. */
 object AirSimFleet:
-  /** The paper's, of every question. */
-  val askTimeout: Span = Span.ofMillis(500)
-
   /** Of the client that flies a loop. */
   def rpcSettings(loop: AnyLoop): RpcSettings = loop match
     // Each command must reach the simulator before the step that follows it: one ordered connection.

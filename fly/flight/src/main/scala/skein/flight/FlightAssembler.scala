@@ -122,7 +122,7 @@ final class FlightAssembler(
           monitor,
           clock,
           startedAt,
-          SimulatorWatchdog.within(settings.period, AirSimFleet.askTimeout),
+          SimulatorWatchdog.within(settings.period, LoopTimings.AskTimeout),
           reached.where,
           reached.isOther,
           () => team.underDecision,

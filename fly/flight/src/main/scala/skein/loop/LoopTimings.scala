@@ -8,15 +8,15 @@ import skein.units.*
 /** The live loops' timing as forward simulation has it. */
 object LoopTimings:
 
-  /** Absent for `plan`, whose decisions are themselves forward simulations.
-    *
-    * @param askTimeout of every question
-    */
-  def of(kind: LoopKind, settings: LoopSettings, askTimeout: Span): Option[LoopTiming] =
+  /** After this time a question to a simulator has failed; the paper's. */
+  val AskTimeout: Span = Span.ofMillis(500)
+
+  /** Absent for `plan`, whose decisions are themselves forward simulations. */
+  def of(kind: LoopKind, settings: LoopSettings): Option[LoopTiming] =
     val periodS = settings.period.toSeconds
     val asking  = Asking(
       settings.window,
-      askTimeout.toSeconds,
+      AskTimeout.toSeconds,
       settings.spread.toSeconds,
       inOrder = settings.early == Sense.Early.Waits
     )

@@ -50,11 +50,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
       LoopTimings
-        .of(
-          loop,
-          if scenario.isAsPublished then every.asPublished else every,
-          AirSimFleet.askTimeout
-        )
+        .of(loop, if scenario.isAsPublished then every.asPublished else every)
         .getOrElse(fail(s"${loop.label} has no timing"))
     val fleet    = asked.fleet
     val vehicles = fleet.agents.map(_.name)

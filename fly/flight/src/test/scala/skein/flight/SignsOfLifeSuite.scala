@@ -1,6 +1,7 @@
 package skein.flight
 
 import skein.flight.SignsOfLife.Sign
+import skein.loop.LoopTimings
 import skein.units.*
 
 class SignsOfLifeSuite extends munit.FunSuite:
@@ -31,10 +32,8 @@ class SignsOfLifeSuite extends munit.FunSuite:
     )
 
   test("a simulator that answers within a flight's period is never silent, however long that is"):
-    assert(SimulatorWatchdog.within(Span.ofMillis(100), AirSimFleet.askTimeout) < Span.ofMillis(850))
+    assert(SimulatorWatchdog.within(Span.ofMillis(100), LoopTimings.AskTimeout) < Span.ofMillis(850))
     for seconds <- Seq(0.1, 1.0, 10.0) do
       val period = Span.ofSeconds(seconds)
-      assert(SimulatorWatchdog.within(
-        period,
-        AirSimFleet.askTimeout
-      ) > period + AirSimFleet.askTimeout)
+      val within = SimulatorWatchdog.within(period, LoopTimings.AskTimeout)
+      assert(within > period + LoopTimings.AskTimeout)

@@ -46,7 +46,7 @@ class SettingsSuite extends munit.FunSuite:
     val settings = LoopSettings(period = ms(200), paceInterval = ms(60), patience = ms(70), spread = ms(40))
     val asking   = Asking(4, 0.5, 0.04, inOrder = false)
     val steering = Steering(0.02, 2, 0.0005)
-    def of(kind: LoopKind, settings: LoopSettings = settings) = LoopTimings.of(kind, settings, ms(500))
+    def of(kind: LoopKind, settings: LoopSettings = settings) = LoopTimings.of(kind, settings)
     assertEquals(of(LoopKind.Paused), Some(LoopTiming.Paused(0.2)))
     assertEquals(of(LoopKind.Sequential), Some(LoopTiming.Sequential(0.2, asking, steering)))
     assertEquals(of(LoopKind.Futures), Some(LoopTiming.Futures(0.2, asking, steering)))

@@ -80,7 +80,7 @@ object TortureFlight:
     )
     private val settings = AirSimFleet.rpcSettings(faultPlan.loop)
     private val rpc      = RpcClient(network.host("controller"), address, clock, settings, faultPlan.seed)
-    private val client   = AirSimClient(rpc, AirSimFleet.askTimeout)
+    private val client   = AirSimClient(rpc, LoopTimings.AskTimeout)
     private val memory   = MemoryRecorder(heading)
     private val recorder = FaultyRecorder(memory, faultPlan.disk, clock, start)
 

@@ -2,7 +2,6 @@ package skein.environment
 
 import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
-import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering}
 import skein.lanes.{LearnerDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
@@ -114,7 +113,7 @@ final case class EnvironmentSettings(
         .every(Span.ofMillis(periodMs))
         .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
       timing <- LoopTimings
-        .of(kind, loopSettings, AirSimFleet.askTimeout)
+        .of(kind, loopSettings)
         .toRight(
           "loop: expected paused, sequential, futures, stream or " +
             s"predictive, came '${kind.label}', which plans"
