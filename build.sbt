@@ -329,22 +329,6 @@ lazy val bench =
 lazy val benchJmh =
   project.in(file("bench/jmh")).dependsOn(bench).enablePlugins(JmhPlugin).settings(publish / skip := true)
 
-/** Changes one thing at a time in the sources and sees whether the tests notice: `docs/testing.md`. */
-lazy val mutation = project
-  .in(file("bench/mutation"))
-  .dependsOn(core % "compile->test", flow % "compile->test", record % "compile->test", cli % "compile->test")
-  .settings(underAgent)
-  .settings(
-    atRoot,
-    publish / skip := true,
-    Compile / run / mainClass := Some("skein.mutation.mutate"),
-    // It changes folders of classes; sbt would run it on jars, copied aside.
-    Runtime / fullClasspathAsJars     := (Runtime / fullClasspath).value,
-    Compile / bgRun / bgCopyClasspath := false,
-    libraryDependencies ++= munit.map(_.withConfigurations(None)) :+
-      "org.scala-lang" %% "scala3-compiler" % scalaVersion.value
-  )
-
 /** What the README shows: a whole program in a file. */
 lazy val chase = project
   .in(file("examples/chase"))
