@@ -56,3 +56,48 @@ class DocstringSuite extends munit.FunSuite:
         |  val local = 1
         |""".stripMargin
     assertEquals(undocumented(source), Vector("5: final case class Untold(x: Int)", "8: def start(): Unit ="))
+
+  private val docstring = """(?s)/\*\*(.*?)\*/""".r
+
+  /** The text of each docstring, in one line. */
+  private def texts(source: String): Vector[String] =
+    docstring
+      .findAllMatchIn(source)
+      .map(_.group(1).linesIterator.map(_.strip.stripPrefix("*").strip).filter(_.nonEmpty).mkString(" "))
+      .toVector
+
+  private def count(word: String, texts: Vector[String]): Int =
+    val whole = s"(?i)\\b$word\\b".r
+    texts.map(whole.findAllIn(_).size).sum
+
+  private val Short = 40
+
+  /** Words with several meanings here, and how often docstrings may still say them. Rewrite a docstring rather
+    * than raise a number; lower it when there are fewer.
+    */
+  private val mostOf = Vector(
+    "the same" -> 359,
+    "told"     -> 263,
+    "tells?"   -> 173,
+    "asked"    -> 196,
+    "came"     -> 198,
+    "flown"    -> 170,
+    "so many"  -> 95,
+    "nobody"   -> 83,
+    "at once"  -> 103,
+    "upon"     -> 61
+  )
+
+  private val mostShort = 1432
+
+  test("docstrings that are too short to say more than a name, and words with several meanings, grow no more"):
+    val all   = sources.flatMap(path => texts(Files.readString(path)))
+    val short = all.count(_.length <= Short)
+    val grown = mostOf.map((word, most) => (word, count(word, all), most)).filter((_, now, most) => now > most)
+    assert(short <= mostShort, s"$short docstrings of at most $Short characters, expected $mostShort at most")
+    assertEquals(grown, Vector.empty, "word, how often docstrings say it, how often they may")
+
+  test("a docstring's text is found over several lines, and a word only as a whole"):
+    val found = texts("/** Told\n  * at once. */\nval x = 1 /* told */\n/** Untold. */")
+    assertEquals(found, Vector("Told at once.", "Untold."))
+    assertEquals((count("told", found), count("at once", found)), (1, 1))

@@ -125,7 +125,7 @@ final case class Coordinator private (
         )
       )(_.forgotten(_, Set(number)))
 
-  /** Gives up all that is asked; answers that still come are repeats. */
+  /** Gives up all blocks; answers that still arrive are repeats. */
   def cancelled: Coordinator = copy(
     waiting = Waiting(),
     leases = Map.empty,
@@ -163,7 +163,7 @@ final case class Coordinator private (
   private def forgotten(worker: String, numbers: Set[Long]): Coordinator =
     copy(workers = workers.updatedWith(worker)(_.map(record => record.copy(holds = record.holds -- numbers))))
 
-  /** Ends a worker's part in leases; what nobody else has waits again. */
+  /** Removes a worker from leases; blocks without another worker wait again. */
   private def released(worker: String, held: Map[Long, Long]): Coordinator =
     held.keys.toVector.sorted.foldRight(this): (number, here) =>
       here.leases.get(number).filter(_.holders.contains(worker)).fold(here): lease =>
@@ -228,8 +228,7 @@ final case class WorkerRecord(
 
 /** What a worker's answer to a block counts for. */
 enum AnswerKind:
-  /** The first answer to this block. */
   case First(block: Block)
 
-  /** The block is done, or is not asked any more. */
+  /** The block is done or given up. */
   case Repeated

@@ -31,7 +31,6 @@ final class Ledger private (
 
   def size: Int = index.size
 
-  /** Of the file. */
   def bytes: Long = end
 
   def answer(key: BlockKey): Option[ArraySeq[Byte]] =
@@ -122,7 +121,7 @@ object Ledger:
     */
   private final case class Scanned(end: Long, broken: Long)
 
-  /** Tells every whole record from the first on; one whose content was damaged is passed over. */
+  /** Passes every whole record to `tell`, in order; skips damaged ones. */
   private def scan(channel: FileChannel)(tell: (BlockKey, Long, Int) => Unit): Scanned =
     val size  = channel.size
     var at    = First.toLong

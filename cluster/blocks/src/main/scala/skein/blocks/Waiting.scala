@@ -13,7 +13,6 @@ final case class Waiting private (again: TreeMap[Long, Block], fresh: Vector[Blo
   def isEmpty: Boolean  = again.isEmpty && fresh.isEmpty
   def nonEmpty: Boolean = !isEmpty
 
-  /** In the order in which they go out. */
   def iterator: Iterator[Block] = again.valuesIterator ++ fresh.iterator
 
   /** The block that goes out next, and the others. */

@@ -30,7 +30,7 @@ object BuildId:
 
   private def isClass(name: String) = name.endsWith(".class")
 
-  /** An archive's own list tells the checksums: nothing is unpacked. */
+  /** Takes checksums from the archive's directory; nothing is unpacked. */
   private def ofJar(jar: Path): Vector[(String, Long)] =
     Using.resource(ZipFile(jar.toFile)): archive =>
       archive.entries.asScala.filter(entry => isClass(entry.getName)).map(entry =>

@@ -133,7 +133,6 @@ object Certificates:
     onlyOurs(file)
     secret
 
-  /** Others on this machine read no keys. */
   private def onlyOurs(file: Path): Unit =
     if FileSystems.getDefault.supportedFileAttributeViews.contains("posix") then
       Files.setPosixFilePermissions(file, PosixFilePermissions.fromString("rw-------")): Unit

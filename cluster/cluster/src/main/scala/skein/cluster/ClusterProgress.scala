@@ -18,7 +18,7 @@ final case class ClusterProgress(
 ):
   def here: Int = coordinator.workers.values.count(_.isHere)
 
-/** What a coordinator tells of its workers, in a line for a person. */
+/** News about a worker, as a line for a person. */
 enum WorkerEvent(val text: String):
   case Joined(worker: String, cores: Int)
       extends WorkerEvent(s"$worker joined, with $cores ${if cores == 1 then "core" else "cores"}")

@@ -45,10 +45,9 @@ private[cluster] final class CoordinatorBehavior private (
   /** Where each worker is to be answered, also one that has the question alone. */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
 
-  /** Who has room, and nothing was there. */
+  /** Workers with free cores to which no block could be given. */
   private var hungry = Set.empty[String]
 
-  /** What is told once. */
   private var told = Set.empty[WorkerEvent]
 
   def onMessage(command: Command): Behavior[Command] =
@@ -178,7 +177,7 @@ private[cluster] final class CoordinatorBehavior private (
         onWanted()
         feed()
 
-  /** The call is over; what is still asked of it is asked no more. */
+  /** Completes the call. A failure gives up its remaining blocks. */
   private def ended(outcome: Outcome): Unit =
     if outcome.isLeft then state = state.cancelled
     // Whoever waits for the outcome sees all of it.
@@ -217,17 +216,15 @@ private[cluster] object CoordinatorBehavior:
   /** It is out of the cluster already; another process may have its address. */
   final case class Removed(address: Address) extends Local
 
-  /** A worker's process has ended. */
   final case class Ended(worker: String) extends Local
   case object Farewell                   extends Local
 
-  /** A connection by TLS came to nothing. */
   final case class NotTrusted(reason: String) extends Local
   private case object Tick                    extends Local
 
   type Command = ToCoordinator | Local
 
-  /** What comes from workers that are none of this run is told for so long. */
+  /** Bounds the memory for news that is reported once. */
   private val MostTold = 1000
 
   /** A block that is out for longer goes to a second worker, when nothing else waits. */

@@ -29,7 +29,6 @@ final class CoordinatorNode private (
 ):
   import CoordinatorNode.MostClosing
 
-  /** Where workers join. */
   val address: Endpoint =
     val own = CoordinatorNode.addressOf(system)
     Endpoint(own.host.get.stripPrefix("[").stripSuffix("]"), own.port.get)
@@ -66,7 +65,7 @@ final class CoordinatorNode private (
     val waiting = Future.unit.map(identity)(using ExecutionContext.fromExecutor(late))
     Future.firstCompletedOf(Seq(system.terminate(), waiting))(using parasitic).map(_ => ())(using parasitic)
 
-  /** Ends and says nothing, for tests. */
+  /** For tests: ends without a goodbye, as if killed. */
   private[cluster] def kill(): Unit =
     val _ = Await.result(system.terminate(), 30.seconds)
 
@@ -117,7 +116,7 @@ object CoordinatorNode:
       _.getCause
     ).takeWhile(_ != null).map(_.getMessage).filter(_ != null).toVector.last
 
-  /** Tells the coordinator who is out of reach. */
+  /** Forwards unreachable and removed members to the coordinator. */
   private def watching(coordinator: ActorRef[CoordinatorBehavior.Command])
       : Behavior[MemberEvent | ReachabilityEvent] =
     Behaviors.setup: context =>

@@ -10,5 +10,5 @@ final case class Endpoint(host: String, port: Int):
 
   private[cluster] def uriHost: String = Address(host, port).uriHost
 
-  /** Whether nobody from another machine gets there. */
+  /** Whether only this machine can reach it. */
   def isLoopback: Boolean = Try(InetAddress.getByName(host).isLoopbackAddress).getOrElse(false)

@@ -38,5 +38,4 @@ private[cluster] final class FrameCheck(most: Int):
     wrong
 
 private object FrameCheck:
-  /** The letters and the stream's number. */
   private val Header = 5

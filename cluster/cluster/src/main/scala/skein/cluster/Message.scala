@@ -31,7 +31,7 @@ private[cluster] enum Message:
   case Done(run: Long, worker: String, number: Long, busyNanos: Long, answer: ArraySeq[Byte])
       extends Message, ToCoordinator
 
-  /** A block cannot be computed: nobody could. */
+  /** A block that no worker can compute. */
   case Failed(run: Long, worker: String, number: Long, reason: String) extends Message, ToCoordinator
 
   /** This worker cannot answer the run's question. */
@@ -40,8 +40,6 @@ private[cluster] enum Message:
   case Welcome(run: Long, question: ArraySeq[Byte])        extends Message, ToWorker
   case Give(run: Long, number: Long, work: ArraySeq[Byte]) extends Message, ToWorker
 
-  /** Its build is another. */
   case Refused(reason: String) extends Message, ToWorker
 
-  /** All is done. */
   case Goodbye extends Message, ToWorker

@@ -31,7 +31,7 @@ private[cluster] final class MessageCodec(
 
   def bytes(message: Message): Array[Byte] = Codec.bytes(message)
 
-  /** @return or what was expected, and what came */
+  /** @return or a line with what was expected and what was read */
   def message(bytes: Array[Byte]): Either[String, Message] =
     try
       Codec.message[Message](bytes).flatMap:

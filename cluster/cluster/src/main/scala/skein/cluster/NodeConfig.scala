@@ -6,7 +6,6 @@ import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
 private[cluster] object NodeConfig:
   val System = "skein"
 
-  /** A message with its envelope. */
   private val MostFrame = MessageCodec.MostBytes + (64 << 10)
 
   /** @param listen port 0 for any that is free

@@ -128,7 +128,6 @@ private[cluster] final class WorkerBehavior private (
     Solved(of, number, answer, System.nanoTime() - begun)
 
 private[cluster] object WorkerBehavior:
-  /** @param build see [[BuildId]] */
   final case class Self(
       name: String,
       cores: Int,
@@ -154,10 +153,8 @@ private[cluster] object WorkerBehavior:
       nanos: Long
   ) extends Local
 
-  /** This process is a member of the cluster. */
   case object Member extends Local
 
-  /** The coordinator is out of reach. */
   case object Unreachable extends Local
 
   type Command = ToWorker | Local

@@ -14,7 +14,7 @@ import org.apache.pekko.cluster.ClusterEvent.{
   UnreachableMember
 }
 import org.apache.pekko.cluster.typed.{Cluster, JoinSeedNodes, SelfUp, Subscribe}
-import scala.concurrent.duration.{Duration, DurationInt, DurationLong, FiniteDuration}
+import scala.concurrent.duration.{Duration, DurationLong, FiniteDuration}
 import scala.concurrent.{Await, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
@@ -47,7 +47,6 @@ final class WorkerNode(
   /** When it was last a member, or began to try. */
   @volatile private var contactAt = 0L
 
-  /** Ends [[run]] soon, from any thread. */
   def stop(): Unit =
     stopped = true
     val _ = ending.trySuccess(End.Finished)
@@ -86,14 +85,13 @@ final class WorkerNode(
       catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${failed.getMessage}")
       finally pool.shutdownNow(): Unit
 
-  /** Why nobody lets it join, where that is a matter of certificates. */
+  /** Why the coordinator does not let it join, if certificates are the reason. */
   private def refusal: Option[String] = tls match
     case Some(own) => own.refusal(coordinator)
     case None      =>
       Option.when(TlsProbe.answers(skein.link.Address(coordinator.host, coordinator.port))):
         "who listens there asks for certificates: expected --tls FOLDER with this machine's"
 
-  /** From joining to the end, once. */
   private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End =
     val promise            = Promise[End]()
     @volatile var isMember = false
@@ -125,7 +123,6 @@ final class WorkerNode(
       val _ = Try(Await.result(system.terminate(), Duration(10, TimeUnit.SECONDS)))
 
 object WorkerNode:
-  /** A worker's name, by its process. */
   def nameOf(pid: Long): String = s"$host-$pid"
 
   private lazy val host: String = Try(InetAddress.getLocalHost.getHostName).getOrElse("localhost")
@@ -140,7 +137,7 @@ object WorkerNode:
     try Some(Await.result(promise.future, nanos.max(0).nanos))
     catch case _: TimeoutException => None
 
-  /** Joins, and tells the work that it has, and when the coordinator is out of reach. */
+  /** Joins the cluster. Sends `work` membership and loss of the coordinator. */
   private def member(
       seed: Address,
       work: ActorRef[WorkerBehavior.Command],

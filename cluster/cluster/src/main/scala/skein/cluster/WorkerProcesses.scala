@@ -34,7 +34,7 @@ final class WorkerProcesses(
   /** How many ended in a row that had computed nothing. */
   private val idle = AtomicInteger()
 
-  /** Once, however often it is called. */
+  /** Idempotent. */
   def start(): Unit =
     val first = synchronized:
       val is = !isStarted

@@ -4,21 +4,21 @@ import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.locks.LockSupport
 import scala.util.{Failure, Success, Try}
 
-/** Tests of programs that run by the clock and cannot be told the time: they fail where the machine stops them for a
-  * while, as it may a process on shared cores. Such a failure says nothing of the program.
+/** Tests of programs that run by the clock and cannot be told the time: they fail where the machine stops
+  * them for a while, as it may a process on shared cores. Such a failure says nothing of the program.
   */
 trait Conclusive extends munit.FunSuite:
 
-  /** Runs a test again, twice at most, where it fails and the machine stood still for more than 100 ms meanwhile. Where it
-    * does each time, the test is left out, and counted as inconclusive.
+  /** Runs a test again, twice at most, where it fails and the machine stood still for more than 100 ms
+    * meanwhile. Where it does each time, the test is left out, and counted as inconclusive.
     */
   def conclusive(test: => Unit): Unit =
     def attempt(left: Int): Unit =
       val (outcome, stillMs) = Conclusive.standstillMs(Try(test))
       outcome match
-        case Success(())                                                  => ()
-        case Failure(failure) if stillMs <= Conclusive.MostStandstillMs   => throw failure
-        case Failure(failure) if left > 0                                 =>
+        case Success(())                                                => ()
+        case Failure(failure) if stillMs <= Conclusive.MostStandstillMs => throw failure
+        case Failure(failure) if left > 0                               =>
           println(s"again, for the machine stood still for $stillMs ms: ${failure.getMessage}")
           attempt(left - 1)
         case Failure(failure) =>
@@ -30,8 +30,8 @@ trait Conclusive extends munit.FunSuite:
 private object Conclusive:
   val MostStandstillMs = 100L
 
-  /** What came of some work, and the longest time, ms, by which a thread that sleeps for 2 ms was late meanwhile: one
-    * thread for each core.
+  /** What came of some work, and the longest time, ms, by which a thread that sleeps for 2 ms was late
+    * meanwhile: one thread for each core.
     */
   def standstillMs[A](work: => A): (A, Long) =
     val latest  = AtomicLong()

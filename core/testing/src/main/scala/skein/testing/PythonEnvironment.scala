@@ -11,12 +11,9 @@ import scala.util.Using
 /** Packages of PyPI in a virtual environment of their own, kept in the user's cache under their versions'
   * names.
   *
-  * @param imports
-  *   what Python can import when all is there
-  * @param scripts
-  *   a resource beside which scripts lie, if there are any
-  * @param installs
-  *   what `pip install` is called with, one call after the other
+  * @param imports what Python can import when all is there
+  * @param scripts a resource beside which scripts lie, if there are any
+  * @param installs what `pip install` is called with, one call after the other
   */
 final class PythonEnvironment(imports: String, scripts: Option[String], installs: Seq[String]*):
   private lazy val resources = scripts.map(PythonEnvironment.folderOf)
@@ -35,7 +32,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
     val home   = cache.resolve("skein").resolve(pinned.mkString("python-", "-", "").replace("==", "-"))
     val bin    = home.resolve("bin").resolve("python")
     val whole  = home.resolve("whole")
-    def made   =
+    def made =
       // An environment with a pip of its own takes twice the time.
       val empty = ran("python3", "-m", "venv", "--clear", "--without-pip", home.toString)
       for
@@ -47,14 +44,14 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
     Files.createDirectories(home.getParent)
     // Modules' tests run side by side, each in a JVM of its own.
     PythonEnvironment.synchronized:
-      Using.resource(FileChannel.open(home.resolveSibling(s"${home.getFileName}.lock"), CREATE, WRITE)): channel =>
-        Using.resource(channel.lock()): _ =>
-          if Files.exists(whole) && Files.exists(bin) then Right(bin) else made
+      Using.resource(FileChannel.open(home.resolveSibling(s"${home.getFileName}.lock"), CREATE, WRITE)):
+        channel =>
+          Using.resource(channel.lock()): _ =>
+            if Files.exists(whole) && Files.exists(bin) then Right(bin) else made
 
   /** Runs one of the scripts.
     *
-    * @return
-    *   its exit status, and what it wrote
+    * @return its exit status, and what it wrote
     */
   def run(script: String, arguments: String*): (Int, String) =
     val output  = StringBuilder()

@@ -16,7 +16,9 @@ trait TemporaryFolders extends munit.FunSuite:
       made
 
     override def afterAll(): Unit = if isMade then
-      Using.resource(Files.walk(made))(_.iterator.asScala.toVector.reverse.foreach(Files.deleteIfExists(_): Unit))
+      Using.resource(
+        Files.walk(made)
+      )(_.iterator.asScala.toVector.reverse.foreach(Files.deleteIfExists(_): Unit))
 
   override def munitFixtures: Seq[munit.AnyFixture[?]] = super.munitFixtures :+ parent
 

@@ -10,7 +10,8 @@ class GuideSuite extends munit.FunSuite:
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
   private val guide = Files.readString(root.resolve("docs/guides/formulas.md"))
   private val shown =
-    val source = Files.readString(root.resolve("forward/forward/src/test/scala/skein/lanes/GuideExample.scala"))
+    val source =
+      Files.readString(root.resolve("forward/forward/src/test/scala/skein/lanes/GuideExample.scala"))
     source.split(
       "// guide: (?!end)"
     ).drop(1).map(_.split("// guide: end")(0).linesIterator.drop(1).mkString("\n").stripTrailing.stripIndent)

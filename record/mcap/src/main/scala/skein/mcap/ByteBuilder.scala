@@ -14,7 +14,7 @@ private[mcap] final class ByteBuilder(initial: Int):
   def size: Int          = used
   def clear(): Unit      = used = 0
 
-  /** Makes room for so many bytes and gives where they start. */
+  /** Reserves `count` bytes and gives their first index. */
   private def room(count: Int): Int =
     val at = used
     if bytes.length - at < count then grow(at.toLong + count)

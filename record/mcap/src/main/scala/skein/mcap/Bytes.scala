@@ -4,7 +4,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Arrays
 
-/** Bytes that nobody changes any more: a view of a part of an array. Equal where the bytes are. */
+/** Immutable bytes: a view of a part of an array. Equality compares contents. */
 final class Bytes private (private[mcap] val array: Array[Byte], private[mcap] val from: Int, val size: Int):
 
   def apply(index: Int): Byte =
@@ -15,7 +15,6 @@ final class Bytes private (private[mcap] val array: Array[Byte], private[mcap] v
     require(0 <= start && start <= until && until <= size, s"bytes $start until $until of $size")
     new Bytes(array, from + start, until - start)
 
-  /** A copy. */
   def toArray: Array[Byte] = Arrays.copyOfRange(array, from, from + size)
 
   /** To read from, in MCAP's byte order: the lowest first. */

@@ -77,7 +77,6 @@ private[mcap] final class Fields(array: Array[Byte], from: Int, until: Int, reco
       )
     found.result()
 
-  /** Of the fields read so far. */
   def crc: Int =
     val sum = CRC32()
     sum.update(array, from, at - from)

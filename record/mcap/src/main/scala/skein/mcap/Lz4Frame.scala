@@ -33,7 +33,13 @@ private[mcap] object Lz4Frame:
   def compress(source: Array[Byte], from: Int, until: Int): Bytes =
     val out   = ByteArrayOutputStream((until - from) / 2 + 64)
     val frame =
-      LZ4FrameOutputStream(out, BLOCKSIZE.SIZE_64KB, until - from, FLG.Bits.BLOCK_INDEPENDENCE, FLG.Bits.CONTENT_SIZE)
+      LZ4FrameOutputStream(
+        out,
+        BLOCKSIZE.SIZE_64KB,
+        until - from,
+        FLG.Bits.BLOCK_INDEPENDENCE,
+        FLG.Bits.CONTENT_SIZE
+      )
     frame.write(source, from, until - from)
     frame.close()
     Bytes.of(out.toByteArray)
@@ -132,7 +138,7 @@ private[mcap] object Lz4Frame:
         linked.put((history.min(15) << 4).toByte)
         if history >= 15 then
           for _ <- 0 until (history - 15) / 255 do linked.put(255.toByte)
-          linked.put(((history - 15) % 255).toByte)
+          linked.put(((history - 15) % 255).toByte): Unit
         linked.put(literals, history - MinMatch, MinMatch).put(literals, 0, history - MinMatch)
         linked.putShort(history.toShort).put(source, at, length)
         val expanded = new Array[Byte](MinMatch + history + room)

@@ -12,7 +12,7 @@ final case class Place(offset: Long, inChunk: Int = -1):
   override def toString: String =
     if inChunk < 0 then s"byte $offset" else s"byte $inChunk of the records of the chunk at byte $offset"
 
-/** Why a file, or its end, cannot be read: where, what was expected there, and what came. */
+/** Why a file, or its end, cannot be read: the place, what was expected and what was found. */
 enum McapError:
 
   /** It begins with other bytes than MCAP's, or with those of a version that is not known. */
@@ -33,7 +33,7 @@ enum McapError:
   /** The bytes of a chunk are not what its compression makes. */
   case NotDecompressed(at: Place, compression: String, why: String)
 
-  /** Neither `zstd` nor `lz4` nor none. */
+  /** A compression other than `zstd`, `lz4` and none. */
   case UnknownCompression(at: Place, name: String)
 
   def message: String = this match

@@ -197,7 +197,6 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
       chunk.clear()
       chunkTimes.clear()
 
-  /** Where each is. */
   private def messageIndexes(): VectorMap[Int, Long] =
     val offsets = VectorMap.newBuilder[Int, Long]
     channels.foreach: log =>
@@ -211,7 +210,6 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
         log.entries.clear()
     offsets.result()
 
-  /** Gives where each group is. */
   private def summary(): Vector[Record.SummaryOffset] =
     val groups = Vector(
       if options.repeatSchemas then schemas.toVector else Vector.empty,
@@ -252,5 +250,4 @@ private object McapWriter:
   /** So much is gathered before it goes to the sink. */
   private val Gathered = 64 << 10
 
-  /** Identifiers have 16 bits, and 0 is none. */
   private val MostIds = 0xffff

@@ -41,7 +41,6 @@ object Opcode:
   /** Of the specification as it stands; readers step over all others but 0x00, which there is not. */
   def isKnown(opcode: Int): Boolean = opcode >= Header && opcode <= DataEnd
 
-  /** Where records of a kind may stand. */
   def isOfData(opcode: Int): Boolean    = dataSection(opcode) || !isKnown(opcode)
   def isOfSummary(opcode: Int): Boolean = summarySection(opcode) || !isKnown(opcode)
   def isOfChunk(opcode: Int): Boolean   =

@@ -14,7 +14,6 @@ private[mcap] object RecordField:
   def string(name: String): RecordField[String] =
     RecordField((value, out) => out.string(value), _.string(name))
 
-  /** Behind their length, of 4 bytes. */
   def bytes32(name: String): RecordField[Bytes] = RecordField(
     (value, out) =>
       out.u32(value.size)

@@ -3,7 +3,7 @@ package skein.mcap
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** What a parser says when it is asked for the next record. */
+/** The answer of [[StreamParser.next]]. */
 enum Parsed:
 
   /** @param length of the whole record, with its kind and length, at its place
@@ -52,10 +52,8 @@ final class StreamParser(limits: McapLimits = McapLimits()):
   private var walk      = Option.empty[RecordWalk]
   private var last      = Option.empty[Parsed]
 
-  /** Of the schemas that have come so far. */
   def schema(id: Int): Option[Record.Schema] = known.schema(id)
 
-  /** Of the channels that have come so far. */
   def channel(id: Int): Option[Record.Channel] = known.channel(id)
 
   /** More of the file: only once it needs bytes. It keeps the array until it needs bytes again. */
@@ -68,7 +66,6 @@ final class StreamParser(limits: McapLimits = McapLimits()):
 
   def offer(bytes: Array[Byte]): Unit = offer(bytes, 0, bytes.length)
 
-  /** There is no more. */
   def end(): Unit = noMore = true
 
   def next(): Parsed =
@@ -139,7 +136,6 @@ final class StreamParser(limits: McapLimits = McapLimits()):
     else if noMore && phase == Phase.Start && headHas == 0 then throw Refused(McapError.NotMcap(came))
     else short("MCAP's 8 bytes", headHas)
 
-  /** The head of a record is there. */
   private def begin(): Unit =
     val claimed = (1 to 8).foldRight(0L)((at, value) => value << 8 | head(at) & 0xffL)
     val name    = Opcode.name(opcode)
@@ -222,7 +218,6 @@ private object StreamParser:
   private enum Phase:
     case Start, Head, Content, EndMagic, End
 
-  /** Of a file, by what may stand in it. */
   private enum Section(val name: String):
     case Header  extends Section("header")
     case Data    extends Section("data section")

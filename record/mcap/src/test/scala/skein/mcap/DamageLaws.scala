@@ -66,7 +66,7 @@ class DamageLaws extends munit.FunSuite:
         val at = random.nextInt(changed.length)
         // Lengths are what hurts: bytes of all ones are frequent.
         changed(at) = (if random.nextInt(3) == 0 then 0xff else random.nextInt(256)).toByte
-      val bytes  = Bytes.of(changed)
+      val bytes = Bytes.of(changed)
       try Parsing.all(bytes, limits = McapLimits(recordBytes = 1 << 16, chunkBytes = 1 << 16)).end: Unit
       catch case error: Throwable => throw AssertionError(s"seed $seed: $error", error)
 

@@ -80,18 +80,19 @@ class Lz4Suite extends munit.FunSuite:
     Bytes.of(out.array, 0, out.size)
 
   test("a block may refer to fewer bytes than a match has, and as far back as 65,535"):
-    // Three bytes; then a match of four from three back, and five literals.
-    val short = linked(Array[Byte](0x30, 1, 2, 3), Array[Byte](0, 3, 0, 0x50, 4, 5, 6, 7, 8))
+    // A match ends some bytes before its block, as LZ4 asks for.
+    val last  = Array.tabulate[Byte](9)(at => (4 + at).toByte)
+    val short = linked(Array[Byte](0x30, 1, 2, 3), Array[Byte](0, 3, 0, -0x70) ++ last)
     assertEquals(
-      Lz4Frame.decompress(short, 12, cut = false),
-      Bytes.of(Array[Byte](1, 2, 3, 1, 2, 3, 1, 4, 5, 6, 7, 8))
+      Lz4Frame.decompress(short, 16, cut = false),
+      Bytes.of(Array[Byte](1, 2, 3, 1, 2, 3, 1) ++ last)
     )
-    val first  = new Array[Byte](65536)
+    val first = new Array[Byte](65536)
     SplittableRandom(1).nextBytes(first)
     val packed = LZ4Factory.safeInstance.fastCompressor.compress(first)
-    val far    = linked(packed, Array[Byte](0, -1, -1, 0x50, 4, 5, 6, 7, 8))
-    val read   = Lz4Frame.decompress(far, first.length + 9, cut = false).toArray
-    assertEquals(read.drop(first.length).toVector, first.slice(1, 5).toVector ++ Vector[Byte](4, 5, 6, 7, 8))
+    val far    = linked(packed, Array[Byte](0, -1, -1, -0x70) ++ last)
+    val read   = Lz4Frame.decompress(far, first.length + 13, cut = false).toArray
+    assertEquals(read.drop(first.length).toVector, first.slice(1, 5).toVector ++ last)
 
   test("of a frame that is cut off, the blocks before the cut are read"):
     val source = draw(3, 1) ++ Array.tabulate(300_000)(at => (at * at >>> 9).toByte)

@@ -22,7 +22,7 @@ class McapRecordingLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried
       assert(recorder.writeTo(recording).isRight)
       assertEquals(McapRecording.write(recording, mcap), Right(()))
       assertEquals(OfficialPythonLibrary.run("read.py", folder.toString), (0, "READ 1 files\n"))
-      val ours = McapFile.read(mcap)(_.map(_.fold(error => fail(error.message), identity)).toVector)
+      val ours  = McapFile.read(mcap)(_.map(_.fold(error => fail(error.message), identity)).toVector)
       val found = Files.readAllLines(folder.resolve("indexed.index.txt")).asScala.toVector
       assertEquals(found.filter(_.startsWith("message ")), ours.sortBy(_.message.logTime).map(Told.message))
       assert(found.size > 3000 + Samples.oneOfEach.size, s"${found.size}")

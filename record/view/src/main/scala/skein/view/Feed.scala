@@ -21,7 +21,7 @@ final class Feed(capacity: Int = Feed.DefaultCapacity):
     case Some(sensor) => seen.put(sensor, record): Unit
     case None         => enqueue(record)
 
-  /** What is newest of a camera or a lidar, if there is anything since this was asked for last. */
+  /** The newest record of a camera or a lidar, if there is one since the last call. */
   def poll(sensor: ImagingSensor): Option[Record] = Option(seen.remove(sensor))
 
   private def enqueue(record: Record): Unit =
@@ -33,7 +33,6 @@ final class Feed(capacity: Int = Feed.DefaultCapacity):
     if first.isDefined then waiting.decrementAndGet(): Unit
     first
 
-  /** Records that no viewer saw. */
   def lost: Long = dropped.get
 
 object Feed:

@@ -7,8 +7,7 @@ enum FlightControl:
 
   case Continue
 
-  /** Ends it; its vehicles hover. */
+  /** Ends the flight; its vehicles hover. */
   case Abort
 
-  /** In a path and in a list. */
   def word: String = toString.toLowerCase(java.util.Locale.ROOT)

@@ -19,7 +19,7 @@ final case class Outbox[A] private (
 ):
   def isEmpty: Boolean = notices.isEmpty && waiting.isEmpty
 
-  /** Of notices with one key the newest alone is sent, behind those that came before it. */
+  /** Replaces a waiting notice with this key; the new one is sent last. */
   def noticed(key: String, message: A): Outbox[A] = copy(notices = (notices - key).updated(key, message))
 
   /** @param most of this subscription that may wait
@@ -39,11 +39,9 @@ final case class Outbox[A] private (
       case Some((key, message)) => Some((message, copy(notices = notices - key)))
       case None                 => waiting.headOption.map((place, first) => (first.message, without(place)))
 
-  /** Nothing more of a subscription. */
   def unsubscribed(subscription: Long): Outbox[A] =
     places.getOrElse(subscription, Vector.empty).foldLeft(this)(_.without(_))
 
-  /** Nothing of what waits but the notices. */
   def emptied: Outbox[A] = copy(waiting = TreeMap.empty, places = Map.empty, bytes = 0)
 
   private def bounded(subscription: Long, most: Int): Outbox[A] =

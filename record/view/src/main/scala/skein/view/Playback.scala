@@ -37,6 +37,5 @@ final case class Playback private (
 object Playback:
   val MostSpeed = 100.0
 
-  /** Standing at the start. */
   def apply(start: Instant, end: Instant): Playback =
     Playback(start, end.max(start), start, start, speed = 1, playing = false)

@@ -78,7 +78,7 @@ object Protocol:
     ))
   ).render()
 
-  /** A line for a person; a later one with the same `id` replaces it. */
+  /** A line for a person. A later one with this `id` replaces it. */
   def warning(id: String, text: String): String =
     ujson.Obj("op" -> "status", "level" -> 1, "message" -> text, "id" -> id).render()
 
@@ -87,7 +87,6 @@ object Protocol:
 
   def time(now: Instant, op: Byte): ByteString = binary(op)(_.putLong(now.toNanos))
 
-  /** That it is now `now`. */
   def timeIs(now: Instant): ByteString = time(now, 2)
 
   def playbackState(state: Playing): ByteString =
@@ -121,7 +120,6 @@ object Protocol:
       case NonFatal(_) | _: StackOverflowError =>
         Left("expected a JSON object with a known op and its fields")
 
-  /** A binary message of a viewer. */
   def read(bytes: ByteString): Either[String, ClientMessage] =
     val in = bytes.toByteBuffer.order(ByteOrder.LITTLE_ENDIAN)
     try

@@ -32,16 +32,15 @@ abstract class Show private[view] (
     lazy val payload: ByteString = ByteString.fromArrayUnsafe(message.bytes)
     def at: Instant              = message.known
 
-  /** Begin and end, where it can be played. */
+  /** Begin and end of a recording; none while it flies. */
   def recorded: Option[(Instant, Instant)]
 
-  /** What may be done to it from the page. */
   def controls: Map[FlightControl, () => Unit] = Map.empty
 
-  /** Looks what is new, and tells the viewers. To be called some forty times a second. */
+  /** Sends news to the viewers. To be called about forty times a second. */
   def turn(now: Instant): Unit
 
-  /** A turn that fails tells the viewers why, and is followed by the next. */
+  /** Calls [[turn]]. If it fails, viewers get the reason, and the next turn follows. */
   private[view] final def attempt(now: Instant): Unit =
     try turn(now)
     catch
@@ -61,7 +60,7 @@ abstract class Show private[view] (
     for shown <- newest.get(channel).toSeq.flatMap(_.values) do
       viewer.offer(subscription, shown.at, shown.payload, latest(channel))
 
-  /** What a viewer is told when it comes. */
+  /** Sends the first messages to a new viewer. */
   protected def greet(viewer: Viewer): Unit
 
   protected def publish(message: FlightMessage): Unit = synchronized:
@@ -83,5 +82,5 @@ abstract class Show private[view] (
   def watching: Int = synchronized(viewers.size)
 
 object Show:
-  /** Tells viewers that connect again whether they talk to the same process. */
+  /** By this, viewers that connect again recognise the process. */
   private[view] val session: String = java.util.UUID.randomUUID().toString

@@ -3,7 +3,6 @@ package skein.view
 /** What one viewer wants to see: its subscriptions by channel. */
 final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long], chosen: Map[Long, Long]):
 
-  /** The subscriptions to a channel. */
   def of(channel: Long): Iterable[Long] = byChannel.getOrElse(channel, Nil)
 
   private lazy val byChannel: Map[Long, Iterable[Long]] =

@@ -35,7 +35,6 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
     val most    = if newestOnly then 1 else limits.waiting
     put(_.offered(subscription, message, message.bytes.length, most))
 
-  /** What waits is of no use any more. */
   def empty(): Unit = synchronized { outbox = outbox.emptied }
 
   def notice(key: String, message: ServerMessage): Unit = put(_.noticed(key, message))

@@ -2,7 +2,6 @@ package skein.mavlink
 
 /** Numbers of the common dialect (mavlink.io, `common.xml`). */
 object CommonDialect:
-  /** The autopilot's own component. */
   val Autopilot1 = 1
 
   /** The kind of autopilot in a heartbeat of what is none. */

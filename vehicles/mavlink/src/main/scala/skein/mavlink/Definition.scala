@@ -23,7 +23,6 @@ final class Definition[A <: Message] private (
   private val (base, extensions) = fields.indices.toVector.partition(!fields(_).isExtension)
   private val ordered            = base.sortBy(-fields(_).size)
 
-  /** Of a whole payload, bytes. */
   val length: Int = fields.map(_.length).sum
 
   /** Two peers whose definitions differ must not understand one another: this goes into every checksum. */
@@ -52,7 +51,6 @@ final class Definition[A <: Message] private (
     field.write(to, value.asInstanceOf[B])
 
 object Definition:
-  /** A message whose class names its fields. */
   inline def define[A <: Message](id: Int)(using
       mirror: Mirror.ProductOf[A],
       tag: ClassTag[A]
@@ -76,7 +74,6 @@ object Definition:
       of: Class[?]
   ): Definition[A] = new Definition(id, label, labels, fields, make, of)
 
-  /** `timeBootMs` is `time_boot_ms`. */
   private def snake(name: String): String =
     name.zipWithIndex.map((c, at) =>
       if c.isUpper then (if at == 0 then "" else "_") + c.toLower else s"$c"

@@ -20,17 +20,15 @@ final class Field[A] private (
     private[mavlink] val read: ByteBuffer => A,
     private[mavlink] val write: (ByteBuffer, A) => Unit
 ):
-  /** Bytes. */
   def length: Int = size * count.max(1)
 
   def extension: Field[A] = new Field(typeName, size, count, true, read, write)
 
-  /** So many such fields, one after the other. */
+  /** `count` consecutive fields of this type. */
   def times[N <: Int & Singleton](count: N): Field.Repeated[N, A] =
     Tuple.fromArray(Array.fill(count)(this)).asInstanceOf[Field.Repeated[N, A]]
 
 object Field:
-  /** A tuple of fields of one type. */
   type Repeated[N <: Int, A] <: Tuple = N match
     case 0    => EmptyTuple
     case S[n] => Field[A] *: Repeated[n, A]
@@ -49,7 +47,7 @@ object Field:
   def u16s(count: Int): Field[Vector[Int]]   = many(u16, count, 0)
   def f32s(count: Int): Field[Vector[Float]] = many(f32, count, 0f)
 
-  /** Text of at most so many bytes, which a zero ends earlier. What is longer is cut. */
+  /** Text of at most `count` bytes, ended by a zero if shorter. Longer text is cut. */
   def chars(count: Int): Field[String] = new Field(
     "char",
     1,

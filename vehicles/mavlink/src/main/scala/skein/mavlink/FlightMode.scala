@@ -9,7 +9,6 @@ enum FlightMode(val main: Int, val sub: Int, val title: String):
   case Land     extends FlightMode(4, 6, "Land")
   case Offboard extends FlightMode(6, 0, "Offboard")
 
-  /** As a heartbeat tells it. */
   def customMode: Long = FlightMode.customMode(main, sub)
 
 object FlightMode:

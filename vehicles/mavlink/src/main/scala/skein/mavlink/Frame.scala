@@ -27,5 +27,4 @@ object Frame:
   /** Of the flags that a receiver must know, the one that is known: a signature follows. */
   private[mavlink] val Signed = 0x01
 
-  /** No frame is longer, bytes. */
   val MostLength: Int = HeaderLength + 255 + ChecksumLength + SignatureLength

@@ -38,7 +38,7 @@ final class FrameReader(signing: Option[Signing] = None):
 
   def counts: ReaderCounts = counted
 
-  /** A piece of a stream, cut anywhere. */
+  /** Reads the next bytes of a stream, split anywhere. */
   def read(bytes: Array[Byte]): Vector[Frame] =
     val all    = pending ++ bytes
     val frames = Vector.newBuilder[Frame]

@@ -37,14 +37,14 @@ final case class SysStatus(
     onboardControlSensorsHealthExtended: Long = 0
 ) extends Message
 
-/** Its clock. */
+/** The sender's clock: µs since 1970, and ms since its start. */
 final case class SystemTime(timeUnixUsec: Long, timeBootMs: Long) extends Message
 
 /** Asks for a parameter, by its name where the index is −1. */
 final case class ParamRequestRead(targetSystem: Int, targetComponent: Int, paramId: String, paramIndex: Int)
     extends Message
 
-/** Asks for all parameters. */
+/** Requests all parameters, one `ParamValue` each. */
 final case class ParamRequestList(targetSystem: Int, targetComponent: Int) extends Message
 
 /** A parameter. An integer stands in the bits of the value (PX4) or as a number (ArduPilot). */
@@ -56,7 +56,7 @@ final case class ParamValue(
     paramIndex: Int
 ) extends Message
 
-/** Sets a parameter; answered by its value. */
+/** Sets a parameter; the answer is a `ParamValue`. */
 final case class ParamSet(
     targetSystem: Int,
     targetComponent: Int,
@@ -133,26 +133,26 @@ final case class GlobalPositionInt(
     hdg: Int
 ) extends Message
 
-/** Goes on with this item of the mission. */
+/** Continues the mission at this item. */
 final case class MissionSetCurrent(targetSystem: Int, targetComponent: Int, seq: Int) extends Message
 
-/** The item that is flown to. */
+/** The mission item that the vehicle is flying to. */
 final case class MissionCurrent(seq: Int, total: Int = 0, missionState: Int = 0, missionMode: Int = 0)
     extends Message
 
-/** Asks for the mission's items. */
+/** Requests the number of mission items (`MissionCount`). */
 final case class MissionRequestList(targetSystem: Int, targetComponent: Int, missionType: Int = 0)
     extends Message
 
-/** So many items follow, to be requested one by one. */
+/** Announces `count` mission items, to be requested one by one. */
 final case class MissionCount(targetSystem: Int, targetComponent: Int, count: Int, missionType: Int = 0)
     extends Message
 
-/** Forgets the mission. */
+/** Deletes the mission on the vehicle. */
 final case class MissionClearAll(targetSystem: Int, targetComponent: Int, missionType: Int = 0)
     extends Message
 
-/** An item was reached. */
+/** The vehicle has reached a mission item. */
 final case class MissionItemReached(seq: Int) extends Message
 
 /** How the transfer of a mission ended; 0 is well. */
@@ -163,7 +163,7 @@ final case class MissionAck(targetSystem: Int, targetComponent: Int, `type`: Int
 final case class GpsGlobalOrigin(latitude: Int, longitude: Int, altitude: Int, timeUsec: Long = 0)
     extends Message
 
-/** Asks for one item. */
+/** Requests one mission item, with integer coordinates. */
 final case class MissionRequestInt(targetSystem: Int, targetComponent: Int, seq: Int, missionType: Int = 0)
     extends Message
 
@@ -186,7 +186,7 @@ final case class MissionItemInt(
     missionType: Int = 0
 ) extends Message
 
-/** A command with a place. */
+/** A command with a position, in integer coordinates. */
 final case class CommandInt(
     targetSystem: Int,
     targetComponent: Int,
@@ -218,7 +218,7 @@ final case class CommandLong(
     param7: Float
 ) extends Message
 
-/** What becomes of a command. */
+/** The result of a command, or its progress. */
 final case class CommandAck(
     command: Int,
     result: Int,
@@ -261,7 +261,7 @@ final case class SetPositionTargetLocalNed(
     yawRate: Float
 ) extends Message
 
-/** What the vehicle flies by. */
+/** The setpoint that the vehicle follows, in the local frame. */
 final case class PositionTargetLocalNed(
     timeBootMs: Long,
     coordinateFrame: Int,
@@ -279,7 +279,7 @@ final case class PositionTargetLocalNed(
     yawRate: Float
 ) extends Message
 
-/** The same with a place on the globe. */
+/** A setpoint with a global position (latitude, longitude). */
 final case class SetPositionTargetGlobalInt(
     timeBootMs: Long,
     targetSystem: Int,
@@ -323,7 +323,7 @@ final case class BatteryStatus(
     faultBitmask: Long = 0
 ) extends Message
 
-/** What it can do and what runs on it. */
+/** Capabilities and version numbers of an autopilot. */
 final case class AutopilotVersion(
     capabilities: Long,
     flightSwVersion: Long,
@@ -339,7 +339,7 @@ final case class AutopilotVersion(
     uid2: Vector[Int] = Vector.empty
 ) extends Message
 
-/** Where it would return to. */
+/** The position to which the vehicle returns. */
 final case class HomePosition(
     latitude: Int,
     longitude: Int,

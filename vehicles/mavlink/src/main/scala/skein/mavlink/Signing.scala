@@ -57,7 +57,6 @@ object Signing:
   /** Systems, components and links of whom times are remembered. */
   val MostStreams = 1024
 
-  /** One minute. */
   private val Tolerance = 6_000_000L
 
   /** A signature's time of a Unix time in milliseconds. */

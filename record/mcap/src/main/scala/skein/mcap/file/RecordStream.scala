@@ -14,10 +14,8 @@ final class RecordStream(channel: ReadableByteChannel, limits: McapLimits = Mcap
   private var ahead  = Option.empty[Either[McapError, Parsed.Found]]
   private var ended  = false
 
-  /** Of the schemas that have come so far. */
   def schema(id: Int): Option[Record.Schema] = parser.schema(id)
 
-  /** Of the channels that have come so far. */
   def channel(id: Int): Option[Record.Channel] = parser.channel(id)
 
   def hasNext: Boolean =
@@ -37,7 +35,7 @@ final class RecordStream(channel: ReadableByteChannel, limits: McapLimits = Mcap
     ahead = None
     found
 
-  /** The messages alone. */
+  /** Only the messages, with their channels and schemas. */
   def messages: Iterator[Either[McapError, TopicMessage]] = collect:
     case Right(Parsed.Found(message: Record.Message, _, _)) =>
       // The parser refuses a message of a channel that is not known.

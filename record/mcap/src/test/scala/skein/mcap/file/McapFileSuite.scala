@@ -26,7 +26,8 @@ class McapFileSuite extends munit.FunSuite, TemporaryFolders:
         mcap.message(heights, tick, atNs, atNs, Bytes.utf8(s"""{"heightM": ${tick * 0.01}}"""))
       mcap.attachment(0, 0, "settings.conf", "text/plain", Bytes.utf8("loop = stream"))
 
-    val found = McapFile.read(path, _.message.logTime >= 2_000_000_000L)(_.map(_.map(_.message.data.utf8)).toVector)
+    val found = McapFile.read(path, _.message.logTime >= 2_000_000_000L): messages =>
+      messages.map(_.map(_.message.data.utf8)).toVector
     // end
     val heights = found.map(_.fold(error => fail(error.message), identity))
     assertEquals(heights.size, 960)
