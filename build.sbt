@@ -48,7 +48,7 @@ lazy val root =
     .in(file("."))
     .aggregate(core, testing, onnx, flow, link, vtime, vtimeAgent, forward, gpu)
     .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, mcap, record, view)
-    .aggregate(flight, kafka, torture, environment, learn, recognition, blocks, cluster, cli, python)
+    .aggregate(flight, kafka, observe, torture, environment, learn, recognition, blocks, cluster, cli, python)
     .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
 
@@ -219,6 +219,12 @@ lazy val torture = project.in(file("fly/torture"))
   .dependsOn(flight % "compile->compile;test->test")
   .settings(underAgent, libraryDependencies ++= munit)
 
+/** Any program's loop, measured from between it and its simulator. */
+lazy val observe = project.in(file("fly/observe"))
+  .settings(artifact("observe", "Any program's control loop, measured from outside"))
+  .dependsOn(flight % "compile->compile;test->test")
+  .settings(underAgent, libraryDependencies ++= munit)
+
 /** Episodes step by step, for learners. */
 lazy val environment = project.in(file("learn/environment"))
   .settings(artifact("environment", "Episodes under a loop's timing, step by step, for learners"))
@@ -241,7 +247,7 @@ lazy val kafka = project.in(file("fly/kafka"))
 lazy val cli = project.in(file("app/cli"))
   .settings(artifact("cli", "Commands and reports"))
   .dependsOn(flight % "compile->compile;test->test", kafka % "compile->compile;test->test")
-  .dependsOn(view, learn, cluster, recognition, gpu, torture)
+  .dependsOn(view, learn, cluster, recognition, gpu, observe, torture)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(

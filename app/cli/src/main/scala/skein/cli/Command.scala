@@ -56,20 +56,23 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** By options' names: all values that one takes, where that is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
-  final def run(arguments: Seq[String]): Int =
+  /** What stands behind `--` is another program's. */
+  final def run(words: Seq[String]): Int =
+    val (arguments, behind) = words.span(_ != "--")
     if arguments.exists(word => word == "--help" || word == "-h") then
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
       0
-    else strange(arguments).fold(parsed(arguments))(word => misused(Misuse.noSuch(word, names)))
+    else strange(arguments).fold(parsed(arguments, behind.drop(1)))(word => misused(Misuse.noSuch(word, names)))
 
-  private def parsed(arguments: Seq[String]): Int = parser.constructRaw(optionsFirst(arguments)) match
-    case failure: Result.Failure => misused(Misuse.text(failure, names))
-    case Result.Success(options) =>
-      OutFolder.unlessRefused(done(options)) match
-        case Right(())    => 0
-        case Left(reason) =>
-          Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
-          1
+  private def parsed(arguments: Seq[String], behind: Seq[String]): Int =
+    parser.constructRaw(optionsFirst(arguments) ++ behind) match
+      case failure: Result.Failure => misused(Misuse.text(failure, names))
+      case Result.Success(options) =>
+        OutFolder.unlessRefused(done(options)) match
+          case Right(())    => 0
+          case Left(reason) =>
+            Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
+            1
 
   private def misused(mistakes: String): Int =
     mistakes.linesIterator.foreach(mistake =>

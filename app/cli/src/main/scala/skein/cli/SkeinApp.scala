@@ -58,7 +58,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       BudgetCommand(program),
       PolicyCommand()
     ),
-    "Simulator and network" -> Seq(ServeCommand, LinkCommand, LatencyCommand),
+    "Simulator and network" -> Seq(ServeCommand, LinkCommand, LatencyCommand, ObserveCommand),
     "Work with recordings"  -> Seq(
       ReportCommand(),
       ReplayCommand(),

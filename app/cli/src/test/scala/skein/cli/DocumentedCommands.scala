@@ -268,6 +268,10 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
           // The ports of the guide may be taken here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
           runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))
+        case "observe" =>
+          // Without the guide's program, which is the user's.
+          val own = without(words.takeWhile(_ != "--"), Seq("--simulator"))
+          runUntilItListens(own ++ Seq("--listen", "127.0.0.1:0", "--simulator", server.address.toString))
         case _ if words.contains("recogniser=detector") =>
           // Its runtime is added by whoever wants it: that is told in a line.
           val (status, told) = run(words)
@@ -285,6 +289,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         if Set(
             "serve",
             "link",
+            "observe",
             "decide"
           )(words.head) || words.contains("--view") || words.contains("--cluster")
         then

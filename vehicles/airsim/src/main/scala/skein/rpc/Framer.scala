@@ -41,8 +41,11 @@ enum Framed:
   * what is left to read is two numbers, the values outstanding at each open level and the payload bytes to
   * skip, so nothing is ever parsed again. A value's bytes are copied once, when it is complete. Does no I/O;
   * one instance per connection and direction, one thread at a time.
+  *
+  * @param keptBytes of a longer value only the beginning is kept, about so many bytes: for a listener that
+  *   needs no more of an image
   */
-final class Framer(limits: FrameLimits = FrameLimits()):
+final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.MaxValue):
   import Framer.*
 
   private var segment    = EmptySegment
@@ -50,6 +53,8 @@ final class Framer(limits: FrameLimits = FrameLimits()):
   private var frameStart = 0 // where the current value begins in `segment`; 0 if in an earlier one
   private var earlier        = List.empty[Array[Byte]] // latest first
   private var earlierBytes   = 0                       // in `earlier` and `crumbs` together
+  private var passedBytes    = 0L                      // of the current value, looked at and not kept
+  private var lastBytes      = 0L
   private val crumbs         = new Array[Byte](CrumbsCapacity)
   private var crumbBytes     = 0
   private var payloadToSkip  = 0L
@@ -87,6 +92,9 @@ final class Framer(limits: FrameLimits = FrameLimits()):
 
   /** About how many bytes of memory the value completed last takes once it is decoded. */
   def decodedBytes: Long = decoded
+
+  /** Length of the value completed last, also of what was not kept of it. */
+  def valueBytes: Long = lastBytes
 
   private def scan(): Framed =
     var complete = false
@@ -159,23 +167,25 @@ final class Framer(limits: FrameLimits = FrameLimits()):
       else closing = false
     level == 0
 
-  private def frameBytesSoFar: Long = earlierBytes.toLong + (position - frameStart)
+  private def frameBytesSoFar: Long = earlierBytes + passedBytes + (position - frameStart)
 
   /** Keeps what the segment holds of an incomplete value: large parts as they are, small ones gathered, so
     * that a peer that sends single bytes does not make us hold an object for each.
     */
   private def keep(): Unit =
     val length = position - frameStart
-    if length > CrumbsCapacity / 4 then
-      sweep()
-      val part =
-        if frameStart == 0 then segment else java.util.Arrays.copyOfRange(segment, frameStart, position)
-      earlier = part :: earlier
-    else if length > 0 then
-      if crumbBytes + length > CrumbsCapacity then sweep()
-      System.arraycopy(segment, frameStart, crumbs, crumbBytes, length)
-      crumbBytes += length
-    earlierBytes += length
+    if earlierBytes >= keptBytes then passedBytes += length
+    else
+      if length > CrumbsCapacity / 4 then
+        sweep()
+        val part =
+          if frameStart == 0 then segment else java.util.Arrays.copyOfRange(segment, frameStart, position)
+        earlier = part :: earlier
+      else if length > 0 then
+        if crumbBytes + length > CrumbsCapacity then sweep()
+        System.arraycopy(segment, frameStart, crumbs, crumbBytes, length)
+        crumbBytes += length
+      earlierBytes += length
     segment = EmptySegment
     position = 0
     frameStart = 0
@@ -186,7 +196,8 @@ final class Framer(limits: FrameLimits = FrameLimits()):
       crumbBytes = 0
 
   private def take(): Array[Byte] =
-    val here  = position - frameStart
+    lastBytes = frameBytesSoFar
+    val here  = if earlierBytes >= keptBytes then 0 else position - frameStart
     val frame = new Array[Byte](earlierBytes + here)
     var end   = earlierBytes - crumbBytes
     System.arraycopy(crumbs, 0, frame, end, crumbBytes)
@@ -198,6 +209,7 @@ final class Framer(limits: FrameLimits = FrameLimits()):
     System.arraycopy(segment, frameStart, frame, earlierBytes, here)
     decoded = frame.length + elements * BytesPerValue + maps.toLong * BytesPerMap
     earlierBytes = 0
+    passedBytes = 0
     crumbBytes = 0
     elements = 0
     maps = 0

@@ -1,0 +1,107 @@
+package skein.cli
+
+import java.io.IOException
+import java.util.concurrent.{CountDownLatch, TimeUnit}
+import mainargs.{Flag, Leftover, ParserForClass, arg}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.DurationInt
+import skein.link.*
+import skein.observe.{ObservedTables, ObservingProxy}
+import skein.report.{Paragraph, Section, TextTable}
+import skein.units.{Clock, Expect}
+
+/** Options of `./skein observe`. */
+final case class ObserveOptions(
+    @arg(doc = "where the program connects, in place of the simulator; 0.0.0.0 opens it to other machines")
+    listen: String = "127.0.0.1:41452",
+    @arg(doc = "the simulator: AirSim, one of its forks, or ./skein serve")
+    simulator: String = "127.0.0.1:41451",
+    @arg(doc = "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …")
+    link: String = "none",
+    @arg(doc = "seed of every random choice of the emulated network")
+    seed: Long = 1,
+    @arg(doc = Shown.Doc)
+    json: Flag,
+    @arg(doc =
+      "the program and its arguments, behind --: it is started, and observed until it ends; " +
+        "without one, until Ctrl-C"
+    )
+    command: Leftover[String]
+)
+
+/** `./skein observe`: measures the control loop of any program that flies by AirSim's interface. */
+object ObserveCommand
+    extends OptionsCommand[ObserveOptions](
+      "observe",
+      "measures the loop of any AirSim program, from between it and the simulator: how old its data is, and why",
+      ParserForClass[ObserveOptions]
+    ):
+
+  protected def execute(options: ObserveOptions): Either[String, Unit] =
+    for
+      listenAt  <- Address.parse(options.listen).left.map("--listen: " + _)
+      simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
+      _         <- Expect.that(listenAt.port == 0 || listenAt != simulator):
+        s"--listen: expected another address than the simulator's, came $listenAt twice"
+      profile <- Arguments.latency(options.link).left.map("--link: " + _)
+      _       <- observe(listenAt, simulator, LinkProfile.symmetric(profile), options)
+    yield ()
+
+  private def observe(
+      listenAt: Address,
+      simulator: Address,
+      profile: LinkProfile,
+      options: ObserveOptions
+  ): Either[String, Unit] =
+    given system: ActorSystem   = ActorSystem("skein")
+    val shown                   = Shown(options.json.value)
+    def warn(reason: Throwable) = Console.err.println(s"skein observe: ${reason.getMessage}")
+    try
+      val link  = EmulatedLink(profile, options.seed, Clock.system)
+      val proxy = Edge.await(
+        ObservingProxy.start(listenAt, simulator, link, TcpTransport(), Clock.system, unreachable = warn)
+      )
+      val command = options.command.value
+      shown.say(
+        s"${proxy.address} leads to $simulator" +
+          (if profile == LinkProfile.none then "" else s" over ${profile.toServer.name}") +
+          (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
+      )
+      val telling = system.scheduler.scheduleWithFixedDelay(TellEvery, TellEvery)(() =>
+        ObservedTables.line(proxy.observed).foreach(Console.err.println)
+      )(using system.dispatcher)
+      val ended = if command.isEmpty then untilInterrupted() else runToEnd(command)
+      telling.cancel()
+      Edge.await(proxy.close())
+      val observed = proxy.observed
+      shown.tables(sections(ObservedTables.sections(observed)), text(observed))
+      ended
+    catch case error: TransportError => Left(error.getMessage)
+    finally Edge.await(system.terminate()): Unit
+
+  private def untilInterrupted(): Either[String, Unit] =
+    val stopped = CountDownLatch(1)
+    Edge.untilInterrupted(() => stopped.countDown())(stopped.await())
+    Right(())
+
+  /** With the terminal of this command. */
+  private def runToEnd(command: Seq[String]): Either[String, Unit] =
+    try
+      val program = ProcessBuilder(command*).inheritIO().start()
+      Edge.untilInterrupted(() => program.destroy()):
+        val status = program.waitFor()
+        if status != 0 then Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
+      if !program.waitFor(GraceS, TimeUnit.SECONDS) then program.destroyForcibly(): Unit
+      Right(())
+    catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
+
+  private def sections(tables: Vector[ObservedTables.Table]): Vector[Section] =
+    tables.map(table => Section(table.title, table.note, Some(TextTable(table.header, table.rows))))
+
+  private def text(observed: skein.observe.Observed): String =
+    val tables   = Section.text(sections(ObservedTables.sections(observed).filterNot(_.title == ObservedTables.Findings)))
+    val findings = ObservedTables.findings(observed).flatMap(Paragraph.lines(_, 100))
+    (tables +: "" +: findings).mkString("\n")
+
+  private val TellEvery = 5.seconds
+  private val GraceS    = 5L

@@ -1,0 +1,54 @@
+package skein.observe
+
+/** What a call of AirSim's interface is for, as far as a loop's timing is concerned. */
+enum CallKind(val label: String):
+  /** Reads a vehicle's pose or motion. */
+  case State extends CallKind("state")
+
+  /** Reads another sensor. */
+  case Sensor extends CallKind("sensors")
+
+  /** Takes images. */
+  case Image extends CallKind("images")
+
+  /** Commands a vehicle; answered when the move ends or a newer one replaces it. */
+  case Move extends CallKind("moves")
+
+  /** Pauses, continues or resets the simulator. */
+  case Time extends CallKind("time")
+
+  case Other extends CallKind("other")
+
+object CallKind:
+  private val states = Set(
+    "getMultirotorState",
+    "getCarState",
+    "simGetGroundTruthKinematics",
+    "simGetVehiclePose",
+    "simGetObjectPose"
+  )
+
+  private val sensors = Set(
+    "getImuData",
+    "getBarometerData",
+    "getMagnetometerData",
+    "getGpsData",
+    "getDistanceSensorData",
+    "getLidarData",
+    "getRotorStates"
+  )
+
+  private val images = Set("simGetImages", "simGetImage", "simGetDetections")
+  private val times  = Set("simPause", "simContinueForTime", "simContinueForFrames", "reset")
+  private val moves  = Set("hover", "takeoff", "land", "goHome", "moveOnPath", "setCarControls")
+
+  /** By the method's name on the wire. */
+  def of(method: String): CallKind =
+    if states(method) then State
+    else if sensors(method) then Sensor
+    else if images(method) then Image
+    else if times(method) then Time
+    else if moves(method) || method.startsWith("moveBy") || method.startsWith("moveTo") ||
+      method.startsWith("rotateTo") || method.startsWith("rotateBy")
+    then Move
+    else Other

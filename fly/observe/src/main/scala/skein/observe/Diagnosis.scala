@@ -1,0 +1,175 @@
+package skein.observe
+
+import skein.units.Decimals.{brief, counted, fixed}
+
+/** What is wrong with a loop's timing, and what to do.
+  *
+  * @param name the same for every loop, for scripts
+  * @param what was seen, with its figures
+  * @param remedy what to change
+  */
+final case class Finding(name: String, what: String, remedy: String)
+
+/** Finds the usual faults of a loop's timing in what was observed. A pure function; the most costly come first.
+  */
+object Diagnosis:
+
+  /** A share of a period that is worth a word. */
+  private val Notable = 0.2
+
+  /** More calls at once than AirSim is sure to answer: it keeps a worker for each unanswered move. */
+  private val MostMoves = 2
+
+  /** Images slow small calls by so much where a link is full of them. */
+  private val SlowedBy = 2.0
+
+  /** Clocks of one machine differ by less. */
+  private val RateWithin = 0.02
+
+  def of(observed: Observed): Vector[Finding] =
+    Vector(
+      images(observed),
+      waitsForMoves(observed),
+      inTurn(observed),
+      saturated(observed),
+      manyMoves(observed),
+      overtaken(observed),
+      superseded(observed),
+      leftRunning(observed),
+      stalls(observed),
+      clock(observed),
+      failed(observed),
+      blind(observed)
+    ).flatten
+
+  private def period(observed: Observed): Double = observed.periodMs.values.sum
+
+  private def images(observed: Observed): Option[Finding] =
+    val spent = observed.periodMs.getOrElse(LoopAccount.Phases(0), 0.0)
+    Option.when(observed.imagesOnCommandConnections > 0 && spent > Notable * period(observed)):
+      Finding(
+        "images in the control loop",
+        s"images take ${spent.brief} ms of each period of ${period(observed).brief} ms, on the connection that commands",
+        "take images on a connection (a client) and a thread of their own, and decide by the newest one that has come"
+      )
+
+  private def waitsForMoves(observed: Observed): Option[Finding] =
+    worst(observed)(vehicle => vehicle.joined.toDouble / vehicle.commands.max(1))
+      .filter((_, share) => share > 0.5)
+      .map: (vehicle, share) =>
+        Finding(
+          "waits for each move",
+          s"the program waited for the end of ${(100 * share).fixed(0)} % of the commands to ${named(vehicle)} before it did anything else",
+          "send moves without waiting (no join()): a newer command replaces the one before"
+        )
+
+  private def inTurn(observed: Observed): Option[Finding] =
+    val read = observed.vehicles.count(_.ownAgeMs.isDefined)
+    worst(observed)(_.skewMs.fold(0.0)(_.median))
+      .filter((_, skew) => read > 1 && observed.readsOverlap < 0.1 && skew > Notable * stateMs(observed) && skew > 3)
+      .map: (vehicle, skew) =>
+        Finding(
+          "reads in turn",
+          s"vehicles are read one after the other: when ${named(vehicle)} is commanded, the oldest reading is ${skew.brief} ms older than the newest",
+          "ask for all vehicles at once, on a connection for each, and join the newest answers"
+        )
+
+  private def stateMs(observed: Observed): Double =
+    observed.methods.filter(_.kind == CallKind.State).flatMap(_.roundTripMs).map(_.median).maxOption.getOrElse(0.0)
+
+  private def saturated(observed: Observed): Option[Finding] =
+    for
+      quiet  <- observed.smallCallMs.quiet
+      beside <- observed.smallCallMs.besideImages
+      if beside.count >= 10 && beside.median > SlowedBy * quiet.median && beside.median - quiet.median > 2
+    yield Finding(
+      "images fill the link",
+      s"small calls take ${beside.median.brief} ms while an image is under way, ${quiet.median.brief} ms else",
+      "ask for fewer, smaller or compressed images; a faster link helps, more threads do not"
+    )
+
+  private def manyMoves(observed: Observed): Option[Finding] =
+    worst(observed)(_.mostInFlight.toDouble).filter((_, most) => most > MostMoves).map: (vehicle, most) =>
+      Finding(
+        "many moves unanswered",
+        s"up to ${most.toInt} commands to ${named(vehicle)} were unanswered at once",
+        s"keep at most $MostMoves: AirSim holds a worker for each, and stands still when it has none left"
+      )
+
+  private def overtaken(observed: Observed): Option[Finding] =
+    worst(observed)(_.overtaken.toDouble).filter((_, count) => count > 0).map: (vehicle, count) =>
+      Finding(
+        "commands overtake one another",
+        s"${counted(count.toLong, "command")} to ${named(vehicle)} acted after a later one",
+        "send all commands of a vehicle on one connection"
+      )
+
+  private def superseded(observed: Observed): Option[Finding] =
+    worst(observed)(vehicle => vehicle.superseded.toDouble / vehicle.commands.max(1))
+      .filter((_, share) => share > 0.05)
+      .map: (vehicle, share) =>
+        Finding(
+          "commands come in bursts",
+          s"${(100 * share).fixed(0)} % of the commands to ${named(vehicle)} were replaced within 3 ms, before physics made a step",
+          "send one command a period"
+        )
+
+  private def leftRunning(observed: Observed): Option[Finding] =
+    worst(observed)(_.leftRunning.toDouble).filter((_, count) => count > 0).map: (vehicle, count) =>
+      Finding(
+        "moves left running",
+        s"${counted(count.toLong, "command")} to ${named(vehicle)} still ran when the program left",
+        "hover() or cancelLastTask() at the end: a move goes on until its duration is over"
+      )
+
+  private def stalls(observed: Observed): Option[Finding] =
+    observed.stalls.headOption.map: longest =>
+      Finding(
+        "stalls",
+        s"${counted(observed.stalls.size, "stall")}, the longest of ${longest.length.toMillis.brief} ms in ${longest.method}, " +
+          s"${longest.at.toSeconds.fixed(1)} s after the start",
+        "see what else runs on the machines and on the link at these times; a busy simulator answers nobody"
+      )
+
+  private def clock(observed: Observed): Option[Finding] = observed.clock.flatMap: clock =>
+    if clock.backwards > 0 then
+      Some(Finding(
+        "the simulator's clock goes back",
+        s"${counted(clock.backwards, "time")}: it was reset or restarted, and ages across that are wrong",
+        "observe a run without resets"
+      ))
+    else if observed.pauses == 0 && clock.stoodStill.toMillis > 100 then
+      Some(Finding(
+        "the simulator stands still",
+        s"for ${clock.stoodStill.toSeconds.fixed(1)} s in all, while nobody paused it",
+        "it is overloaded, or all its workers wait for moves"
+      ))
+    else
+      Option.when(observed.pauses == 0 && math.abs(clock.rate - 1) > RateWithin):
+        Finding(
+          "the simulator is not at real time",
+          s"its clock runs at ${clock.rate.fixed(2)} of real time",
+          "ages are in real milliseconds; scale them by this for the simulator's"
+        )
+
+  private def failed(observed: Observed): Option[Finding] =
+    observed.methods.filter(_.failed > 0).sortBy(-_.failed).headOption.map: method =>
+      Finding(
+        "calls fail",
+        s"${method.failed} of ${method.calls} calls of ${method.method}; the first: ${method.firstError.getOrElse("")}",
+        "see the simulator's answer"
+      )
+
+  /** Commands that rest on no reading at all. */
+  private def blind(observed: Observed): Option[Finding] =
+    observed.vehicles.find(vehicle => vehicle.commands > 0 && vehicle.ownAgeMs.isEmpty).map: vehicle =>
+      Finding(
+        "commands without readings",
+        s"${named(vehicle)} was commanded and never read: the age of its data cannot be told",
+        "nothing, if it decides by images or from a file"
+      )
+
+  private def worst(observed: Observed)(by: ObservedVehicle => Double): Option[(ObservedVehicle, Double)] =
+    observed.vehicles.filter(_.commands > 0).map(vehicle => (vehicle, by(vehicle))).maxByOption(_._2)
+
+  private def named(vehicle: ObservedVehicle) = if vehicle.name.isEmpty then "the first vehicle" else vehicle.name

@@ -1,0 +1,330 @@
+package skein.observe
+
+import scala.collection.mutable
+import skein.signal.{ClockAlignment, Stamped}
+import skein.units.*
+
+/** Keeps account of a loop from what passes between its program and the simulator. Mutable; one thread at a
+  * time; messages in the order in which they passed.
+  *
+  * A command is taken to rest on the newest reading of each vehicle whose answer has passed before it. A
+  * reading's age counts from its time stamp, by the clocks' estimated offset ([[ClockAlignment]]); an answer
+  * without one is taken to have been sampled halfway between call and answer, which bounds its age as well.
+  *
+  * Memory: [[LoopAccount.MostPending]] unanswered calls a connection, [[LoopAccount.MostVehicles]] vehicles,
+  * [[LoopAccount.MostMethods]] methods, a million samples of each quantity.
+  */
+final class LoopAccount:
+  import LoopAccount.*
+
+  private val connections = mutable.LongMap.empty[Open]
+  private val vehicles    = mutable.LinkedHashMap.empty[String, Vehicle]
+  private val methods     = mutable.LinkedHashMap.empty[String, Method]
+  private val outstanding = Array.ofDim[Int](CallKind.values.length)
+  private val spentNs     = mutable.LinkedHashMap.from(Phases.map(_ -> 0L))
+  private val stalls      = mutable.ArrayBuffer.empty[Stall]
+  private val lost        = mutable.ArrayBuffer.empty[String]
+  private val quiet       = Samples()
+  private val beside      = Samples()
+
+  private var opened         = 0
+  private var clock          = Option.empty[ClockAlignment]
+  private var stamps         = Option.empty[Stamps]
+  private var backwards      = 0L
+  private var stillNs        = 0L
+  private var begunAt        = Option.empty[Instant]
+  private var lastAt         = Instant.Epoch
+  private var firstMove      = true
+  private var periodsNs      = Map.empty[String, Long]
+  private var moves          = 0L
+  private var reads, overlap = 0L
+  private var imagesInLoop   = 0L
+  private var pauses         = 0L
+  private var forgotten      = 0L
+
+  def add(passed: Passed): Unit = passed match
+    case Passed.Opened(connection, at) =>
+      opened += 1
+      connections(connection) = Open()
+    case called: Passed.Called     => tick(called.at); call(called)
+    case answered: Passed.Answered => tick(answered.at); answer(answered)
+    case Passed.Unreadable(connection, reason, at) =>
+      if lost.size < MostLost then lost += s"connection ${connection + 1}: $reason"
+    case Passed.Closed(connection, at) =>
+      tick(at)
+      for open <- connections.remove(connection) do
+        for pending <- open.pending.values do
+          outstanding(pending.kind.ordinal) -= 1
+          if pending.kind == CallKind.Move then
+            vehicle(pending.vehicle).foreach: commanded =>
+              commanded.inFlight.remove(pending): Unit
+              commanded.leftRunning += 1
+
+  /** Messages that passed and were not taken into account. */
+  def passedOver(count: Long): Unit = forgotten += count
+
+  /** Lets time pass: what the program waits for now has taken so long. */
+  private def tick(at: Instant): Unit =
+    if begunAt.isEmpty then begunAt = Some(at)
+    else spentNs(phase) += at.since(lastAt).toNanos.max(0)
+    lastAt = lastAt.max(at)
+
+  private def phase: String =
+    def waitsFor(kind: CallKind) = outstanding(kind.ordinal) > 0
+    if waitsFor(CallKind.Image) then Phases(0)
+    else if waitsFor(CallKind.State) then Phases(1)
+    else if waitsFor(CallKind.Sensor) then Phases(2)
+    else if waitsFor(CallKind.Other) || waitsFor(CallKind.Time) then Phases(3)
+    else Phases(4)
+
+  private def call(called: Passed.Called): Unit =
+    val kind    = CallKind.of(called.method)
+    val pending = Pending(called.method, kind, called.vehicle, called.at)
+    val open    = connections.getOrElseUpdate(called.connection, Open())
+    open.pending.values.foreach(_.isAlone = false)
+    if open.pending.size >= MostPending then
+      forgotten += 1
+      val (oldest, first) = open.pending.head
+      open.pending.remove(oldest): Unit
+      outstanding(first.kind.ordinal) -= 1
+    open.pending.put(called.id, pending).foreach(again => outstanding(again.kind.ordinal) -= 1)
+    method(called.method, kind).foreach(_.calls += 1)
+    if kind == CallKind.State then
+      reads += 1
+      if outstanding(CallKind.State.ordinal) > 0 then overlap += 1
+    if kind == CallKind.Image then open.images += 1
+    if kind == CallKind.Time then pauses += 1
+    if kind == CallKind.Move then move(called, pending, open)
+    pending.besideImages = outstanding(CallKind.Image.ordinal) > 0
+    outstanding(kind.ordinal) += 1
+
+  private def move(called: Passed.Called, pending: Pending, open: Open): Unit =
+    if firstMove then
+      firstMove = false
+      for phase <- Phases do spentNs(phase) = 0
+    else periodsNs = spentNs.toMap
+    moves += 1
+    imagesInLoop += open.images
+    open.images = 0
+    for commanded <- vehicle(called.vehicle) do
+      val at = called.at
+      commanded.commands += 1
+      for last <- commanded.movedAt do
+        commanded.every.add(at.since(last).toMillis)
+        if at.since(last) < PhysicsStep then commanded.superseded += 1
+      val others = vehicles.valuesIterator.filterNot(_ eq commanded).toVector
+      others.flatMap(_.movedAt).maxOption.foreach(last => commanded.sinceOthers.add(at.since(last).toMillis))
+      commanded.reading.foreach: own =>
+        commanded.ownAge.add(own.ageAt(at, clock).toMillis)
+        commanded.bound.add(own.bound(clock).toMillis)
+      val known = others.flatMap(_.reading)
+      known.map(_.ageAt(at, clock).toMillis).maxOption.foreach(commanded.othersAge.add)
+      val ages = (known ++ commanded.reading).map(_.ageAt(at, clock).toMillis)
+      if ages.size > 1 then commanded.skew.add(ages.max - ages.min)
+      commanded.movedAt = Some(at)
+      commanded.inFlight.add(pending): Unit
+      commanded.mostInFlight = commanded.mostInFlight.max(commanded.inFlight.size)
+
+  private def answer(answered: Passed.Answered): Unit =
+    for
+      open    <- connections.get(answered.connection)
+      pending <- open.pending.remove(answered.id)
+    do
+      outstanding(pending.kind.ordinal) -= 1
+      val roundTrip = answered.at.since(pending.at)
+      for known <- method(pending.method, pending.kind) do
+        for error <- answered.error do
+          known.failed += 1
+          if known.firstError.isEmpty then known.firstError = Some(error)
+        known.answerBytes += answered.bytes
+        if pending.kind != CallKind.Move then stalled(pending, roundTrip, known, answered.at)
+        known.roundTrips.add(roundTrip.toMillis)
+      if answered.bytes < SmallBytes && pending.kind != CallKind.Move && pending.kind != CallKind.Image then
+        (if pending.besideImages then beside else quiet).add(roundTrip.toMillis)
+      if pending.kind == CallKind.Move then ended(pending, roundTrip, answered.error.isEmpty)
+      else if answered.error.isEmpty then read(pending, answered)
+
+  private def ended(pending: Pending, roundTrip: Span, hasFlown: Boolean): Unit =
+    for commanded <- vehicle(pending.vehicle) do
+      if pending.isAlone && roundTrip > JoinedFor then commanded.joined += 1
+      // A later command has replaced this one in its time; one that was sent before and still flies came after.
+      val isLast = !commanded.inFlight.exists(_.at > pending.at)
+      if hasFlown && isLast && commanded.inFlight.exists(_.at < pending.at) then commanded.overtaken += 1
+      commanded.inFlight.remove(pending): Unit
+
+  private def read(pending: Pending, answered: Passed.Answered): Unit =
+    val sampled = answered.sampledAt.map(Stamped((), _, pending.at, answered.at))
+    sampled.foreach(stamped)
+    if pending.kind == CallKind.State then
+      for seen <- vehicle(pending.vehicle) do
+        val reading = Reading(pending.at, answered.at, answered.sampledAt)
+        if seen.reading.forall(reading.isNewerThan) then seen.reading = Some(reading)
+
+  private def stamped(one: Stamped[Unit]): Unit =
+    clock = Some(clock.fold(ClockAlignment.of(one))(_.updated(one)))
+    for before <- stamps do
+      val isLater = one.sentAt > before.receivedAt
+      if isLater && one.validAt < before.validAt then backwards += 1
+      if isLater && one.validAt == before.validAt && one.sentAt > before.receivedAt + ClockAlignment.Tick &&
+        pauses == 0
+      then stillNs += one.sentAt.since(before.receivedAt).toNanos
+    val first = stamps.fold((one.validAt, one.receivedAt))(_.first)
+    if stamps.forall(one.sentAt > _.receivedAt) then
+      stamps = Some(Stamps(first, one.validAt, one.receivedAt))
+
+  private def stalled(pending: Pending, roundTrip: Span, known: Method, at: Instant): Unit =
+    if roundTrip > LeastStall && known.roundTrips.added >= UsualAfter &&
+      roundTrip.toMillis > StallFactor * known.usualMs
+    then
+      val end   = at.since(begunAt.get)
+      val stall = Stall(end, roundTrip, pending.method)
+      // Calls that began while it lasted are of the same one.
+      stalls.lastOption match
+        case Some(last) if end - roundTrip < last.at =>
+          stalls(stalls.size - 1) = if roundTrip > last.length then stall else last.copy(at = end)
+        case _ => if stalls.size < MostStalls then stalls += stall
+
+  private def vehicle(name: String): Option[Vehicle] =
+    vehicles.get(name).orElse:
+      Option.when(vehicles.size < MostVehicles):
+        val first = Vehicle(name)
+        vehicles(name) = first
+        first
+
+  private def method(name: String, kind: CallKind): Option[Method] =
+    methods.get(name).orElse:
+      Option.when(methods.size < MostMethods):
+        val first = Method(name, kind)
+        methods(name) = first
+        first
+
+  /** All that is known now. */
+  def observed: Observed =
+    val periods = moves.toDouble / vehicles.valuesIterator.count(_.commands > 0).max(1) - 1
+    Observed(
+      lasted = begunAt.fold(Span.Zero)(lastAt.since),
+      connections = opened,
+      vehicles = vehicles.valuesIterator.map(_.observed).toVector,
+      methods = methods.valuesIterator.map(_.observed).toVector,
+      periodMs =
+        if periods < 1 then Map.empty else periodsNs.map((phase, ns) => phase -> ns * 1e-6 / periods),
+      clock = stamps.map: known =>
+        val wall = known.receivedAt.since(known.first._2).toSeconds
+        val rate = if wall > 0 then known.validAt.since(known.first._1).toSeconds / wall else 1.0
+        SimulatorClock(rate, backwards, Span.ofNanos(stillNs)),
+      stalls = stalls.sortBy(-_.length.toNanos).toVector,
+      smallCallMs = (quiet = quiet.distribution, besideImages = beside.distribution),
+      readsOverlap = if reads == 0 then 0 else overlap.toDouble / reads,
+      imagesOnCommandConnections = imagesInLoop,
+      pauses = pauses,
+      lost = lost.toVector,
+      notKept = forgotten
+    )
+
+object LoopAccount:
+  /** What a program does between two commands, told apart by what it waits for. */
+  val Phases: Vector[String] =
+    Vector("images", "states", "sensors", "other calls", "the program itself, or waiting for moves")
+
+  private val MostPending  = 4096
+  private val MostVehicles = 256
+  private val MostMethods  = 256
+  private val MostStalls   = 1000
+  private val MostLost     = 100
+
+  /** AirSim's: a command replaced within this was never acted on. */
+  private val PhysicsStep = Span.ofMillis(3)
+
+  /** Larger answers occupy a link for a while. */
+  private val SmallBytes = 16L << 10
+
+  /** A move that a program waits for lasts longer than the calls beside it. */
+  private val JoinedFor = Span.ofMillis(50)
+
+  private val LeastStall  = Span.ofMillis(250)
+  private val UsualAfter  = 20L
+  private val StallFactor = 5.0
+
+  private final class Pending(
+      val method: String,
+      val kind: CallKind,
+      val vehicle: String,
+      val at: Instant
+  ):
+    /** Whether its connection has sent nothing since. */
+    var isAlone      = true
+    var besideImages = false
+
+  private final class Open:
+    val pending = mutable.LinkedHashMap.empty[Long, Pending]
+
+    /** Image calls since the last command. */
+    var images = 0L
+
+  private final case class Stamps(first: (Instant, Instant), validAt: Instant, receivedAt: Instant)
+
+  /** @param sampledAt on the simulator's clock, where the answer says it
+    */
+  private final case class Reading(sentAt: Instant, receivedAt: Instant, sampledAt: Option[Instant]):
+
+    def isNewerThan(other: Reading): Boolean = (sampledAt, other.sampledAt) match
+      case (Some(own), Some(of)) if sentAt <= other.receivedAt => own > of
+      case _                                                   => sentAt > other.sentAt
+
+    def ageAt(now: Instant, clock: Option[ClockAlignment]): Span =
+      val sampled = for at <- sampledAt; known <- clock yield known.toController(at)
+      now.since(sampled.getOrElse(receivedAt - receivedAt.since(sentAt) / 2))
+
+    /** The age lies within ± this. */
+    def bound(clock: Option[ClockAlignment]): Span =
+      (for _ <- sampledAt; known <- clock yield known.uncertainty)
+        .getOrElse(receivedAt.since(sentAt) / 2)
+
+  private final class Vehicle(name: String):
+    var reading       = Option.empty[Reading]
+    var movedAt       = Option.empty[Instant]
+    val inFlight      = mutable.LinkedHashSet.empty[Pending]
+    var commands      = 0L
+    var superseded    = 0L
+    var overtaken     = 0L
+    var mostInFlight  = 0
+    var joined        = 0L
+    var leftRunning   = 0L
+    val ownAge        = Samples()
+    val othersAge     = Samples()
+    val bound         = Samples()
+    val every         = Samples()
+    val sinceOthers   = Samples()
+    val skew          = Samples()
+
+    def observed: ObservedVehicle = ObservedVehicle(
+      name,
+      commands,
+      ownAge.distribution,
+      othersAge.distribution,
+      bound.distribution.map(_.mean),
+      every.distribution,
+      sinceOthers.distribution,
+      skew.distribution,
+      superseded,
+      overtaken,
+      mostInFlight,
+      joined,
+      leftRunning
+    )
+
+  private final class Method(name: String, kind: CallKind):
+    var calls, failed = 0L
+    var answerBytes   = 0L
+    var firstError    = Option.empty[String]
+    val roundTrips    = Samples()
+    private var usual = (0L, 0.0)
+
+    /** The median, computed anew whenever the number of round trips has doubled. */
+    def usualMs: Double =
+      if roundTrips.added >= 2 * usual._1 then
+        usual = (roundTrips.added, roundTrips.distribution.fold(0.0)(_.median))
+      usual._2
+
+    def observed: ObservedMethod =
+      ObservedMethod(name, kind, calls, failed, roundTrips.distribution, answerBytes, firstError)

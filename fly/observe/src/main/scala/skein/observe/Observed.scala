@@ -1,0 +1,92 @@
+package skein.observe
+
+import skein.measure.Distribution
+import skein.units.{Instant, Span}
+
+/** What an observer knows of a loop. Ages are in milliseconds, at the moment at which a command passed.
+  *
+  * @param lasted from the first call to the last message
+  * @param vehicles those that were read or commanded, in the order of their first call
+  * @param methods in the order of their first call
+  * @param periodMs how a period from command to command was spent, on average; empty before the second command
+  * @param clock of the simulator; absent where no answer had a time stamp
+  * @param stalls in which calls waited for much longer than usual, the longest first
+  * @param smallCallMs round trips of small calls, while nobody transferred an image and while somebody did
+  * @param lost connections of which the bytes could not be read
+  * @param notKept messages that passed while the observer had no room for them
+  */
+final case class Observed(
+    lasted: Span,
+    connections: Int,
+    vehicles: Vector[ObservedVehicle],
+    methods: Vector[ObservedMethod],
+    periodMs: Map[String, Double],
+    clock: Option[SimulatorClock],
+    stalls: Vector[Stall],
+    smallCallMs: (quiet: Option[Distribution], besideImages: Option[Distribution]),
+    readsOverlap: Double,
+    imagesOnCommandConnections: Long,
+    pauses: Long,
+    lost: Vector[String],
+    notKept: Long
+):
+  def commands: Long = vehicles.map(_.commands).sum
+
+/** How one vehicle was commanded.
+  *
+  * @param ownAgeMs of its newest reading, since physics was sampled
+  * @param othersAgeMs of the newest reading of each other vehicle, the oldest of them
+  * @param boundMs the ages lie within ± this
+  * @param everyMs from one command to the next
+  * @param sinceOthersMs since any other vehicle was commanded
+  * @param skewMs between the oldest and the newest reading of all vehicles
+  * @param superseded commands replaced by the next before a physics step could act on them
+  * @param overtaken commands that reached the simulator after a later one
+  * @param mostInFlight commands unanswered at once
+  * @param joined commands during which their connection sent nothing else: the program waited for their ends
+  * @param leftRunning commands unanswered when their connection closed
+  */
+final case class ObservedVehicle(
+    name: String,
+    commands: Long,
+    ownAgeMs: Option[Distribution],
+    othersAgeMs: Option[Distribution],
+    boundMs: Option[Double],
+    everyMs: Option[Distribution],
+    sinceOthersMs: Option[Distribution],
+    skewMs: Option[Distribution],
+    superseded: Long,
+    overtaken: Long,
+    mostInFlight: Int,
+    joined: Long,
+    leftRunning: Long
+)
+
+/** The calls of one method.
+  *
+  * @param roundTripMs absent before the first answer
+  * @param firstError absent where none failed
+  */
+final case class ObservedMethod(
+    method: String,
+    kind: CallKind,
+    calls: Long,
+    failed: Long,
+    roundTripMs: Option[Distribution],
+    answerBytes: Long,
+    firstError: Option[String]
+)
+
+/** The simulator's clock as its time stamps show it.
+  *
+  * @param rate its seconds in a second of the observer's
+  * @param backwards how often it went back
+  * @param stoodStill in all, while nobody paused it
+  */
+final case class SimulatorClock(rate: Double, backwards: Long, stoodStill: Span)
+
+/** Calls that waited together.
+  *
+  * @param at its end, since the first call
+  */
+final case class Stall(at: Span, length: Span, method: String)

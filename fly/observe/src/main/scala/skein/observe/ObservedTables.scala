@@ -1,0 +1,99 @@
+package skein.observe
+
+import skein.measure.Distribution
+import skein.units.Decimals.{brief, fixed}
+
+/** What was observed, as tables and sentences. */
+object ObservedTables:
+
+  /** @param header names of columns; those that begin with `<` are aligned left
+    */
+  final case class Table(title: String, header: Vector[String], rows: Vector[Vector[String]], note: String = "")
+
+  val Findings = "Findings"
+
+  /** For a report; tables without rows are left out. */
+  def sections(observed: Observed): Vector[Table] =
+    Vector(vehicles(observed), period(observed), methods(observed), found(observed)).filter(_.rows.nonEmpty)
+
+  private def vehicles(observed: Observed) = Table(
+    "How old the data behind each command was",
+    Vector("<vehicle", "commands", "every ms", "p99") ++
+      Vector("own data ms", "p99", "others' data ms", "p99", "± ms") ++
+      Vector("since others' command ms", "in flight at most"),
+    observed.vehicles.filter(_.commands > 0).map: vehicle =>
+      Vector(
+        if vehicle.name.isEmpty then "(the first)" else vehicle.name,
+        vehicle.commands.toString,
+        mean(vehicle.everyMs),
+        p99(vehicle.everyMs),
+        mean(vehicle.ownAgeMs),
+        p99(vehicle.ownAgeMs),
+        mean(vehicle.othersAgeMs),
+        p99(vehicle.othersAgeMs),
+        vehicle.boundMs.fold("")(_.brief),
+        mean(vehicle.sinceOthersMs),
+        vehicle.mostInFlight.toString
+      ),
+    "Ages count from when physics was sampled to when the command left the program; means, and 99th percentiles. " +
+      "They lie within ± of the truth."
+  )
+
+  private def period(observed: Observed) = Table(
+    "Where a period goes",
+    Vector("<waiting for", "ms", "%"),
+    for
+      phase <- LoopAccount.Phases
+      ms    <- observed.periodMs.get(phase).toVector
+      whole = observed.periodMs.values.sum
+    yield Vector(phase, ms.brief, if whole > 0 then (100 * ms / whole).fixed(0) else "")
+  )
+
+  private def methods(observed: Observed) = Table(
+    "Calls",
+    Vector("<method", "<kind", "calls", "a second", "failed", "median ms", "p99", "most", "MB"),
+    observed.methods.map: method =>
+      val seconds = observed.lasted.toSeconds
+      Vector(
+        method.method,
+        method.kind.label,
+        method.calls.toString,
+        if seconds > 0 then (method.calls / seconds).brief else "",
+        method.failed.toString,
+        method.roundTripMs.fold("")(_.median.brief),
+        p99(method.roundTripMs),
+        method.roundTripMs.fold("")(_.most.brief),
+        (method.answerBytes * 1e-6).fixed(1)
+      )
+  )
+
+  private def found(observed: Observed) = Table(
+    Findings,
+    Vector("<finding", "<seen", "<remedy"),
+    Diagnosis.of(observed).map(finding => Vector(finding.name, finding.what, finding.remedy))
+  )
+
+  /** A paragraph for each finding, and one for what the observer does not know. */
+  def findings(observed: Observed): Vector[String] =
+    val found    = Diagnosis.of(observed)
+    val sentence =
+      if observed.commands == 0 then Vector("Nothing was commanded, so there is no loop to judge.")
+      else if found.isEmpty then Vector("No fault of timing was found.")
+      else found.map(one => s"${one.name.capitalize}: ${one.what}. Remedy: ${one.remedy}.")
+    val paused = Option.when(observed.pauses > 0):
+      s"The program paused, stepped or reset the simulator ${observed.pauses} times: while time stands still, ages grow and data does not get old."
+    val lost = observed.lost.map(reason => s"Not understood from there on, and passed on all the same: $reason.")
+    val more = Option.when(observed.notKept > 0)(
+      s"${observed.notKept} pieces passed while the observer was behind; their connections are not counted any more."
+    )
+    sentence ++ paused ++ lost ++ more
+
+  /** Progress in one line; absent before the first command. */
+  def line(observed: Observed): Option[String] =
+    val ages = observed.vehicles.flatMap(_.ownAgeMs)
+    Option.when(observed.commands > 0):
+      val age = if ages.isEmpty then "never read" else s"data ${ages.map(_.mean).max.brief} ms old"
+      s"${observed.lasted.toSeconds.fixed(0)} s: ${observed.commands} commands, $age"
+
+  private def mean(samples: Option[Distribution]) = samples.fold("")(_.mean.brief)
+  private def p99(samples: Option[Distribution])  = samples.fold("")(_.p99.brief)

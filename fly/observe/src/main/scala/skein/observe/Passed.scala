@@ -1,0 +1,37 @@
+package skein.observe
+
+import skein.units.Instant
+
+/** What passed between a client and its simulator, at the place of the observer. Instants are on the
+  * observer's clock.
+  */
+enum Passed:
+  case Opened(connection: Int, at: Instant)
+
+  /** A call on its way to the simulator.
+    *
+    * @param id of the call within its connection
+    * @param vehicle as the call names it; empty for the simulator's first
+    */
+  case Called(connection: Int, id: Long, method: String, vehicle: String, at: Instant)
+
+  /** An answer on its way to the client.
+    *
+    * @param error absent where the call succeeded
+    * @param sampledAt the answer's time stamp, on the simulator's clock
+    * @param bytes of the whole answer
+    */
+  case Answered(
+      connection: Int,
+      id: Long,
+      error: Option[String],
+      sampledAt: Option[Instant],
+      bytes: Long,
+      at: Instant
+  )
+
+  /** Bytes that are no MessagePack-RPC: nothing more of this connection is understood. They pass all the same.
+    */
+  case Unreadable(connection: Int, reason: String, at: Instant)
+
+  case Closed(connection: Int, at: Instant)

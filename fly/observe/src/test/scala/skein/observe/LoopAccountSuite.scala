@@ -1,0 +1,177 @@
+package skein.observe
+
+import skein.units.*
+
+/** What an observer makes of the messages that pass. Times are in milliseconds on the observer's clock. */
+class LoopAccountSuite extends munit.FunSuite:
+
+  /** A program on one or several connections, of which every message passes the observer. */
+  private final class Program(offsetMs: Double = 5_000):
+    private val account = LoopAccount()
+    private var ids     = 0L
+
+    private def at(ms: Double) = Instant.ofNanos((ms * 1e6).round)
+
+    def call(method: String, vehicle: String, sentMs: Double, connection: Int = 0): Long =
+      ids += 1
+      account.add(Passed.Called(connection, ids, method, vehicle, at(sentMs)))
+      ids
+
+    def answer(
+        id: Long,
+        cameMs: Double,
+        sampledMs: Option[Double] = None,
+        connection: Int = 0,
+        bytes: Long = 500,
+        error: Option[String] = None
+    ): Unit =
+      val stamp = sampledMs.map(ms => at(ms + offsetMs))
+      account.add(Passed.Answered(connection, id, error, stamp, bytes, at(cameMs)))
+
+    /** A call with its answer, before anything else passes. */
+    def called(
+        method: String,
+        vehicle: String,
+        sentMs: Double,
+        cameMs: Double,
+        sampledMs: Option[Double] = None,
+        bytes: Long = 500
+    ): Unit = answer(call(method, vehicle, sentMs), cameMs, sampledMs, bytes = bytes)
+
+    def move(vehicle: String, sentMs: Double, connection: Int = 0): Long =
+      call("moveByVelocityZ", vehicle, sentMs, connection)
+
+    def closed(ms: Double): Unit         = account.add(Passed.Closed(0, at(ms)))
+    def observed: Observed               = account.observed
+    def found: Set[String]               = Diagnosis.of(observed).map(_.name).toSet
+    def vehicle(name: String)            = observed.vehicles.find(_.name == name).get
+
+  test("the age of a command's data counts from when it was sampled, by the clocks' offset"):
+    val program = Program()
+    for tick <- 0 until 50 do
+      val ms = tick * 100.0
+      program.called("getMultirotorState", "A", ms, ms + 40, Some(ms + 20))
+      program.move("A", ms + 50)
+    val seen = program.vehicle("A")
+    assertEqualsDouble(seen.ownAgeMs.get.mean, 30, 1e-6)
+    assertEqualsDouble(seen.boundMs.get, 20, 0.2)
+    assertEqualsDouble(seen.everyMs.get.mean, 100, 1e-6)
+
+  test("without time stamps a reading is as old as half of its round trip says, and the bound says how wrong that may be"):
+    val program = Program()
+    program.called("simGetVehiclePose", "A", 0, 40)
+    program.move("A", 50)
+    assertEqualsDouble(program.vehicle("A").ownAgeMs.get.mean, 30, 1e-6)
+    assertEqualsDouble(program.vehicle("A").boundMs.get, 20, 1e-6)
+
+  test("vehicles that are read one after the other are found, and read at once they are not"):
+    def loop(apart: Double) =
+      val program = Program()
+      for tick <- 0 until 50 do
+        val ms  = tick * 200.0
+        val own = program.call("getMultirotorState", "A", ms)
+        if apart > 0 then program.answer(own, ms + 40, Some(ms + 20))
+        val other = program.call("getMultirotorState", "B", ms + apart)
+        if apart == 0 then program.answer(own, ms + 40, Some(ms + 20))
+        program.answer(other, ms + apart + 40, Some(ms + apart + 20))
+        program.answer(program.move("A", ms + 90), ms + 95)
+      program
+    assert(loop(apart = 45).found("reads in turn"))
+    assertEqualsDouble(loop(apart = 45).vehicle("A").othersAgeMs.get.mean, 25, 0.1)
+    assert(!loop(apart = 0).found("reads in turn"))
+
+  test("images between readings and commands are found with the time that they take"):
+    val program = Program()
+    for tick <- 0 until 20 do
+      val ms = tick * 200.0
+      program.called("getMultirotorState", "A", ms, ms + 10, Some(ms + 5))
+      program.called("simGetImages", "A", ms + 10, ms + 130, bytes = 900_000)
+      program.move("A", ms + 140)
+    assert(program.found("images in the control loop"))
+    assertEqualsDouble(program.observed.periodMs("images"), 120, 1e-6)
+    assertEqualsDouble(program.observed.periodMs.values.sum, 200, 1e-6)
+
+  test("a third command while two are unanswered is found"):
+    val program = Program()
+    for tick <- 0 until 3 do program.move("A", tick * 100.0)
+    assertEquals(program.vehicle("A").mostInFlight, 3)
+    assert(program.found("many moves unanswered"))
+
+  test("a command that was sent before another and acts after it is found; one that is replaced is not"):
+    val inOrder = Program()
+    val first   = inOrder.move("A", 0)
+    val second  = inOrder.move("A", 100)
+    inOrder.answer(first, 140)
+    val third = inOrder.move("A", 200)
+    inOrder.answer(second, 240)
+    inOrder.answer(third, 400)
+    assertEquals(inOrder.vehicle("A").overtaken, 0L)
+    val crossed = Program()
+    val late    = crossed.move("A", 0, connection = 1)
+    val early   = crossed.move("A", 10, connection = 2)
+    crossed.answer(early, 60, connection = 2)
+    crossed.answer(late, 500, connection = 1)
+    assertEquals(crossed.vehicle("A").overtaken, 1L)
+
+  test("a program that waits for each move to end is found; one that goes on meanwhile is not"):
+    def loop(waits: Boolean) =
+      val program = Program()
+      for tick <- 0 until 10 do
+        val ms   = tick * 600.0
+        val move = program.move("A", ms)
+        if !waits then program.called("getMultirotorState", "A", ms + 10, ms + 50, Some(ms + 30))
+        program.answer(move, ms + 500)
+      program
+    assert(loop(waits = true).found("waits for each move"))
+    assert(!loop(waits = false).found("waits for each move"))
+
+  test("small calls that are slow beside an image, and else quick, mean that images fill the link"):
+    val program = Program()
+    for tick <- 0 until 40 do
+      val ms = tick * 200.0
+      program.called("getMultirotorState", "A", ms, ms + 20, Some(ms + 10))
+      val image = program.call("simGetImages", "A", ms + 30, connection = 1)
+      program.called("getMultirotorState", "A", ms + 40, ms + 120, Some(ms + 50))
+      program.answer(image, ms + 130, connection = 1, bytes = 900_000)
+    assert(program.found("images fill the link"))
+
+  test("a call that takes much longer than its like is a stall, once for all that waited"):
+    val program = Program()
+    for tick <- 0 until 30 do
+      program.called("getMultirotorState", "A", tick * 100.0, tick * 100.0 + 40, Some(tick * 100.0 + 20))
+    val waiting = (0 until 3).map(count => program.call("getMultirotorState", "A", 3_000 + 100.0 * count))
+    waiting.foreach(program.answer(_, 4_500))
+    assertEquals(program.observed.stalls.map(_.length), Vector(Span.ofMillis(1_500)))
+
+  test("a simulator's clock that goes back, and one that stands still, are found"):
+    val back = Program()
+    back.called("getMultirotorState", "A", 0, 40, Some(20))
+    back.called("getMultirotorState", "A", 100, 140, Some(-900))
+    assertEquals(back.observed.clock.get.backwards, 1L)
+    val still = Program()
+    for tick <- 0 until 10 do still.called("getMultirotorState", "A", tick * 100.0, tick * 100.0 + 40, Some(20))
+    assert(still.found("the simulator stands still"))
+
+  test("commands that still run when their connection closes are told"):
+    val program = Program()
+    program.move("A", 0)
+    program.closed(50)
+    assertEquals(program.vehicle("A").leftRunning, 1L)
+    assert(program.found("moves left running"))
+
+  test("calls that fail are told with the first reason"):
+    val program = Program()
+    program.answer(program.call("getMultirotorState", "A", 0), 40, error = Some("no such vehicle"))
+    assertEquals(program.observed.methods.map(_.firstError), Vector(Some("no such vehicle")))
+    assert(program.found("calls fail"))
+
+  test("a loop without a fault has no finding"):
+    val program = Program()
+    var before  = Option.empty[Long]
+    for tick <- 0 until 100 do
+      val ms = tick * 100.0
+      program.called("getMultirotorState", "A", ms, ms + 20, Some(ms + 10))
+      val move = program.move("A", ms + 25)
+      before.foreach(program.answer(_, ms + 30))
+      before = Some(move)
+    assertEquals(program.found, Set.empty[String])

@@ -1,0 +1,78 @@
+package skein.observe
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import scala.concurrent.duration.*
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.{AirSimClient, Multirotor, VehiclePose, VehicleSettings, WorldSettings}
+import skein.link.*
+import skein.rpc.RpcClient
+import skein.signal.LatencyProfile
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** A program flies the built-in simulator through the observer, in virtual time; what the observer says of its
+  * data's age is held to what the program itself has noted.
+  */
+class ObservingProxySimulation extends munit.FunSuite:
+  private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))
+
+  /** @param ages of the evader's data at each of its commands, ms, by the simulator's own clock
+    */
+  private final case class Flown(observed: Observed, ages: Seq[Double])
+
+  private def fly(profile: LatencyProfile, seed: Long): Flown =
+    VirtualTime
+      .run(seed): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = VirtualClock(system)
+        val network            = MemoryNetwork(NetworkPlan(), seed, clock)
+        val settings           = SimulatorSettings(
+          WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+          Address("simulator", 41451)
+        )
+        val here = network.host("controller")
+        for
+          server <- SimulatorServer.start(settings, network.host("simulator"), clock)
+          link = EmulatedLink(LinkProfile.symmetric(profile), seed, clock)
+          proxy <- ObservingProxy.start(Address("controller", 41452), server.address, link, here, clock)
+          client = AirSimClient(RpcClient(here, proxy.address, clock))
+          direct = AirSimClient(RpcClient(here, server.address, clock))
+          beside   <- named(direct, "Evader")
+          evader   <- named(client, "Evader")
+          _        <- evader.enableApiControl()
+          _        <- evader.hoverAt(VehiclePose(Vector3(0, 0, -20), Quaternion.Identity))
+          // Nothing lies between: the answer's time stamp is of now.
+          stamped  <- beside.kinematics().map(_.fold(error => throw AssertionError(error.message), identity))
+          offset    = stamped.receivedAt.since(stamped.validAt)
+          ages     <- Source
+            .tick(0.millis, 100.millis, ())
+            .take(300)
+            .mapAsync(1): _ =>
+              evader.kinematics().map: read =>
+                val reading = read.fold(error => throw AssertionError(error.message), identity)
+                evader.moveByVelocityZ(Vector3(5, 0, 0), Metres(-20), Span.ofSeconds(10)): Unit
+                clock.now().since(reading.validAt + offset).toMillis
+            .runWith(Sink.seq)
+          _ <- client.close()
+          _ <- direct.close()
+          _ <- proxy.close()
+          _ <- server.close()
+        yield Flown(proxy.observed, ages)
+      .value
+
+  private def named(client: AirSimClient, name: String)(using ExecutionContext): Future[Multirotor] =
+    Multirotor.named(client, name).map(_.fold(error => throw AssertionError(error.message), identity))
+
+  for profile <- Seq(LatencyProfile.direct, LatencyProfile.vpn) do
+    test(s"over ${profile.name} the ages that the observer tells are the program's own, within its bounds"):
+      val flown  = fly(profile, seed = 5)
+      val evader = flown.observed.vehicles.find(_.name == "Evader").get
+      val mean   = flown.ages.sum / flown.ages.size
+      assert(evader.commands >= 300, evader.commands)
+      val told = evader.ownAgeMs.get.mean
+      assert(math.abs(told - mean) <= evader.boundMs.get + 3, s"told $told ± ${evader.boundMs}, is $mean")
+      assertEquals(flown.observed.lost, Vector.empty)
+      assertEquals(flown.observed.notKept, 0L)
