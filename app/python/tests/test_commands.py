@@ -17,6 +17,27 @@ def test_a_flight_comes_as_frames_with_numbers(flights):
     assert distance.columns.is_unique and flights.report.exists()
 
 
+def test_columns_have_names_of_their_own_and_hold_numbers(flights):
+    table = commands._frame(
+        {
+            "columns": ["loop", "last 10 s m", "min … max", "vs paused", "paper m", "min … max", "vs paused", "age ms"],
+            "rows": [
+                ["stream", 10.8, "10.8 … 10.9", "+30.4 %", 8.5, "5.0 … 11.6", None, "43/42/119"],
+                ["paused", 8.3, "8.3 … 8.4", None, 8.5, "8.4 … 8.6", "-2 %", None],
+            ],
+            "note": "",
+        }
+    )
+    assert table.columns.tolist() == [
+        *("loop", "last 10 s m", "min", "max", "vs paused %", "paper m", "paper m: min", "paper m: max"),
+        *("paper m: vs paused %", "age ms mean", "age ms median", "age ms p99"),
+    ]
+    assert table["vs paused %"].iloc[0] == 30.4 and table["paper m: max"].tolist() == [11.6, 8.6]
+    assert table["age ms p99"].iloc[0] == 119
+    with pytest.raises(KeyError, match="expected one of .*, came 'nothing'"):
+        flights["nothing"]
+
+
 def test_a_recording_says_how_old_each_decision_was(flights):
     with flights.load() as recording:
         decisions = recording["decision"]

@@ -67,6 +67,33 @@ def test_seeds_repeat_episodes_and_others_differ(make):
     assert not np.array_equal(flown(5), flown(6))
 
 
+def test_seeds_of_any_size_repeat_episodes(make):
+    large = np.random.SeedSequence().entropy  # of 128 bits
+    env = make(2, start_within_m=(5, 30))
+    for seed in (2**63, np.uint64(2**64 - 1), large, [large, 2**63 - 1]):
+        first = env.reset(seed=seed)[0]
+        assert np.array_equal(first, env.reset(seed=seed)[0])
+        assert not np.array_equal(first, env.reset(seed=7)[0])
+    one = gym.make("skein_uav/Pursuit-v0", episode_s=2.0)
+    assert np.array_equal(one.reset(seed=large)[0], one.reset(seed=large)[0])
+    with pytest.raises(ValueError, match="seed: expected a whole number from 0, came -1"):
+        env.reset(seed=[-1, 2])
+
+
+def test_java_is_started_once_by_many_threads():
+    import threading
+
+    from skein_uav import jvm
+
+    started = []
+    threads = [threading.Thread(target=lambda: started.append(jvm.start())) for _ in range(16)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(started) == 16 and all(module.isJVMStarted() for module in started)
+
+
 @pytest.mark.parametrize("mode", list(AutoresetMode))
 def test_episodes_end_and_begin_as_gymnasium_says(make, mode):
     env = make(16, autoreset_mode=mode, capture_radius_m=5, start_within_m=(7, 9), link="direct", episode_s=10)

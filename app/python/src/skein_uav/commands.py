@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from .errors import SkeinError
 from .installation import find
 from .policies import Policy, PolicyServer
 from .recording import Recording, load
+from .seeds import folded
 
 Tables = dict[str, pd.DataFrame]
 
@@ -49,6 +51,18 @@ class Flights:
         """Opens one of the recordings."""
         return load(self.recordings[number])
 
+    def __getitem__(self, title: str) -> pd.DataFrame:
+        """One of the tables."""
+        if title not in self.tables:
+            raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, came {title!r}")
+        return self.tables[title]
+
+    def __repr__(self) -> str:
+        """Its parts by name: whole tables would fill pages."""
+        titles = ", ".join(repr(title) for title in self.tables)
+        files = ", ".join(path.name for path in self.recordings)
+        return f"Flights(tables: {titles}; recordings: {files}; report: {self.report})"
+
 
 @dataclass(frozen=True)
 class Found:
@@ -70,6 +84,10 @@ class Found:
     policy: Path | None
     landscape: pd.DataFrame | None
     folder: Path
+
+    def __repr__(self) -> str:
+        """The result, and where the rest lies."""
+        return f"Found(policy: {self.policy}; folder: {self.folder}; result:\n{self.result.to_string()})"
 
 
 def fly(
@@ -100,7 +118,7 @@ def fly(
     duration_s : float
         Of each flight, s.
     seed : int
-        Of every random choice. In virtual time, equal seeds give equal flights, to the last bit.
+        Of every random choice, of any size. In virtual time, equal seeds give equal flights, to the last bit.
     clock : str
         ``virtual`` (many times faster) or ``real``.
     scenario : str, optional
@@ -108,11 +126,14 @@ def fly(
     settings : mapping, optional
         Of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional
-        A policy file, as :func:`search` writes one, or an ONNX file of another framework: flown beside the scenario's own.
+        A policy file, as :func:`search` writes one, or an ONNX file of another framework.
     pursuer, evader : callable, optional
-        A policy written in Python, flown beside the scenario's own: from what is seen, ndarray of float32 of shape (9,),
-        to a number from -1 to 1, as in :mod:`skein_uav.environments`. It is asked while flights are flown, by all of
-        them on one thread, and must not count its calls: a rehearsal before live flights asks it too.
+        A policy written in Python: from what is seen, ndarray of float32 of shape (9,), to a number from -1 to 1, as in
+        :mod:`skein_uav.environments`. It is asked while flights are flown, by all of them on one thread, and must not
+        count its calls: a rehearsal before live flights asks it too.
+
+        Each of `policy`, `pursuer` and `evader` flies in flights of its own, in which all others fly the scenario's
+        policies. With none of them the scenario flies by its own policies alone.
     deadline_ms : float, optional
         By when a policy must have decided, ms; where it has not, or has failed, ``fallback`` decides (``hold``,
         ``repeat`` or a policy's name), and the recording says so. With a policy in Python and ``clock="real"`` 20 ms
@@ -146,11 +167,12 @@ def fly(
             loop=loop,
             link=link,
             duration=_ms(duration_s),
-            seed=seed,
+            seed=seed if seed < 0 else folded(seed),
             clock=clock,
             scenario=scenario,
             set=_settings(settings),
             policy=[policy, *policies],
+            only_policies=policy is not None or bool(policies),
             deadline=None if deadline_ms is None else _ms(deadline_ms / 1000),
             out=folder,
             verbose=verbose,
@@ -380,14 +402,48 @@ def _flags(options: Mapping[str, Any]) -> list[str]:
     return flags
 
 
+_NUMBER = r"[-+]?\d+(?:\.\d+)?"
+
+#: Cells for people that hold several numbers, or one with its unit, and what follows the column's name for each.
+_PARTS = [
+    (re.compile(f"({_NUMBER})/({_NUMBER})/({_NUMBER})"), (" mean", " median", " p99")),
+    (re.compile(f"({_NUMBER}) … ({_NUMBER})"), (" min", " max")),
+    (re.compile(f"({_NUMBER}) %"), (" %",)),
+]
+
+
 def _frame(table: Mapping[str, Any]) -> pd.DataFrame:
-    names: list[str] = []
-    for name in table["columns"]:
-        again = sum(known == name or known.startswith(f"{name} (") for known in names)
-        names.append(f"{name} ({again + 1})" if again else name)
-    frame = pd.DataFrame(table["rows"], columns=names)
+    columns: dict[str, list[Any]] = {}
+    titles = list(table["columns"])
+    for number, title in enumerate(titles):
+        cells = [row[number] for row in table["rows"]]
+        for name, values in _numbers(_title(titles, number), cells):
+            columns[name] = values
+    frame = pd.DataFrame(columns)
     frame.attrs["note"] = table["note"]
     return frame
+
+
+def _title(titles: list[str], number: int) -> str:
+    """A title that stood before is told by the last one before it that did not: ``paper m: closest m``."""
+    title = titles[number]
+    if title not in titles[:number]:
+        return title
+    before = next((one for at, one in reversed(list(enumerate(titles[:number]))) if one not in titles[:at]), "")
+    return f"{before}: {title}"
+
+
+def _numbers(title: str, cells: list[Any]) -> list[tuple[str, list[Any]]]:
+    """A column, or one for each number where each cell holds several."""
+    for pattern, names in _PARTS:
+        found = [None if cell is None else pattern.fullmatch(str(cell)) for cell in cells]
+        if any(found) and all(cell is None or one for cell, one in zip(cells, found, strict=True)):
+            stem = title.removesuffix(" min … max").removesuffix("min … max").removesuffix(" ")
+            return [
+                (f"{stem}{name}".strip(), [None if one is None else float(one[part + 1]) for one in found])
+                for part, name in enumerate(names)
+            ]
+    return [(title, cells)]
 
 
 def _folder(out: str | os.PathLike[str] | None) -> Path:

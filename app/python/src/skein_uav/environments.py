@@ -41,6 +41,7 @@ from numpy.typing import NDArray
 
 from .batch import Backend, Block, Flags, Floats, InProcess
 from .errors import SkeinError
+from .seeds import folded
 from .pictures import picture
 from .served import Served
 
@@ -205,7 +206,8 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         Parameters
         ----------
         seed : int, sequence of int, or None
-            Environment i takes ``seed + i``, or the i-th; equal seeds give equal episodes, to the last bit. None: goes on.
+            Environment i takes ``seed + i``, or the i-th, whole numbers from 0 of any size
+            (:func:`skein_uav.seeds.folded`); equal seeds give equal episodes, to the last bit. None: goes on.
         options : dict, optional
             ``reset_mask``, an array of bool: only these begin anew.
 
@@ -363,13 +365,11 @@ def seeds_of(
 ) -> NDArray[np.int64]:
     """A seed an environment; -1 where it goes on with its own."""
     if isinstance(seed, (int, np.integer)):
-        return np.arange(seed, seed + count, dtype=np.int64)
+        return np.array([folded(int(seed) + number) for number in range(count)], dtype=np.int64)
     if seed is not None:
         if len(seed) != count:
             raise ValueError(f"seed: expected {count} of them, came {len(seed)}")
-        if any(one is not None and one < 0 for one in seed):
-            raise ValueError("seed: expected none below 0")
-        return np.array([-1 if one is None else one for one in seed], dtype=np.int64)
+        return np.array([-1 if one is None else folded(one) for one in seed], dtype=np.int64)
     if is_reset:
         return np.full(count, -1, dtype=np.int64)
     return random.integers(0, 2**62, count)

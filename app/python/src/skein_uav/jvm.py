@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import os
+import tempfile
+import threading
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from .errors import SkeinError
@@ -10,10 +16,29 @@ from .installation import find
 
 _forked = False
 
+_starting = threading.Lock()
+
 
 def _fork() -> None:
     global _forked
     _forked = True
+
+
+@contextlib.contextmanager
+def _alone() -> Iterator[None]:
+    """One thread of one process of a user at a time.
+
+    Threads that start Java at once would both find that it does not run; and where many processes started it at once on
+    a very busy machine, JPype crashed in some. Where there is no folder for the lock, or it is another user's, processes
+    do without.
+    """
+    with _starting, contextlib.ExitStack() as held:
+        with contextlib.suppress(OSError):
+            path = Path(tempfile.gettempdir()) / f"skein-uav-java-{os.getuid()}.lock"
+            lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
+            held.callback(os.close, lock)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def start() -> Any:
@@ -36,18 +61,19 @@ def start() -> Any:
             "Java was started before this process was forked, and does not live on in it: start processes by "
             "'spawn', or give environments backend='socket'"
         )
-    if not jpype.isJVMStarted():
-        installed = find()
-        jpype.startJVM(
-            str(_library(installed.java)),
-            "--add-modules=jdk.incubator.vector",
-            "--enable-native-access=ALL-UNNAMED",
-            "--sun-misc-unsafe-memory-access=allow",
-            "-Xlog:disable",
-            classpath=installed.jars,
-            convertStrings=True,
-        )
-        os.register_at_fork(after_in_child=_fork)
+    with _alone():
+        if not jpype.isJVMStarted():
+            installed = find()
+            jpype.startJVM(
+                str(_library(installed.java)),
+                "--add-modules=jdk.incubator.vector",
+                "--enable-native-access=ALL-UNNAMED",
+                "--sun-misc-unsafe-memory-access=allow",
+                "-Xlog:disable",
+                classpath=installed.jars,
+                convertStrings=True,
+            )
+            os.register_at_fork(after_in_child=_fork)
     return jpype
 
 

@@ -32,9 +32,12 @@ class PursuitVecEnv(VecEnv):
     def step_wait(self) -> Any:
         seen, rewards, terminated, truncated, told = self._env.step(self._actions)
         done = terminated | truncated
-        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        infos: list[dict[str, Any]] = [
+            {"distance_m": float(distance), "time_s": float(time)}
+            for distance, time in zip(told["distance_m"], told["time_s"], strict=True)
+        ]
         for number in np.flatnonzero(done):
-            infos[number] = {
+            infos[number] |= {
                 "terminal_observation": told["final_obs"][number],
                 "TimeLimit.truncated": bool(truncated[number]),
             }

@@ -62,15 +62,12 @@ object BudgetFigure:
         level  <- Vector(-1, 1).map(_ * map.tolerance.value * factor)
         (a, b) <- heat.contour(level)
       yield Mark.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
-    val marks = map.marks.flatMap: link =>
-      val (x, y) = (link.roundTrip.mean.toMillis / per, link.roundTrip.jitter.toMillis / per)
-      if x > heat.xs.last || y > heat.ys.last then Vector.empty
-      else
-        val at = panel.at(x, y)
-        Vector(
-          Mark.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
-          Mark.Text(at.moved(8, 4), link.name, colour = mark, bold = true)
-        )
+    val marks = map.marks.filter(map.isOnMap).flatMap: link =>
+      val at = panel.at(link.roundTrip.mean.toMillis / per, link.roundTrip.jitter.toMillis / per)
+      Vector(
+        Mark.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
+        Mark.Text(at.moved(8, 4), link.name, colour = mark, bold = true)
+      )
     Drawing(
       panel.right + 110,
       panel.bottom + 44,

@@ -50,8 +50,14 @@ final case class BudgetMap(
     val came                             =
       if !off.isFinite then s"$objective has no value"
       else s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
+    val where = if isOnMap(mark) then "" else s"; not drawn: the map ends before it, at ${ms(budget.meansMs.last)} " +
+      s"and ${ms(budget.jittersMs.last)} ms"
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
-      came
+      came + where
+
+  /** Whether a picture of the map has a place for it. */
+  def isOnMap(mark: BudgetMark): Boolean =
+    mark.roundTrip.mean.toMillis <= budget.meansMs.last && mark.roundTrip.jitter.toMillis <= budget.jittersMs.last
 
   /** One row per cell. */
   def csvRows: Vector[String] = cells.map: (cell, count) =>

@@ -3,7 +3,6 @@ package skein.cli
 import mainargs.{ArgSig, ParserForClass, Result, Util}
 import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
-import skein.report.TextTable
 
 /** A command of `./skein`: one file each.
   *
@@ -62,7 +61,12 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     if arguments.exists(word => word == "--help" || word == "-h") then
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
       0
-    else strange(arguments).fold(parsed(arguments, behind.drop(1)))(word => misused(Misuse.noSuch(word, names)))
+    else
+      arguments
+        .flatMap(Complaint.ofWord)
+        .headOption
+        .orElse(strange(arguments).map(Misuse.noSuch(_, names)))
+        .fold(parsed(arguments, behind.drop(1)))(misused)
 
   private def parsed(arguments: Seq[String], behind: Seq[String]): Int =
     parser.constructRaw(optionsFirst(arguments) ++ behind) match
@@ -71,13 +75,11 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
         OutFolder.unlessRefused(done(options)) match
           case Right(())    => 0
           case Left(reason) =>
-            Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
+            Console.err.println(s"skein $name: ${Complaint.text(reason)}")
             1
 
   private def misused(mistakes: String): Int =
-    mistakes.linesIterator.foreach(mistake =>
-      Console.err.println(s"skein $name: ${TextTable.printable(mistake)}")
-    )
+    Complaint.text(mistakes).linesIterator.foreach(mistake => Console.err.println(s"skein $name: $mistake"))
     Console.err.println(s"skein $name: --help lists the options")
     2
 

@@ -4,10 +4,10 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueF
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
-import skein.loop.{AnyLoop, Fallback, LoopKind, OpponentModel}
+import skein.loop.{AnyLoop, Fallback, LoopKind, OpponentModel, Planning}
 import skein.planning.Planner
 import skein.scenario.Scenarios
-import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings, Wire}
+import skein.settings.{ConfigKeys, ConfigMistakes, FlySettings, HoconFile, ScenarioSettings, Wire}
 import skein.units.Expect
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
@@ -42,6 +42,11 @@ final case class FlightOptions(
         "evader's), or unix:ROLE:PATH for a policy behind a socket; can be repeated"
     )
     policy: Seq[String],
+    @arg(
+      name = "only-policies",
+      doc = "flies with the policies of --policy alone, and not by the scenario's own beside them"
+    )
+    onlyPolicies: Flag,
     @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")
     pairs: Option[Int],
     @arg(name = "as-paper", doc = "the paper's four loops alone, without predictive")
@@ -103,17 +108,22 @@ final case class FlightOptions(
     configuration.flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
         val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
-        (slow ++ OpponentModel.missing(settings.fleet)).foreach(Console.err.println)
+        (slow ++ Planning.told(settings.fleet).toOption ++ OpponentModel.missing(settings.fleet))
+          .foreach(Console.err.println)
       settings
 
   /** The same before it is read: `skein.fly` with all that counts. */
   def configuration(using Scenarios): Either[String, Config] =
+    ConfigMistakes.guarded("--config")(merged)
+
+  private def merged(using Scenarios): Either[String, Config] =
     for
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
         s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       told = FlightOptions.hovering(flags.withFallback(file))
-      merged <- FlightOptions.resolved(told.withFallback(ConfigFactory.load()))
+      merged = told.withFallback(ConfigFactory.load()).resolve()
+      _      <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
       own    <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
 
@@ -137,6 +147,7 @@ final case class FlightOptions(
       ("--scenario", "scenario", scenario),
       ("--scene", "scene", scene),
       ("--policy", "policies", strings(policy)),
+      ("--only-policies", "only-policies", Option.when(onlyPolicies.value)(true)),
       ("--plant", "plant", plant),
       ("--predictor", "predictor", predictor),
       ("--moves-in-flight", "moves-in-flight", movesInFlight),
@@ -216,12 +227,13 @@ object FlightOptions:
     if !says("solver") || says("fallback") then told
     else told.withFallback(configured(Seq(("--fallback", "fallback", Fallback.Hover.label))))
 
-  private def resolved(config: Config): Either[String, Config] =
-    try Right(config.resolve())
-    catch case mistake: ConfigException => Left(mistake.getMessage)
-
-  private def read(path: String)(using Scenarios): Either[String, Config] =
+  private def read(path: String): Either[String, Config] =
     for
       file <- HoconFile.read(path).left.map("--config: " + _)
-      _    <- ConfigKeys.unknownInFile(file, "skein.fly").toLeft(())
+      _    <- beside(file).toLeft(())
     yield file
+
+  /** Where it refers to what stands elsewhere, it cannot be asked yet. */
+  private def beside(file: Config): Option[String] =
+    try ConfigMistakes.besideInFile(file, "skein.fly")
+    catch case _: ConfigException.NotResolved => None

@@ -27,10 +27,12 @@ final class ReportCommand(using Scenarios)
     val files = options.files.value.map(Path.of(_))
     for
       first  <- files.headOption.toRight("expected recordings, came none: ./skein report FILE…")
-      set    <- Report.read(files).left.map(_.map(_.message).mkString("\n"))
+      read   <- Report.readOnce(files).left.map(_.map(_.message).mkString("\n"))
+      set = read.flights
       out    <- OutFolder.made("--out", options.out.getOrElse(OutFolder.of(first)))
       output <- Report.write(set, out)
       shown = Shown(options.json.value)
+      _     = read.twice.foreach(shown.say)
       _     = shown.tables(ReportSections.of(set), ReportSections.text(set))
       _     = output.withoutPng.foreach(reason => shown.say(s"\nno PNG files: $reason"))
       _     = output.told.foreach(shown.say)

@@ -113,7 +113,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
             try command.run(arguments.tail)
             catch
               case mistake: InvalidPathException =>
-                Console.err.println(s"skein $word: ${wrongName(mistake)}")
+                Console.err.println(s"skein $word: ${Complaint.text(wrongName(mistake))}")
                 1
               // Said last, behind whatever other threads still print, and with an exit status of its own.
               case error: Throwable =>
@@ -122,7 +122,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
                 1
           case None =>
             Console.err.println(
-              s"skein: no command '$word'. There are: ${commands.map(_.name).mkString(", ")}."
+              Complaint.text(s"skein: no command '${word.filterNot(_.isControl)}'. There are: ${commands.map(_.name).mkString(", ")}.")
             )
             2
 

@@ -1,13 +1,15 @@
 package skein.budget
 
 import skein.scenario.Scenarios
-import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
+import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective, RunningStats}
 import skein.plot.Mark
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions
 import skein.settings.PolicyFile
+import skein.signal.LatencyDistribution
 import skein.testing.Optimised
+import skein.units.Span
 
 class BudgetSuite extends munit.FunSuite, Optimised:
   private given Scenarios = Scenarios.ours
@@ -106,3 +108,12 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assertEquals(json("truth").num, 8.0)
     val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)
+
+  test("a marked link that lies outside of the map is told, since it is not drawn"):
+    def texts(link: LatencyDistribution) =
+      val map = shown(Vector(8, 8.2, 8.6)).copy(marks = Vector(BudgetMark("one", link, RunningStats(2, 8, 0))))
+      (map.markLines.head, BudgetFigure(Vector(map)).shapes.exists { case text: Mark.Text => text.content == "one"; case _ => false })
+    val (inside, isDrawn) = texts(LatencyDistribution.Constant(Span.ofMillis(40)))
+    assert(!clue(inside).contains("not drawn") && isDrawn)
+    val (outside, isDrawnToo) = texts(LatencyDistribution.Vpn)
+    assert(clue(outside).endsWith("; not drawn: the map ends before it, at 100 and 20 ms") && !isDrawnToo)

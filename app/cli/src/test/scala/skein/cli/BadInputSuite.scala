@@ -5,10 +5,10 @@ import skein.policy.{Action, Agent, AgentPolicy, Observation}
 import skein.record.MemoryRecorder
 import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** What is wrong is told in a line, before anything long is begun. */
-class BadInputSuite extends munit.FunSuite, TemporaryFolders:
+class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   private def assertRefused(command: Command, arguments: Seq[String], expected: String)(using
@@ -187,6 +187,48 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     assertRefused(FlyCommand(), Seq("--config", config("skein.fly.seedd = 1")), "the nearest is 'seed'")
     assertRefused(FlyCommand(), Seq("--config", config("duration = 5 s")), "no setting 'duration'")
 
+  folder.test("what stands in a configuration is told once, with its line, and long values are cut"): path =>
+    def told(text: String) =
+      val file = Files.writeString(path.resolve("fly.conf"), text).toString
+      val ran  = Ran.of(FlyCommand().run(Seq("--config", file, "--out", path.resolve("out").toString)))
+      assertEquals(ran.status, 1)
+      assert(Files.notExists(path.resolve("out")))
+      ran.said.replace(file, "fly.conf")
+    assertEquals(
+      told("skein.fly { scenario = surround, surround { ring-m = null } }"),
+      "skein fly: fly.conf: 1: skein.fly.surround.ring-m: expected a value, came null\n"
+    )
+    assertEquals(told("skein = 5").linesIterator.size, 1)
+    assertEquals(told("skein.fly = [1]").linesIterator.size, 1)
+    assertEquals(told("skein.fly.seed = ${nothing}").linesIterator.size, 1)
+    for long <- Seq("seed = ", "loops = [", "scenario = ", "scene = ", "fallback = ", "planning.method = ") do
+      val end  = if long.endsWith("[") then "]" else ""
+      val said = told(s"skein.fly.$long${"x" * 10_000}$end")
+      assert(clue(said).length < Complaint.MostOfALine && said.contains("letters more"), long)
+      assertEquals(said.linesIterator.size, 1)
+      val lines = told(s"skein.fly.$long\"\"\"a\nb\nc\"\"\"$end")
+      assertEquals(lines.linesIterator.size, 1, lines)
+
+  test("an option's long value is cut, and one with a line break is refused"):
+    val long = Ran.of(FlyCommand().run(Seq("--loop", "x" * 10_000)))
+    assert(clue(long.said).length < Complaint.MostOfALine)
+    assertRefused(
+      FlyCommand(),
+      Seq("--out", "a\nb"),
+      "skein fly: expected no line breaks or other control characters, came 'a\\u000ab'"
+    )
+    assertEquals(Complaint.text("a short line\nand another"), "a short line\nand another")
+    assertEquals(Complaint.text("y " * 2000).length, Complaint.MostOfALine + "… 3000 letters more …".length)
+
+  folder.test("a folder that no recording could be in is refused in a line, and is not made"): path =>
+    for name <- Seq("a\\b", "a?b", "a;b"); clock <- Seq("real", "virtual") do
+      val out = path.resolve(name)
+      val ran = Ran.of(FlyCommand().run(Seq("--out", out.toString, "--clock", clock)))
+      assertEquals(ran.status, 1)
+      assert(clue(ran.said).contains("expected a path without ';', '?' or '\\'"))
+      assertEquals(ran.said.linesIterator.size, 1)
+      assert(Files.notExists(out), name)
+
   folder.test("a policy of a number that is too large is refused"): path =>
     val file = Files.writeString(
       path.resolve("policy.conf"),
@@ -206,7 +248,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       assertRefused(
         FlyCommand(),
         Seq("--out", path.resolve("a;b").toString, "--clock", clock),
-        "expected a path without ';'"
+        "expected a path without ';', '?' or '\\'"
       )
 
   folder.test("no password is shown of what --record does not know"): path =>

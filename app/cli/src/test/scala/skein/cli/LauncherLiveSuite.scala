@@ -58,6 +58,26 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(status, 0, said)
     assert(clue(said).contains(s"$folder/app/cli/target/universal/stage/bin/skein: fly --seed 1"))
 
+  copy.test("a stage of which something was taken away is built again, and a whole one is not"): folder =>
+    val stage = folder.resolve("cli/target/universal/stage")
+    script(
+      folder.resolve("sbtw"),
+      """mkdir -p cli/target/universal/stage/bin cli/target/universal/stage/lib
+        |printf '#!/usr/bin/env bash\necho flown\n' >cli/target/universal/stage/bin/skein
+        |chmod +x cli/target/universal/stage/bin/skein
+        |touch cli/target/universal/stage/lib/one.jar cli/target/universal/stage/lib/other.jar""".stripMargin
+    )
+    def started() =
+      val (status, said) = run(folder, Map.empty, "./skein", "fly")
+      assert(status == 0 && said.contains("flown"), said)
+      said.contains("building")
+    assert(started())
+    assert(!started())
+    for taken <- Seq("bin/skein", "lib/other.jar") do
+      Files.delete(stage.resolve(taken))
+      assert(started(), taken)
+      assert(!started(), taken)
+
   copy.test("it is started without HOME"): folder =>
     val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")
     assertEquals(status, 0, said)

@@ -40,6 +40,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
         output(neuron) =
           if kind == DenseNetwork.Relu then sum.max(0.0)
           else if kind == DenseNetwork.Tanh then StrictMath.tanh(sum)
+          else if kind == DenseNetwork.Elu then sum.max(0.0) + (StrictMath.exp(sum.min(0.0)) - 1.0)
           else sum.max(-1.0).min(1.0)
         neuron += 1
       val spare = input
@@ -51,3 +52,4 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
 private[policy] object DenseNetwork:
   private final val Relu = 0
   private final val Tanh = 1
+  private final val Elu  = 3

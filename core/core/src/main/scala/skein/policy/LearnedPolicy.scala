@@ -20,8 +20,8 @@ final case class LearnedPolicy(
     s"a learned policy has ${LearnedPolicy.Inputs} inputs, got ${shape.inputs}"
   )
   require(
-    shape.activations.last != Activation.Relu,
-    "a learned policy's output is squashed by tanh or clipped, came relu"
+    shape.activations.last.squashes,
+    s"a learned policy's output is squashed by tanh or clipped, came ${shape.activations.last.label}"
   )
 
   private val network = DenseNetwork(shape, parameters)
@@ -83,14 +83,14 @@ object LearnedPolicy:
     val layers           = if hidden.isEmpty then Vector.empty else hidden.split("x", -1).toVector.map(layer)
     val last             = if output.isEmpty then Some(Activation.Tanh) else named(output.tail)
     last.filter(
-      _ != Activation.Relu && layers.sizeIs <= NeuralShape.MostLayers && layers.forall(_.isDefined)
+      _.squashes && layers.sizeIs <= NeuralShape.MostLayers && layers.forall(_.isDefined)
     ) match
       case Some(kind) =>
         Right(NeuralShape(layers.flatten.map(_._1), Inputs, layers.flatten.map(_._2) :+ kind))
       case None =>
         Left(
           s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to " +
-            s"${NeuralShape.MostWidth}, each with relu, tanh or clip behind it, and :tanh or " +
+            s"${NeuralShape.MostWidth}, each with relu, tanh, clip or elu behind it, and :tanh or " +
             s":clip of the output, for example 64x64 or 64tanhx64tanh:clip, came '$text'"
         )
 

@@ -15,8 +15,13 @@ final case class Bandwidth(bitsPerSecond: Long, queueBytes: Int):
   def timeOf(bytes: Long): Span = Span.ofSeconds(bytes * 8.0 / bitsPerSecond)
 
 object Bandwidth:
-  /** Two Ethernet frames. */
-  private val LeastQueueBytes = 3000
+  /** An Ethernet frame: through less no packet would fit whole. */
+  private val FrameBytes = 1500
+
+  private val LeastQueueBytes = 2 * FrameBytes
+
+  /** A queue that takes longer to send holds everything back for good. */
+  private val MostQueue = Span.ofSeconds(60)
 
   /** A line with a queue that it sends in 5 ms, the standing delay that CoDel holds a queue to (RFC 8289,
     * section 4.3), and of 3,000 bytes at least.
@@ -25,18 +30,22 @@ object Bandwidth:
     Bandwidth(bitsPerSecond, (bitsPerSecond / 8 / 200).max(LeastQueueBytes).min(Int.MaxValue).toInt)
 
   val form: String =
-    "a rate from 1kbit to 100gbit such as 50mbit, or with a queue up to 1GB such as 50mbit/64kB"
+    "a rate from 1kbit to 100gbit such as 50mbit, or with a queue such as " +
+      s"50mbit/64kB, from ${FrameBytes}B up to 1GB and to what the rate sends in ${MostQueue.toSeconds.toInt} s"
 
   /** Reads `50mbit` (bit, kbit, mbit, gbit a second, in powers of 1000), or `50mbit/64kB` with a queue in B,
-    * kB, MB or GB, from 1 byte to 1 GB. The error says what was expected and what came.
+    * kB, MB or GB, from an Ethernet frame to 1 GB and to a minute of the rate. The error says what was
+    * expected and what came.
     */
   def parse(text: String): Either[String, Bandwidth] =
     val bandwidth = text match
       case s"$rate/$queue" =>
         for
           bits  <- amount(rate, bitUnits).filter(inRange)
-          bytes <- amount(queue, byteUnits).filter(bytes => bytes >= 1 && bytes <= 1_000_000_000L)
-        yield Bandwidth(bits, bytes.toInt)
+          bytes <- amount(queue, byteUnits).filter(bytes => bytes >= FrameBytes && bytes <= 1_000_000_000L)
+          limit = Bandwidth(bits, bytes.toInt)
+          if limit.timeOf(bytes) <= MostQueue
+        yield limit
       case rate => amount(rate, bitUnits).filter(inRange).map(ofBitsPerSecond)
     bandwidth.toRight(s"expected $form, came '$text'")
 

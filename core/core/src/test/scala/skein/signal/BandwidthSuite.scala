@@ -11,7 +11,8 @@ class BandwidthSuite extends munit.FunSuite:
 
   test("a queue may be stated"):
     assertEquals(Bandwidth.parse("50mbit/64kB"), Right(Bandwidth(50_000_000, 64_000)))
-    assertEquals(Bandwidth.parse("1mbit/1B"), Right(Bandwidth(1_000_000, 1)))
+    assertEquals(Bandwidth.parse("1mbit/1500B"), Right(Bandwidth(1_000_000, 1500)))
+    assertEquals(Bandwidth.parse("1mbit/7.5MB"), Right(Bandwidth(1_000_000, 7_500_000)))
 
   test("what is no rate is refused with what came"):
     for text <- List(
@@ -25,6 +26,10 @@ class BandwidthSuite extends munit.FunSuite:
         "200gbit",
         "1mbit/",
         "1mbit/0B",
+        "1mbit/1B",
+        "1mbit/1499B",
+        "1mbit/7.6MB",
+        "1kbit/1GB",
         "1mbit/2GB",
         "1mbit/1kb",
         "1e9mbit"

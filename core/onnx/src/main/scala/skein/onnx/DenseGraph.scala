@@ -26,6 +26,7 @@ private[onnx] object DenseGraph:
     "Mul",
     "Div",
     "Relu",
+    "Elu",
     "Tanh",
     "Sigmoid",
     "Clip"
@@ -65,7 +66,7 @@ private[onnx] object DenseGraph:
     /** Its numbers are beyond −1 and 1 where nothing squashed them last: then they are clipped. */
     def network: Network =
       if sums.rows != 1 then throw NotDense(s"expected one output, came ${sums.rows}")
-      val isSquashed = layers.lastOption.exists(_._2 != Activation.Relu) && sums.isIdentity
+      val isSquashed = layers.lastOption.exists(_._2.squashes) && sums.isIdentity
       val all        = if isSquashed then layers else layers :+ (sums, Activation.Clip)
       val hidden     = all.init.map(_._1.rows)
       val widest     = hidden.maxOption.getOrElse(0)
@@ -177,7 +178,10 @@ private[onnx] object DenseGraph:
             by(node.operator, flow, tensor, not)
           case _ => not("expected one with a constant behind")
       case "Relu"    => flow(0).activated(Activation.Relu)
-      case "Tanh"    => flow(0).activated(Activation.Tanh)
+      case "Elu"     =>
+        if number("alpha", 1) != 1 then not(s"expected an alpha of 1, came ${number("alpha", 1)}")
+        flow(0).activated(Activation.Elu)
+      case "Tanh" => flow(0).activated(Activation.Tanh)
       case "Sigmoid" =>
         val halved = flow(0).copy(sums = flow(0).sums.each((w, _) => w / 2, (b, _) => b / 2))
         val tanh   = halved.activated(Activation.Tanh)
@@ -263,6 +267,7 @@ private[onnx] object DenseGraph:
       val activated = shape.activations(layer) match
         case Activation.Relu => Node("Relu", Vector(sums), Vector(into))
         case Activation.Tanh => Node("Tanh", Vector(sums), Vector(into))
+        case Activation.Elu  => Node("Elu", Vector(sums), Vector(into))
         case Activation.Clip => Node("Clip", Vector(sums, "least", "most"), Vector(into))
       Vector(gemm, activated)
     OnnxGraph(

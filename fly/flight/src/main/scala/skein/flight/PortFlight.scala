@@ -46,8 +46,8 @@ final case class PortFlight(
       planning = settings.planning.keeping(scenario)
     )
   if plans then
-    for reason <- JointPlanning.of(scenario.fleet, loopSettings).left do
-      throw IllegalArgumentException(reason)
+    val able = Planning.told(scenario.fleet).flatMap(_ => JointPlanning.of(scenario.fleet, loopSettings))
+    for reason <- able.left do throw IllegalArgumentException(reason)
 
   /** What its recording begins with. */
   def heading: RecordingHeader = RecordingHeader(

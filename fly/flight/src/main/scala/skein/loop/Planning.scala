@@ -135,6 +135,26 @@ object Planning:
   private[loop] def plans(agent: Agent): Boolean =
     agent.kind == VehicleKind.Multirotor && agent.policy.isPlannedFor(agent.role)
 
+  /** Which vehicles plan and which do not, in a line for the user.
+    *
+    * @return or that none would: the flight would be that of `predictive` under another name
+    */
+  def told(fleet: Fleet): Either[String, String] =
+    val (planned, others)           = fleet.agents.partition(plans)
+    def names(agents: Vector[Agent]) =
+      val more = agents.size - MostNamed
+      agents.take(MostNamed).map(_.name).mkString(", ") + (if more > 0 then s" and $more more" else "")
+    Either.cond(
+      planned.nonEmpty,
+      s"plan: ${names(planned)} ${if planned.sizeIs == 1 then "plans" else "plan"}; " +
+        (if others.isEmpty then "there is nobody else"
+         else s"${names(others)} ${if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"}"),
+      "plan: expected a multirotor that can plan, by a GoalPolicy or by a Policy that " +
+        s"pursues one opponent, came none: ${names(others)} would fly by their own policies"
+    )
+
+  private val MostNamed = 8
+
   /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the
     * time to find every small gain follows the simple model, and guesses of other vehicles, where they are
     * wrong, too; the policy does not. Vehicles that are where they want to be fly by it, and by plans where

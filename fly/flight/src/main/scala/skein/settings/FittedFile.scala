@@ -29,7 +29,9 @@ private object FittedFile:
   def parse[A](text: String, path: String, section: String, what: String)(
       read: Config => Either[String, A]
   ): Either[String, A] =
-    try HoconFile.parse(text, path).flatMap(file => read(file.resolve().getConfig(section)))
-    catch
-      case wrong: ConfigException          => Left(s"$path is no $what: ${wrong.getMessage}")
-      case wrong: IllegalArgumentException => Left(s"$path: ${Expect.refused(wrong)}")
+    val fitted =
+      try HoconFile.parse(text, path).flatMap(file => read(file.resolve().getConfig(section)))
+      catch
+        case wrong: ConfigException          => Left(s"$path is no $what: ${wrong.getMessage}")
+        case wrong: IllegalArgumentException => Left(s"$path: ${Expect.refused(wrong)}")
+    fitted.left.map(ConfigMistakes.oneLine)

@@ -3,8 +3,9 @@ package skein.settings
 import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
-import pureconfig.error.{CannotConvert, ConfigReaderFailures, ConvertFailure}
-import skein.loop.{AnyLoop, Deadline, Fallback, JointPlanning, LoopKind, LoopSettings, PlanSettings}
+import pureconfig.error.CannotConvert
+import scala.util.Try
+import skein.loop.{AnyLoop, Deadline, Fallback, JointPlanning, LoopKind, LoopSettings, PlanSettings, Planning}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
@@ -29,6 +30,7 @@ import skein.vehicle.VehicleKind
   *   has a deadline, the period where none is set
   * @param images whose images and clouds are recorded
   * @param plant what the built-in simulator's multirotors are
+  * @param onlyPolicies whether the scenario is flown with these policies alone, and not with its own beside
   */
 final case class FlySettings(
     loops: List[AnyLoop],
@@ -47,7 +49,8 @@ final case class FlySettings(
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
     images: List[ImageSource] = Nil,
-    plant: SimulatedBody = SimulatedBody.AirSim
+    plant: SimulatedBody = SimulatedBody.AirSim,
+    onlyPolicies: Boolean = false
 ):
 
   /** The cameras and lidars whose images and clouds the flight has. */
@@ -111,7 +114,7 @@ final case class FlySettings(
       val same = policies.take(index).count(_.name == policy.name)
       policy.name + (if same == 0 then "" else s"-${same + 1}")
     val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
-    withSolver(papers ++ chosen.flatMap(plansWith))
+    withSolver((if onlyPolicies then Vector.empty else papers) ++ chosen.flatMap(plansWith))
 
   /** Flights that differ in where is decided alone have the same seed. */
   private def withSolver(plans: Vector[FlightPlan]): Vector[FlightPlan] =
@@ -200,7 +203,7 @@ object FlySettings:
     */
   def read(config: Config)(using Scenarios): Either[String, FlySettings] =
     for
-      _        <- ConfigKeys.unknown(config, "skein.fly").toLeft(())
+      _        <- ConfigMistakes.ofShape(config, "skein.fly").toLeft(())
       scenario <- ScenarioSettings.read(config)
       timed =
         if config.hasPath(Duration) then config
@@ -208,20 +211,11 @@ object FlySettings:
       settings <-
         given ConfigReader[Scenario]    = ConfigReader.fromFunction(_ => Right(scenario))
         given ConfigReader[FlySettings] = ConfigKeys.reader
-        ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(told)
+        ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(ConfigMistakes.of(_, timed))
       valid <- validated(settings, timed)
     yield valid
 
   private val Duration = "skein.fly.duration"
-
-  /** A value whose origin is an option is told by that, others by their place. */
-  private def told(failures: ConfigReaderFailures): String =
-    failures.toList.map:
-      case ConvertFailure(CannotConvert(_, _, because), Some(origin), _)
-          if ConfigKeys.optionOf(origin).isDefined =>
-        s"${origin.description}: $because"
-      case other => ConfigReaderFailures(other).prettyPrint()
-    .mkString("\n")
 
   private def validated(settings: FlySettings, config: Config): Either[String, FlySettings] =
     val mistakes = Seq(
@@ -260,6 +254,9 @@ object FlySettings:
       Option.when(settings.wire == Wire.Mavlink && settings.images.nonEmpty)(
         "images: expected none with wire mavlink, which carries no images"
       ),
+      Option.when(settings.onlyPolicies && settings.policies.isEmpty)(
+        "only-policies: expected policies beside it, came none"
+      ),
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
@@ -290,10 +287,10 @@ object FlySettings:
       s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
         s"came ${settings.duration.toMillis} ms"
 
-  /** A mistake about a key whose value is an option's is told by that, others by the key. */
+  /** A mistake that begins with a key, told by where the key's value is from. */
   private def placed(mistake: String, config: Config): String =
     val (key, said) = mistake.span(_ != ':')
-    optionAt(key, config).getOrElse(s"skein.fly.$key") + said
+    ConfigMistakes.oneLine(ConfigMistakes.at(s"skein.fly.$key", config) + said)
 
   /** The option by which a key of `skein.fly` has its value, if one did. */
   private def optionAt(key: String, config: Config): Option[String] =
@@ -327,11 +324,31 @@ object FlySettings:
       .map("predictor: " + _)
 
   private def planMistake(settings: FlySettings): Option[String] =
-    settings.plans
-      .filter(_.loop == LoopKind.Plan)
-      .flatMap(plan => JointPlanning.of(plan.fleet(settings), settings.loopSettings(plan)).left.toOption)
+    val fleets = settings.plans.filter(_.loop == LoopKind.Plan).map(plan => plan -> plan.fleet(settings))
+    fleets
+      .flatMap((_, fleet) => Planning.told(fleet).left.toOption)
       .headOption
-      .map("predictor: " + _)
+      .map("loops: " + _)
+      .orElse:
+        fleets
+          .flatMap((plan, fleet) => JointPlanning.of(fleet, settings.loopSettings(plan)).left.toOption)
+          .headOption
+          .map("predictor: " + _)
+
+  private given ConfigReader[Int] =
+    parsed("whole number", text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, came '$text'"))
+
+  private given ConfigReader[Long] =
+    parsed("whole number", text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, came '$text'"))
+
+  private given ConfigReader[Double] = parsed(
+    "number",
+    text => text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, came '$text'")
+  )
+
+  /** `1e3` is a whole number, too. */
+  private def exactly[A](text: String)(number: java.math.BigDecimal => A): Option[A] =
+    Try(number(java.math.BigDecimal(text))).toOption
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 

@@ -16,5 +16,5 @@ object HoconFile:
   def parse(text: String, path: String): Either[String, Config] =
     try Right(ConfigFactory.parseString(text, ConfigParseOptions.defaults.setOriginDescription(path)))
     catch
-      case mistake: ConfigException => Left(mistake.getMessage)
+      case mistake: ConfigException => Left(ConfigMistakes.oneLine(mistake.getMessage))
       case _: StackOverflowError => Left(s"$path: its braces and brackets are nested too deeply to be read")

@@ -40,7 +40,11 @@ object NamedScene:
       case (Some(name), None)       => shipped(name).toRight(s"its parameter '$Name': no scene '$name' ships")
 
   private def ofText(name: String, text: String): Either[String, NamedScene] =
-    SceneFile.parse(text, name).map(NamedScene(name, Some(text), _)).left.map(_.message)
+    SceneFile
+      .parse(text, name)
+      .map(NamedScene(name, Some(text), _))
+      .left
+      .map(wrong => ConfigMistakes.oneLine(wrong.message))
 
   private val Name = "scene"
   private val Text = "scene.text"

@@ -124,9 +124,13 @@ object PolicyFile:
         case s"evader:$file"  => ofOnnx(file, Some(Role.Evader), asked)
         case file             => ofOnnx(file, None, asked)
     else
-      HoconFile.read(path).flatMap: file =>
-        try of(file.resolve(), path)
-        catch case mistake: ConfigException => Left(s"$path: ${mistake.getMessage}")
+      HoconFile
+        .read(path)
+        .flatMap: file =>
+          try of(file.resolve(), path)
+          catch case mistake: ConfigException => Left(s"$path: ${mistake.getMessage.stripPrefix(s"$path: ")}")
+        .left
+        .map(ConfigMistakes.oneLine)
 
   private def ofOnnx(path: String, told: Option[Role], asked: Option[Role]): Either[String, PolicyFile] =
     for

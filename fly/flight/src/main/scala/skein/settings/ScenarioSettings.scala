@@ -22,7 +22,7 @@ object ScenarioSettings:
       fields = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap
       values = set.flatMap((key, value) => fields.get(key).map(_ -> value.unwrapped.toString))
       scenario <- kind.read(values).left.map(
-        _.map(mistake => s"$path.${ConfigKeys.ofMistake(mistake)}${origin(set, mistake)}").mkString("\n")
+        _.map(mistake => placed(ConfigKeys.ofMistake(mistake), path, set)).mkString("\n")
       )
     yield scenario
 
@@ -48,8 +48,7 @@ object ScenarioSettings:
   /** Of which kind it is. */
   def kind(config: Config)(using scenarios: Scenarios): Either[String, ScenarioKind[?]] =
     val named = Option.when(config.hasPath(Name))(config.getString(Name)).getOrElse(scenarios.names.head)
-    def place = Option.when(config.hasPath(Name))(config.getValue(Name).origin).flatMap(ConfigKeys.optionOf)
-    scenarios.kind(named).left.map(mistake => s"${place.getOrElse(Name)}: $mistake")
+    scenarios.kind(named).left.map(mistake => ConfigMistakes.oneLine(s"${ConfigMistakes.at(Name, config)}: $mistake"))
 
   /** As a recording keeps it. */
   def recorded(scenario: Scenario): Seq[ParameterRow] =
@@ -63,9 +62,11 @@ object ScenarioSettings:
       config.getValue(path) match
         case settings: ConfigObject => Right(settings.asScala.toMap)
         case other                  =>
-          Left(s"${other.origin.description}: $path: expected settings in braces, came '${other.unwrapped}'")
+          Left(s"${ConfigMistakes.at(path, other.origin)}: expected settings in braces, came ${ConfigMistakes.text(other)}")
 
-  private def origin(set: Map[String, ConfigValue], mistake: String): String =
-    set.get(ConfigKeys.ofMistake(mistake).takeWhile(_ != ':')).fold("")(value =>
-      s" (${value.origin.description})"
-    )
+  /** A mistake that begins with a key, told by where the key's value is from. */
+  private def placed(mistake: String, path: String, set: Map[String, ConfigValue]): String =
+    val key = mistake.takeWhile(_ != ':')
+    val told = set.get(key).fold(s"$path.$mistake"): value =>
+      ConfigMistakes.at(s"$path.$key", value.origin) + mistake.drop(key.length)
+    ConfigMistakes.oneLine(told)

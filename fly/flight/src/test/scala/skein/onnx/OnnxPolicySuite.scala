@@ -26,7 +26,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
   private def tensor(shape: Int*)(value: Int => Double): Tensor =
     Tensor(shape.toVector, Vector.tabulate(shape.product)(value(_).toFloat.toDouble))
 
-  for name <- Seq("learned:32x32", "learned:6tanhx5:clip", "learned::clip", "neural:8x6") do
+  for name <- Seq("learned:32x32", "learned:6tanhx5:clip", "learned::clip", "learned:7elux4elu", "neural:8x6") do
     folder.test(s"$name: a network that was written is read back, to the bit"): folder =>
       val policy = drawn(name)
       val file   = written(folder, OnnxPolicy.write(policy, "evader").fold(fail(_), identity))
@@ -64,6 +64,17 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
           Node("Tanh", Vector("s"), Vector("y"))
         )("w" -> weights, "b" -> biases, "v" -> last),
         _.max(0),
+        math.tanh
+      ),
+      (
+        "Gemm, Elu as skrl and rsl_rl have it, Gemm, Tanh",
+        graph(
+          Node("Gemm", Vector("x", "w", "b"), Vector("g"), Map("transB" -> Attribute.Whole(1))),
+          Node("Elu", Vector("g"), Vector("r")),
+          Node("Gemm", Vector("r", "v"), Vector("s"), Map("transB" -> Attribute.Whole(1))),
+          Node("Tanh", Vector("s"), Vector("y"))
+        )("w" -> weights, "b" -> biases, "v" -> last),
+        sum => if sum > 0 then sum else math.exp(sum) - 1,
         math.tanh
       ),
       (

@@ -2,6 +2,7 @@ package skein.settings
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
+import skein.loop.Planning
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.{PaperDuel, Scenarios, Surround}
 import skein.testing.TemporaryFolders
@@ -32,13 +33,76 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
 
   test("in a file, a key outside of skein.fly is refused, since nothing reads it"):
     val file = ConfigFactory.parseString("duration = 10 s\nskein { flyy { seed = 2 } }")
-    val said = ConfigKeys.unknownInFile(file, "skein.fly").getOrElse("")
+    val said = ConfigMistakes.besideInFile(file, "skein.fly").getOrElse("")
     assert(clue(said).contains("1: no setting 'duration'; the nearest is 'skein.fly'"))
     assert(said.contains("2: no setting 'skein.flyy'"))
     assertEquals(
-      ConfigKeys.unknownInFile(ConfigFactory.parseString("skein.fly.planning.step = 50 ms"), "skein.fly"),
+      ConfigMistakes.besideInFile(ConfigFactory.parseString("skein.fly.planning.step = 50 ms"), "skein.fly"),
       None
     )
+
+  /** Each of a file's lines that cannot be read is told by one, which says where, what was expected and what
+    * came.
+    */
+  private def assertTold(text: String, expected: String*)(using munit.Location): Unit =
+    val said = read(s"skein.fly {\n$text\n}").left.getOrElse("").linesIterator.toSeq
+    assertEquals(said.map(_.replaceAll("^.*String: ", "")), expected)
+
+  test("a null, a list, a single value and settings in one another's places are told, in a line each"):
+    assertTold(
+      "scenario = surround, surround { ring-m = null }",
+      "2: skein.fly.surround.ring-m: expected a value, came null"
+    )
+    assertTold("seed = null", "2: skein.fly.seed: expected a value, came null")
+    assertTold("loops = stream", "2: skein.fly.loops: expected a list in brackets, came 'stream'")
+    assertTold(
+      "loops = [stream, [paused], null]",
+      "2: skein.fly.loops: expected a list of single values, came a list in it",
+      "2: skein.fly.loops: expected a list of single values, came null in it"
+    )
+    assertTold("period = [100 ms]", "2: skein.fly.period: expected a single value, came a list")
+    assertTold("scenario { a = 1 }", "2: skein.fly.scenario: expected a single value, came settings in braces")
+    assertTold("planning = 3\nsurround = x",
+      "2: skein.fly.planning: expected settings in braces, came '3'",
+      "3: skein.fly.surround: expected settings in braces, came 'x'"
+    )
+    assertTold("only-policies = true", "2: skein.fly.only-policies: expected policies beside it, came none")
+
+  test("values of a wrong kind are told in a line each, whatever reads them"):
+    assertTold("seed = many", "2: skein.fly.seed: expected a whole number, came 'many'")
+    assertTold("seed = 1e30", "2: skein.fly.seed: expected a whole number, came '1.0E30'")
+    assertTold(
+      "moves-in-flight = 2.5\nplanning { slowest-share = half, horizon-steps = 99999999999 }",
+      "2: skein.fly.moves-in-flight: expected a whole number, came '2.5'",
+      "3: skein.fly.planning.horizon-steps: expected a whole number, came '99999999999'",
+      "3: skein.fly.planning.slowest-share: expected a finite number, came 'half'"
+    )
+    assertTold("only-policies = perhaps", "2: skein.fly.only-policies: expected true or false, came 'perhaps'")
+    assertTold("period = 0 ms", "2: skein.fly.period: expected 1 ms or more, came 0.0 ms")
+    assertEquals(read("skein.fly.seed = 1e3").map(_.seed), Right(1000L))
+    assert(read("skein.fly { duration = null, deadline = null, solver = null, scene = null }").isRight)
+
+  test("plan is refused where nobody plans, and says who flies"):
+    assertTold(
+      "scenario = forest, loops = [stream, plan]",
+      "2: skein.fly.loops: plan: expected a multirotor that can plan, by a GoalPolicy or by a Policy that " +
+        "pursues one opponent, came none: Scout1, Scout2, Scout3, Scout4, Scout5 would fly by their own policies"
+    )
+    assertEquals(
+      Planning.told(PaperDuel().fleet),
+      Right("plan: Pursuer plans; Evader flies by its own policy")
+    )
+
+  test("with only-policies the scenario is not flown by its own policies"):
+    val file = temporaryFolder().resolve("policy.conf")
+    Files.writeString(
+      file,
+      PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse("lead-pursuit").toOption.get).hocon("")
+    )
+    val text = s"loops = [stream], links = [vpn], policies = [\"$file\"]"
+    assertEquals(read(s"skein.fly { $text }").map(_.plans.size), Right(2))
+    val alone = read(s"skein.fly { $text, only-policies = true }").map(_.plans)
+    assertEquals(alone.map(_.map(_.policy.isDefined)), Right(Vector(true)))
 
   test("a duration without a unit is refused, with a line that says so"):
     for text <- Seq("skein.fly.duration = 40", "skein.fly.duration = \"40\"") do
@@ -88,7 +152,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     val text = "skein.fly { scenario = crossing\n crossing { vehicles = many, streams = 3 } }"
     val said = read(text).left.getOrElse("")
     assert(
-      clue(said).contains("skein.fly.crossing.vehicles: expected a whole number, came 'many' (String: 2)")
+      clue(said).contains("String: 2: skein.fly.crossing.vehicles: expected a whole number, came 'many'")
     )
     val unsound =
       read("skein.fly { scenario = crossing, crossing { spacing-m = -1, streams = 3 } }").left.getOrElse("")

@@ -144,8 +144,11 @@ object McapRecording:
   def read(file: Path, recording: Path): Either[RecordError, Unit] =
     if Files.isDirectory(file) then Left(RecordError.NotAnExport(file, "it is a folder"))
     else if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
-    else if Files.exists(recording) then Left(RecordError.AlreadyExists(recording))
     else
+      RecordingFile.free(recording).flatMap: _ =>
+        imported(file, recording)
+
+  private def imported(file: Path, recording: Path): Either[RecordError, Unit] =
       attempt(RecordError.CannotCreate(recording, _)):
         val folder = Files.createTempDirectory(recording.toAbsolutePath.getParent, ".skein")
         try
@@ -254,7 +257,8 @@ object McapRecording:
     Using.resource(connection.createStatement()): statement =>
       val _ = statement.execute(
         s"INSERT INTO ${table.name} SELECT ${values.mkString(", ")} FROM " +
-          s"read_json($quoted, format = 'newline_delimited', " +
+          // A folder named `a=b` would be a column.
+          s"read_json($quoted, format = 'newline_delimited', hive_partitioning = false, " +
           s"columns = $types, maximum_object_size = $longest)"
       )
 

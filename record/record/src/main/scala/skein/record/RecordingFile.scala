@@ -81,9 +81,10 @@ private[record] object RecordingFile:
         rows(connection)
         execute(connection, "CHECKPOINT")
 
-  private val Unnameable = "expected a path without ';', which DuckDB's driver takes for the path's end"
+  private val Unnameable =
+    "expected a path without ';', '?' or '\\', which DuckDB takes for its end, for options or for '/'"
 
-  private def isUnnameable(file: Path) = file.toString.contains(';')
+  private def isUnnameable(file: Path) = file.toAbsolutePath.toString.exists(";?\\".contains(_))
 
   private def createTables(connection: DuckDBConnection): Unit =
     execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
@@ -97,7 +98,10 @@ private[record] object RecordingFile:
     properties.setProperty("duckdb.read_only", readOnly.toString)
     properties.setProperty("threads", "1")
     properties.setProperty("autoinstall_known_extensions", "false")
-    DriverManager.getConnection(s"jdbc:duckdb:$file", properties).asInstanceOf[DuckDBConnection]
+    // Absolute, since `md:x` or `s3://x` would be a database elsewhere.
+    DriverManager
+      .getConnection(s"jdbc:duckdb:${file.toAbsolutePath}", properties)
+      .asInstanceOf[DuckDBConnection]
 
   /** Runs an action on the database; its exceptions become an error with the first line of their text. */
   def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =

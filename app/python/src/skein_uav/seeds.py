@@ -1,0 +1,38 @@
+"""Seeds of any size, as Gymnasium and numpy's SeedSequence make them."""
+
+from __future__ import annotations
+
+import operator
+from typing import SupportsIndex
+
+_BITS = 63
+
+
+def folded(seed: SupportsIndex) -> int:
+    """A seed as Java's 64-bit numbers hold it.
+
+    One below 2**63 stays as it is; of a larger one, the groups of 63 bits are combined by exclusive or.
+
+    Parameters
+    ----------
+    seed : int
+        From 0, of any size.
+
+    Returns
+    -------
+    int
+        From 0 up to 2**63 - 1.
+
+    Raises
+    ------
+    ValueError
+        If it is below 0.
+    """
+    rest = operator.index(seed)
+    if rest < 0:
+        raise ValueError(f"seed: expected a whole number from 0, came {rest}")
+    one = 0
+    while rest:
+        one ^= rest & ((1 << _BITS) - 1)
+        rest >>= _BITS
+    return one

@@ -1,0 +1,147 @@
+package skein.settings
+
+import com.typesafe.config.*
+import pureconfig.error.*
+import scala.jdk.CollectionConverters.*
+import skein.scenario.{Nearest, Scenarios}
+
+/** What is wrong with a configuration, a line for each value: `FILE: LINE: PATH: expected …, came …`. What an
+  * option gave is told by the option's name.
+  */
+private[skein] object ConfigMistakes:
+
+  /** Everything below `path` that cannot be read whatever it says: keys that `reference.conf` does not know,
+    * nulls, and settings, lists and single values in one another's places.
+    *
+    * @return None if there is nothing of the kind
+    */
+  def ofShape(config: Config, path: String)(using Scenarios): Option[String] =
+    ofValue(config.getValue(path), known.getValue(path), path).reduceOption(_ + "\n" + _)
+
+  /** The keys of a file, of which nothing but `path` is read, that stand beside `path` or above. */
+  def besideInFile(file: Config, path: String): Option[String] =
+    path
+      .split('.')
+      .toSeq
+      .inits
+      .toSeq
+      .reverse
+      .tail
+      .flatMap: chain =>
+        val parent = chain.init
+        val at     = if parent.isEmpty then Some(file.root) else objectAt(file, parent.mkString("."))
+        at.toSeq.flatMap(keys).collect:
+          case (key, value) if key != chain.last => unknown(value, (parent :+ key).mkString("."), Seq(path))
+      .reduceOption(_ + "\n" + _)
+
+  /** What pureconfig could not read. */
+  def of(failures: ConfigReaderFailures, config: Config): String = failures.toList
+    .map:
+      case ConvertFailure(reason, origin, path) =>
+        oneLine(origin.fold(path)(at(path, _)) + ": " + because(reason, path, config))
+      case other => other.origin.fold("")(_.description + ": ") + oneLine(other.description)
+    .distinct
+    .mkString("\n")
+
+  /** Where a value is from: the option that gave it, or file, line and path. Defaults have a path alone. */
+  def at(path: String, origin: ConfigOrigin): String =
+    ConfigKeys.optionOf(origin).getOrElse:
+      if origin.description.startsWith(Ours) then path else s"${origin.description}: $path"
+
+  /** @return `at` of the value, or the path alone where nothing stands
+    */
+  def at(path: String, config: Config): String =
+    if config.hasPath(path) then at(path, config.getValue(path).origin) else path
+
+  /** A message that may have several lines, as a library's has, or one with a value that has. */
+  def oneLine(text: String): String = text.linesIterator.map(_.trim).filter(_.nonEmpty).mkString(" ")
+
+  /** Runs what reads a configuration: what the library refuses is told in a line. */
+  def guarded[A](path: String)(read: => Either[String, A]): Either[String, A] =
+    try read
+    catch
+      case mistake: ConfigException => Left(oneLine(mistake.getMessage))
+      case _: StackOverflowError    => Left(s"$path: it is nested too deeply to be read")
+
+  private val Ours = "reference.conf"
+
+  private def because(reason: FailureReason, path: String, config: Config): String = reason match
+    case CannotConvert(value, "Boolean", _) => s"expected true or false, came '$value'"
+    case CannotConvert(_, _, because)       => oneLine(because)
+    case WrongType(_, expected)             =>
+      val came = if config.hasPath(path) then text(config.getValue(path)) else "nothing"
+      s"expected ${expected.map(named).toSeq.sorted.mkString(" or ")}, came $came"
+    case EmptyStringFound(_) => "expected a value, came ''"
+    case KeyNotFound(key, _) => s"expected '$key', came nothing"
+    case other               => oneLine(other.description)
+
+  private def named(kind: ConfigValueType): String = kind match
+    case ConfigValueType.NUMBER  => "a number"
+    case ConfigValueType.BOOLEAN => "true or false"
+    case ConfigValueType.STRING  => "a text"
+    case ConfigValueType.LIST    => "a list in brackets"
+    case ConfigValueType.OBJECT  => "settings in braces"
+    case ConfigValueType.NULL    => "null"
+
+  /** As a user wrote it. */
+  def text(value: ConfigValue): String = value.valueType match
+    case ConfigValueType.OBJECT => "settings in braces"
+    case ConfigValueType.LIST   => "a list"
+    case ConfigValueType.NULL   => "null"
+    case _                      => s"'${value.unwrapped}'"
+
+  private def ofValue(value: ConfigValue, known: ConfigValue, path: String): Seq[String] =
+    def expected(what: String) = Seq(oneLine(s"${at(path, value.origin)}: expected $what, came ${text(value)}"))
+    (known, value) match
+      case (known: ConfigObject, set: ConfigObject) =>
+        keys(set).flatMap: (key, value) =>
+          val below = s"$path.$key"
+          Option(known.get(key)).fold(
+            Seq(unknown(value, below, known.keySet.asScala.toSeq))
+          )(ofValue(value, _, below))
+      case (_: ConfigObject, _)                  => expected("settings in braces")
+      case (_: ConfigList, several: ConfigList)  =>
+        several.asScala.toSeq.filterNot(isSingle).map: one =>
+          s"${at(path, one.origin)}: expected a list of single values, came ${text(one)} in it"
+      case (_: ConfigList, _)                    => expected("a list in brackets")
+      case _ if value.valueType == known.valueType || isSingle(value) => Nil
+      case _ if value.valueType == ConfigValueType.NULL => expected("a value")
+      case _                                            => expected("a single value")
+
+  private def isSingle(value: ConfigValue): Boolean = value.valueType match
+    case ConfigValueType.NUMBER | ConfigValueType.BOOLEAN | ConfigValueType.STRING => true
+    case _                                                                         => false
+
+  private def keys(of: ConfigObject): Seq[(String, ConfigValue)] = of.asScala.toSeq.sortBy(_._1)
+
+  private def objectAt(file: Config, path: String): Option[ConfigObject] =
+    Option.when(file.hasPath(path))(file.getValue(path)).collect { case found: ConfigObject => found }
+
+  private def unknown(value: ConfigValue, path: String, known: Seq[String]): String =
+    val key = path.split('.').lastOption.getOrElse(path)
+    renamed.get(path) match
+      case Some(now) => s"${value.origin.description}: no setting '$path' any more; it is '$now' now"
+      case None      =>
+        s"${value.origin.description}: no setting '$path'; the nearest is '${Nearest.to(key.take(MostLetters), known)}'"
+
+  /** Of a key that is compared with those that are known. */
+  private val MostLetters = 100
+
+  private val renamed = Map(
+    "skein.fly.model"        -> "predictor",
+    "skein.fly.pairs"        -> "duel.pairs",
+    "skein.fly.as-published" -> "duel.as-published",
+    "skein.fly.altitude-m"   -> "duel.altitude-m"
+  )
+
+  private lazy val ours = ConfigFactory.parseResources(getClass.getClassLoader, Ours).resolve()
+
+  /** Scenarios' settings stand under their names. */
+  private def known(using scenarios: Scenarios): Config =
+    scenarios.kinds.foldLeft(ours): (known, kind) =>
+      kind.standard.settings.foldLeft(known):
+        case (known, (name, value)) =>
+          known.withValue(
+            s"skein.fly.${kind.name}.${ConfigKeys.ofField(name)}",
+            ConfigValueFactory.fromAnyRef(value)
+          )
