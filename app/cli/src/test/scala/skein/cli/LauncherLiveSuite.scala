@@ -59,13 +59,13 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     assert(clue(said).contains(s"$folder/app/cli/target/universal/stage/bin/skein: fly --seed 1"))
 
   copy.test("a stage of which something was taken away is built again, and a whole one is not"): folder =>
-    val stage = folder.resolve("cli/target/universal/stage")
+    val stage = folder.resolve("app/cli/target/universal/stage")
     script(
       folder.resolve("sbtw"),
-      """mkdir -p cli/target/universal/stage/bin cli/target/universal/stage/lib
-        |printf '#!/usr/bin/env bash\necho flown\n' >cli/target/universal/stage/bin/skein
-        |chmod +x cli/target/universal/stage/bin/skein
-        |touch cli/target/universal/stage/lib/one.jar cli/target/universal/stage/lib/other.jar""".stripMargin
+      """mkdir -p app/cli/target/universal/stage/bin app/cli/target/universal/stage/lib
+        |printf '#!/usr/bin/env bash\necho flown\n' >app/cli/target/universal/stage/bin/skein
+        |chmod +x app/cli/target/universal/stage/bin/skein
+        |touch app/cli/target/universal/stage/lib/one.jar app/cli/target/universal/stage/lib/other.jar""".stripMargin
     )
     def started() =
       val (status, said) = run(folder, Map.empty, "./skein", "fly")
