@@ -27,6 +27,10 @@ enum MutatedFiles(val suffix: String, base: => Array[Byte]):
   private lazy val whole  = base
   private lazy val pieces = if suffix == ".conf" then MutatedFiles.pieces else Vector.empty
 
+  /** Reads the file as it is, which is taken. */
+  def unchanged(folder: Path)(using Scenarios): Either[String, Any] =
+    read(Files.write(folder.resolve(s"whole$suffix"), whole), folder)
+
   /** Reads one mutant.
     *
     * @return what is wrong with what its reader does, if anything; whether it was taken; and its processor time
@@ -120,7 +124,7 @@ object MutatedFiles:
     |  seed = 3
     |  scenario = surround
     |  surround { vehicles = 4, ring-m = 9 }
-    |  predictor = reduced
+    |  predictor = drag
     |  moves-in-flight = 2
     |  deadline = 50 ms
     |  fallback = hold
