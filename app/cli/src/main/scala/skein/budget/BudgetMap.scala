@@ -50,8 +50,10 @@ final case class BudgetMap(
     val came                             =
       if !off.isFinite then s"$objective has no value"
       else s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
-    val where = if isOnMap(mark) then "" else s"; not drawn: the map ends before it, at ${ms(budget.meansMs.last)} " +
-      s"and ${ms(budget.jittersMs.last)} ms"
+    val where = if isOnMap(mark) then ""
+    else
+      s"; not drawn: the map ends before it, at ${ms(budget.meansMs.last)} " +
+        s"and ${ms(budget.jittersMs.last)} ms"
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
       came + where
 

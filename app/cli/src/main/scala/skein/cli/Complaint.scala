@@ -27,7 +27,11 @@ private[cli] object Complaint:
 
   private def words(line: String): String =
     if line.length <= MostOfAWord then line
-    else """\S+""".r.replaceAllIn(line, word => java.util.regex.Matcher.quoteReplacement(cut(word.matched, MostOfAWord)))
+    else
+      """\S+""".r.replaceAllIn(
+        line,
+        word => java.util.regex.Matcher.quoteReplacement(cut(word.matched, MostOfAWord))
+      )
 
   /** With its beginning and its end, and how much is not shown. */
   private def cut(text: String, most: Int): String =

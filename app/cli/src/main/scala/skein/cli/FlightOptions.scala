@@ -121,10 +121,10 @@ final case class FlightOptions(
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
         s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      told = FlightOptions.hovering(flags.withFallback(file))
+      told   = FlightOptions.hovering(flags.withFallback(file))
       merged = told.withFallback(ConfigFactory.load()).resolve()
-      _      <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
-      own    <- ofScenario(merged)
+      _   <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
+      own <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
 
   private def chosenLoops: Seq[String] =

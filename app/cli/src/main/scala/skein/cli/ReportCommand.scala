@@ -26,8 +26,8 @@ final class ReportCommand(using Scenarios)
   protected def execute(options: ReportOptions): Either[String, Unit] =
     val files = options.files.value.map(Path.of(_))
     for
-      first  <- files.headOption.toRight("expected recordings, came none: ./skein report FILE…")
-      read   <- Report.readOnce(files).left.map(_.map(_.message).mkString("\n"))
+      first <- files.headOption.toRight("expected recordings, came none: ./skein report FILE…")
+      read  <- Report.readOnce(files).left.map(_.map(_.message).mkString("\n"))
       set = read.flights
       out    <- OutFolder.made("--out", options.out.getOrElse(OutFolder.of(first)))
       output <- Report.write(set, out)

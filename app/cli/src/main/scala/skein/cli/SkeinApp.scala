@@ -122,7 +122,9 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
                 1
           case None =>
             Console.err.println(
-              Complaint.text(s"skein: no command '${word.filterNot(_.isControl)}'. There are: ${commands.map(_.name).mkString(", ")}.")
+              Complaint.text(
+                s"skein: no command '${word.filterNot(_.isControl)}'. There are: ${commands.map(_.name).mkString(", ")}."
+              )
             )
             2
 

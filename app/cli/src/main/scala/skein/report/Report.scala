@@ -16,7 +16,8 @@ import skein.units.Expect
 /** Turns recordings into tables and pictures; needs nothing but the recordings. */
 object Report:
 
-  /** Summarises recordings, each flight once. All are tried; every one that cannot be read is named. Blocks. */
+  /** Summarises recordings, each flight once. All are tried; every one that cannot be read is named. Blocks.
+    */
   def read(files: Seq[Path])(using Scenarios): Either[Seq[RecordError], FlightSet] =
     readOnce(files).map(_.flights)
 
@@ -28,10 +29,12 @@ object Report:
   ): Either[Seq[RecordError], (flights: FlightSet, twice: Vector[String])] =
     val named          = files.groupBy(file => Try(file.toRealPath()).getOrElse(file))
     val once           = files.distinctBy(file => Try(file.toRealPath()).getOrElse(file))
-    val (unread, read) = onAllCores(once)(file => RecordingReader.read(file).map(file -> _)).partitionMap(identity)
-    val flown          = read.distinctBy(_._2)
-    val again          = named.values.filter(_.sizeIs > 1).map(_.head).toVector.sorted.map(file => s"$file is named twice")
-    val copies         = (read diff flown).map: (file, recording) =>
+    val (unread, read) =
+      onAllCores(once)(file => RecordingReader.read(file).map(file -> _)).partitionMap(identity)
+    val flown = read.distinctBy(_._2)
+    val again =
+      named.values.filter(_.sizeIs > 1).map(_.head).toVector.sorted.map(file => s"$file is named twice")
+    val copies = (read diff flown).map: (file, recording) =>
       s"$file is the same flight as ${flown.find(_._2 == recording).fold("another")(_._1.toString)}"
     Either.cond(unread.isEmpty, (of(flown.map(_._2)), (again ++ copies).map(_ + ", and counts once")), unread)
 

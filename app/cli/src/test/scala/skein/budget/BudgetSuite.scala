@@ -111,8 +111,14 @@ class BudgetSuite extends munit.FunSuite, Optimised:
 
   test("a marked link that lies outside of the map is told, since it is not drawn"):
     def texts(link: LatencyDistribution) =
-      val map = shown(Vector(8, 8.2, 8.6)).copy(marks = Vector(BudgetMark("one", link, RunningStats(2, 8, 0))))
-      (map.markLines.head, BudgetFigure(Vector(map)).shapes.exists { case text: Mark.Text => text.content == "one"; case _ => false })
+      val map =
+        shown(Vector(8, 8.2, 8.6)).copy(marks = Vector(BudgetMark("one", link, RunningStats(2, 8, 0))))
+      (
+        map.markLines.head,
+        BudgetFigure(Vector(map)).shapes.exists {
+          case text: Mark.Text => text.content == "one"; case _ => false
+        }
+      )
     val (inside, isDrawn) = texts(LatencyDistribution.Constant(Span.ofMillis(40)))
     assert(!clue(inside).contains("not drawn") && isDrawn)
     val (outside, isDrawnToo) = texts(LatencyDistribution.Vpn)

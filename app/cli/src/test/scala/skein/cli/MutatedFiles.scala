@@ -27,11 +27,18 @@ enum MutatedFiles(val suffix: String, base: => Array[Byte]):
   private lazy val whole  = base
   private lazy val pieces = if suffix == ".conf" then MutatedFiles.pieces else Vector.empty
 
+  /** Reads the file as it is, which is taken. */
+  def unchanged(folder: Path)(using Scenarios): Either[String, Any] =
+    read(Files.write(folder.resolve(s"whole$suffix"), whole), folder)
+
   /** Reads one mutant.
     *
-    * @return what is wrong with what its reader does, if anything; whether it was taken; and its processor time
+    * @return what is wrong with what its reader does, if anything; whether it was taken; and its processor
+    *   time
     */
-  def attempt(seed: Long, folder: Path)(using Scenarios): (wrong: Option[String], isTaken: Boolean, cpuMs: Double) =
+  def attempt(seed: Long, folder: Path)(using
+      Scenarios
+  ): (wrong: Option[String], isTaken: Boolean, cpuMs: Double) =
     val file = Files.write(folder.resolve(s"mutant$suffix"), mutant(seed))
     val from = MutatedFiles.cpuNanos
     val came =
@@ -48,17 +55,18 @@ enum MutatedFiles(val suffix: String, base: => Array[Byte]):
       val at    = below(bytes.length)
       val until = (at + 1 + below(if random.nextDouble() < 0.8 then 8 else 400)).min(bytes.length)
       below(6) match
-        case 0 => bytes.take(at) ++ bytes.drop(until)
-        case 1 => bytes.take(until) ++ bytes.drop(at)
-        case 2 => bytes.take(at)
-        case 3 => bytes.updated(at, below(256).toByte)
+        case 0                    => bytes.take(at) ++ bytes.drop(until)
+        case 1                    => bytes.take(until) ++ bytes.drop(at)
+        case 2                    => bytes.take(at)
+        case 3                    => bytes.updated(at, below(256).toByte)
         case _ if pieces.nonEmpty => MutatedFiles.withValue(bytes, below(1 << 30), pieces(below(pieces.size)))
-        case 4                    => bytes.take(at) ++ Array.fill(until - at)(below(256).toByte) ++ bytes.drop(until)
-        case _                    => bytes.updated(at, (bytes(at) ^ (1 << below(8))).toByte)
+        case 4 => bytes.take(at) ++ Array.fill(until - at)(below(256).toByte) ++ bytes.drop(until)
+        case _ => bytes.updated(at, (bytes(at) ^ (1 << below(8))).toByte)
 
   private def read(file: Path, folder: Path)(using Scenarios): Either[String, Any] = this match
     case Configuration =>
-      val options = FlightOptions.given_ParserForClass_FlightOptions.constructOrThrow(Seq("--config", s"$file"))
+      val options =
+        FlightOptions.given_ParserForClass_FlightOptions.constructOrThrow(Seq("--config", s"$file"))
       options.settings.map(settings => settings.plans)
     case SceneText => NamedScene.read(s"$file")
     case Policy    => PolicyFile.read(s"$file")
@@ -93,14 +101,46 @@ object MutatedFiles:
     else if lines.sizeIs > MostLines then Some(s"says ${lines.size} lines: ${lines.take(3).mkString(" / ")}")
     else
       lines
-        .find(line => line.length > Complaint.MostOfALine + 40 || !where.exists(line.contains) || line.contains("Exception"))
+        .find(line =>
+          line.length > Complaint.MostOfALine + 40 || !where.exists(line.contains) || line.contains(
+            "Exception"
+          )
+        )
         .map(line => s"says: $line")
 
   /** What stands in the place of a value. */
   private val pieces: Vector[String] = Vector(
-    "null", "{}", "[]", "[[]]", "{ a = 1 }", "true", "-1", "0", "1e999", "-0.0", "NaN", "1.5", "9223372036854775808",
-    "\"\"", "\"a b\"", "'x'", "${x}", "${?x}", "${skein.fly.period}", "x" * 10_000, "1" * 400, "[1, null]", "§", "\"\\u0000\"",
-    "\"\"\"a\nb\"\"\"", "{" * 300, "[" * 300, "10 ms", "-5 s", "1000000000000 days", "include file(\"/etc/hostname\")"
+    "null",
+    "{}",
+    "[]",
+    "[[]]",
+    "{ a = 1 }",
+    "true",
+    "-1",
+    "0",
+    "1e999",
+    "-0.0",
+    "NaN",
+    "1.5",
+    "9223372036854775808",
+    "\"\"",
+    "\"a b\"",
+    "'x'",
+    "${x}",
+    "${?x}",
+    "${skein.fly.period}",
+    "x" * 10_000,
+    "1" * 400,
+    "[1, null]",
+    "§",
+    "\"\\u0000\"",
+    "\"\"\"a\nb\"\"\"",
+    "{" * 300,
+    "[" * 300,
+    "10 ms",
+    "-5 s",
+    "1000000000000 days",
+    "include file(\"/etc/hostname\")"
   )
 
   /** A value behind one of the signs `=`. */
@@ -120,7 +160,7 @@ object MutatedFiles:
     |  seed = 3
     |  scenario = surround
     |  surround { vehicles = 4, ring-m = 9 }
-    |  predictor = reduced
+    |  predictor = drag
     |  moves-in-flight = 2
     |  deadline = 50 ms
     |  fallback = hold
@@ -146,7 +186,10 @@ object MutatedFiles:
 
   private def onnx =
     val family = PolicyFamily.parse("learned:8x4elu").toOption.get
-    OnnxPolicy.write(family.policy(Vector.tabulate(family.space.dimension)(i => 0.01 * i)), "pursuer").toOption.get
+    OnnxPolicy.write(
+      family.policy(Vector.tabulate(family.space.dimension)(i => 0.01 * i)),
+      "pursuer"
+    ).toOption.get
 
   private def mcap =
     val folder    = Files.createTempDirectory("mutated")
@@ -166,8 +209,8 @@ object MutatedFiles:
   val folder      = Files.createTempDirectory("mutants")
   for kind <- MutatedFiles.values if kinds.isEmpty || kinds.contains(kind.toString) do
     (1 to 20).foreach(warm => kind.attempt(-warm, folder)) // classes are loaded once
-    val tried = (0 until count).map(number => (seed + number) -> kind.attempt(seed + number, folder))
-    val taken = tried.count(_._2.isTaken)
+    val tried          = (0 until count).map(number => (seed + number) -> kind.attempt(seed + number, folder))
+    val taken          = tried.count(_._2.isTaken)
     val (slowest, one) = tried.maxBy(_._2.cpuMs)
     tried.flatMap(_._2.wrong).foreach(println)
     println(

@@ -79,15 +79,20 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assert(clue(ran.err).contains("would both be recorded as") && ran.err.linesIterator.size == 1)
     assert(!Files.exists(both))
 
-  recordings.test("a flight that is named twice, or copied, counts once in a report, which says so"): folder =>
-    val file   = folder.resolve("stream-vpn.duckdb")
-    val copied = Files.copy(file, folder.resolve("copied.duckdb"))
-    val words  = Seq(file, file, folder.resolve("./stream-vpn.duckdb"), copied, "--out", folder.resolve("report"))
-    val (status, text, err) = run(ReportCommand(), words.map(_.toString)*)
-    assertEquals((status, err), (0, ""))
-    assert(clue(text).contains(s"$file is named twice, and counts once"))
-    assert(text.contains(s"$copied is the same flight as $file, and counts once"))
-    assertEquals(text.linesIterator.count(_.startsWith("stream ")), text.linesIterator.filter(_.startsWith("stream ")).distinct.size)
+  recordings.test("a flight that is named twice, or copied, counts once in a report, which says so"):
+    folder =>
+      val file   = folder.resolve("stream-vpn.duckdb")
+      val copied = Files.copy(file, folder.resolve("copied.duckdb"))
+      val words  =
+        Seq(file, file, folder.resolve("./stream-vpn.duckdb"), copied, "--out", folder.resolve("report"))
+      val (status, text, err) = run(ReportCommand(), words.map(_.toString)*)
+      assertEquals((status, err), (0, ""))
+      assert(clue(text).contains(s"$file is named twice, and counts once"))
+      assert(text.contains(s"$copied is the same flight as $file, and counts once"))
+      assertEquals(
+        text.linesIterator.count(_.startsWith("stream ")),
+        text.linesIterator.filter(_.startsWith("stream ")).distinct.size
+      )
 
   recordings.test("report --json gives the tables alone on standard output"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)

@@ -177,11 +177,11 @@ private[onnx] object DenseGraph:
           case (Some(Fixed(tensor)), Some(flow: Flow)) if node.operator == "Add" || node.operator == "Mul" =>
             by(node.operator, flow, tensor, not)
           case _ => not("expected one with a constant behind")
-      case "Relu"    => flow(0).activated(Activation.Relu)
-      case "Elu"     =>
+      case "Relu" => flow(0).activated(Activation.Relu)
+      case "Elu"  =>
         if number("alpha", 1) != 1 then not(s"expected an alpha of 1, came ${number("alpha", 1)}")
         flow(0).activated(Activation.Elu)
-      case "Tanh" => flow(0).activated(Activation.Tanh)
+      case "Tanh"    => flow(0).activated(Activation.Tanh)
       case "Sigmoid" =>
         val halved = flow(0).copy(sums = flow(0).sums.each((w, _) => w / 2, (b, _) => b / 2))
         val tanh   = halved.activated(Activation.Tanh)

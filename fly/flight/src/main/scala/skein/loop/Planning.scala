@@ -140,7 +140,7 @@ object Planning:
     * @return or that none would: the flight would be that of `predictive` under another name
     */
   def told(fleet: Fleet): Either[String, String] =
-    val (planned, others)           = fleet.agents.partition(plans)
+    val (planned, others)            = fleet.agents.partition(plans)
     def names(agents: Vector[Agent]) =
       val more = agents.size - MostNamed
       agents.take(MostNamed).map(_.name).mkString(", ") + (if more > 0 then s" and $more more" else "")
@@ -148,7 +148,10 @@ object Planning:
       planned.nonEmpty,
       s"plan: ${names(planned)} ${if planned.sizeIs == 1 then "plans" else "plan"}; " +
         (if others.isEmpty then "there is nobody else"
-         else s"${names(others)} ${if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"}"),
+         else
+           s"${names(others)} ${
+               if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"
+             }"),
       "plan: expected a multirotor that can plan, by a GoalPolicy or by a Policy that " +
         s"pursues one opponent, came none: ${names(others)} would fly by their own policies"
     )

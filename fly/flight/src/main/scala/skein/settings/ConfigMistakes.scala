@@ -91,7 +91,8 @@ private[skein] object ConfigMistakes:
     case _                      => s"'${value.unwrapped}'"
 
   private def ofValue(value: ConfigValue, known: ConfigValue, path: String): Seq[String] =
-    def expected(what: String) = Seq(oneLine(s"${at(path, value.origin)}: expected $what, came ${text(value)}"))
+    def expected(what: String) =
+      Seq(oneLine(s"${at(path, value.origin)}: expected $what, came ${text(value)}"))
     (known, value) match
       case (known: ConfigObject, set: ConfigObject) =>
         keys(set).flatMap: (key, value) =>
@@ -99,14 +100,14 @@ private[skein] object ConfigMistakes:
           Option(known.get(key)).fold(
             Seq(unknown(value, below, known.keySet.asScala.toSeq))
           )(ofValue(value, _, below))
-      case (_: ConfigObject, _)                  => expected("settings in braces")
-      case (_: ConfigList, several: ConfigList)  =>
+      case (_: ConfigObject, _)                 => expected("settings in braces")
+      case (_: ConfigList, several: ConfigList) =>
         several.asScala.toSeq.filterNot(isSingle).map: one =>
           s"${at(path, one.origin)}: expected a list of single values, came ${text(one)} in it"
-      case (_: ConfigList, _)                    => expected("a list in brackets")
+      case (_: ConfigList, _)                                         => expected("a list in brackets")
       case _ if value.valueType == known.valueType || isSingle(value) => Nil
-      case _ if value.valueType == ConfigValueType.NULL => expected("a value")
-      case _                                            => expected("a single value")
+      case _ if value.valueType == ConfigValueType.NULL               => expected("a value")
+      case _                                                          => expected("a single value")
 
   private def isSingle(value: ConfigValue): Boolean = value.valueType match
     case ConfigValueType.NUMBER | ConfigValueType.BOOLEAN | ConfigValueType.STRING => true

@@ -336,10 +336,16 @@ object FlySettings:
           .map("predictor: " + _)
 
   private given ConfigReader[Int] =
-    parsed("whole number", text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, came '$text'"))
+    parsed(
+      "whole number",
+      text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, came '$text'")
+    )
 
   private given ConfigReader[Long] =
-    parsed("whole number", text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, came '$text'"))
+    parsed(
+      "whole number",
+      text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, came '$text'")
+    )
 
   private given ConfigReader[Double] = parsed(
     "number",

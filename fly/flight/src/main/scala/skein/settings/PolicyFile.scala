@@ -170,8 +170,13 @@ object PolicyFile:
             case other => Left(s"${at(value)}: $name: expected a finite number, came '$other'")
         yield number
       chosen = PolicyFile(role, family, parameters)
-      _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${mistake.getMessage}")
+      _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${told(family, mistake)}")
     yield chosen
+
+  /** What a family's code refuses is the file's mistake; all else that it throws is told as its own. */
+  private def told(family: PolicyFamily, mistake: Throwable): String = mistake.getCause match
+    case refusal: IllegalArgumentException => s"family ${family.name}: ${Expect.refused(refusal)}"
+    case _                                 => mistake.getMessage
 
   /** Reads [[PolicyFile.text]] back. */
   def parse(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =

@@ -48,7 +48,9 @@ object ScenarioSettings:
   /** Of which kind it is. */
   def kind(config: Config)(using scenarios: Scenarios): Either[String, ScenarioKind[?]] =
     val named = Option.when(config.hasPath(Name))(config.getString(Name)).getOrElse(scenarios.names.head)
-    scenarios.kind(named).left.map(mistake => ConfigMistakes.oneLine(s"${ConfigMistakes.at(Name, config)}: $mistake"))
+    scenarios.kind(named).left.map(mistake =>
+      ConfigMistakes.oneLine(s"${ConfigMistakes.at(Name, config)}: $mistake")
+    )
 
   /** As a recording keeps it. */
   def recorded(scenario: Scenario): Seq[ParameterRow] =
@@ -62,11 +64,13 @@ object ScenarioSettings:
       config.getValue(path) match
         case settings: ConfigObject => Right(settings.asScala.toMap)
         case other                  =>
-          Left(s"${ConfigMistakes.at(path, other.origin)}: expected settings in braces, came ${ConfigMistakes.text(other)}")
+          Left(
+            s"${ConfigMistakes.at(path, other.origin)}: expected settings in braces, came ${ConfigMistakes.text(other)}"
+          )
 
   /** A mistake that begins with a key, told by where the key's value is from. */
   private def placed(mistake: String, path: String, set: Map[String, ConfigValue]): String =
-    val key = mistake.takeWhile(_ != ':')
+    val key  = mistake.takeWhile(_ != ':')
     val told = set.get(key).fold(s"$path.$mistake"): value =>
       ConfigMistakes.at(s"$path.$key", value.origin) + mistake.drop(key.length)
     ConfigMistakes.oneLine(told)

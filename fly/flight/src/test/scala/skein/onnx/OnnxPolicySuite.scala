@@ -26,7 +26,8 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
   private def tensor(shape: Int*)(value: Int => Double): Tensor =
     Tensor(shape.toVector, Vector.tabulate(shape.product)(value(_).toFloat.toDouble))
 
-  for name <- Seq("learned:32x32", "learned:6tanhx5:clip", "learned::clip", "learned:7elux4elu", "neural:8x6") do
+  for name <- Seq("learned:32x32", "learned:6tanhx5:clip", "learned::clip", "learned:7elux4elu", "neural:8x6")
+  do
     folder.test(s"$name: a network that was written is read back, to the bit"): folder =>
       val policy = drawn(name)
       val file   = written(folder, OnnxPolicy.write(policy, "evader").fold(fail(_), identity))

@@ -61,8 +61,12 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.loops: expected a list of single values, came null in it"
     )
     assertTold("period = [100 ms]", "2: skein.fly.period: expected a single value, came a list")
-    assertTold("scenario { a = 1 }", "2: skein.fly.scenario: expected a single value, came settings in braces")
-    assertTold("planning = 3\nsurround = x",
+    assertTold(
+      "scenario { a = 1 }",
+      "2: skein.fly.scenario: expected a single value, came settings in braces"
+    )
+    assertTold(
+      "planning = 3\nsurround = x",
       "2: skein.fly.planning: expected settings in braces, came '3'",
       "3: skein.fly.surround: expected settings in braces, came 'x'"
     )
@@ -77,7 +81,10 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "3: skein.fly.planning.horizon-steps: expected a whole number, came '99999999999'",
       "3: skein.fly.planning.slowest-share: expected a finite number, came 'half'"
     )
-    assertTold("only-policies = perhaps", "2: skein.fly.only-policies: expected true or false, came 'perhaps'")
+    assertTold(
+      "only-policies = perhaps",
+      "2: skein.fly.only-policies: expected true or false, came 'perhaps'"
+    )
     assertTold("period = 0 ms", "2: skein.fly.period: expected 1 ms or more, came 0.0 ms")
     assertEquals(read("skein.fly.seed = 1e3").map(_.seed), Right(1000L))
     assert(read("skein.fly { duration = null, deadline = null, solver = null, scene = null }").isRight)

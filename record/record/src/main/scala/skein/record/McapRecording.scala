@@ -149,25 +149,25 @@ object McapRecording:
         imported(file, recording)
 
   private def imported(file: Path, recording: Path): Either[RecordError, Unit] =
-      attempt(RecordError.CannotCreate(recording, _)):
-        val folder = Files.createTempDirectory(recording.toAbsolutePath.getParent, ".skein")
-        try
-          val made = folder.resolve("recording.duckdb")
-          for
-            tables <- gather(file, folder)
-            _ <- RecordingFile.filled(made)(connection => tables.foreach(insert(_, connection))).left.map:
-              case RecordError.CannotCreate(_, reason) => RecordError.NotAnExport(file, reason)
-              case other                               => other
-            _ <- RecordingReader.read(made).left.map:
-              case RecordError.NotARecording(_, reason) => RecordError.NotAnExport(file, reason)
-              case other                                => other
-          yield
-            val _ = Files.move(made, recording)
-        finally
-          Using.resource(
-            Files.walk(folder)
-          )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-      .flatten
+    attempt(RecordError.CannotCreate(recording, _)):
+      val folder = Files.createTempDirectory(recording.toAbsolutePath.getParent, ".skein")
+      try
+        val made = folder.resolve("recording.duckdb")
+        for
+          tables <- gather(file, folder)
+          _      <- RecordingFile.filled(made)(connection => tables.foreach(insert(_, connection))).left.map:
+            case RecordError.CannotCreate(_, reason) => RecordError.NotAnExport(file, reason)
+            case other                               => other
+          _ <- RecordingReader.read(made).left.map:
+            case RecordError.NotARecording(_, reason) => RecordError.NotAnExport(file, reason)
+            case other                                => other
+        yield
+          val _ = Files.move(made, recording)
+      finally
+        Using.resource(
+          Files.walk(folder)
+        )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+    .flatten
 
   /** The rows of each table that has any, as a file of JSON, a row a line, with the length of the longest. */
   private def gather(file: Path, folder: Path): Either[RecordError, Vector[Gathered]] =

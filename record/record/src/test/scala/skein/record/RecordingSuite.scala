@@ -90,23 +90,24 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
         List(4L, 5L, 6L)
       )
 
-  folder.test("a recording is written, exported and imported whatever its folder is called, or refused at once"):
-    folder =>
-      val odd  = Files.createDirectories(folder.resolve("-md:a=b 'c' \"d\" #e%20~f*[g]$h "))
-      val file = odd.resolve("flight.duckdb")
-      record(file, Samples.oneOfEach*)
-      assert(Files.exists(file))
-      assert(Export.parquet(file, odd.resolve("parquet")).isRight)
-      assertEquals(McapRecording.write(file, odd.resolve("flight.mcap")), Right(()))
-      assertEquals(McapRecording.read(odd.resolve("flight.mcap"), odd.resolve("again.duckdb")), Right(()))
-      assert(Files.exists(odd.resolve("again.duckdb")))
-      for name <- Seq("a\\b", "a?b", "a;b") do
-        val here    = Files.createDirectories(folder.resolve(name))
-        val refused = MemoryRecorder(Samples.heading).writeTo(here.resolve("flight.duckdb"))
-        assert(clue(refused).left.exists(_.message.contains("expected a path without ';', '?' or '\\'")), name)
-        val imported = McapRecording.read(odd.resolve("flight.mcap"), here.resolve("again.duckdb"))
-        assert(clue(imported).left.exists(_.message.contains("expected a path without")), name)
-        assertEquals(here.toFile.list.toSeq, Nil, name)
+  folder.test(
+    "a recording is written, exported and imported whatever its folder is called, or refused at once"
+  ): folder =>
+    val odd  = Files.createDirectories(folder.resolve("-md:a=b 'c' \"d\" #e%20~f*[g]$h "))
+    val file = odd.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    assert(Files.exists(file))
+    assert(Export.parquet(file, odd.resolve("parquet")).isRight)
+    assertEquals(McapRecording.write(file, odd.resolve("flight.mcap")), Right(()))
+    assertEquals(McapRecording.read(odd.resolve("flight.mcap"), odd.resolve("again.duckdb")), Right(()))
+    assert(Files.exists(odd.resolve("again.duckdb")))
+    for name <- Seq("a\\b", "a?b", "a;b") do
+      val here    = Files.createDirectories(folder.resolve(name))
+      val refused = MemoryRecorder(Samples.heading).writeTo(here.resolve("flight.duckdb"))
+      assert(clue(refused).left.exists(_.message.contains("expected a path without ';', '?' or '\\'")), name)
+      val imported = McapRecording.read(odd.resolve("flight.mcap"), here.resolve("again.duckdb"))
+      assert(clue(imported).left.exists(_.message.contains("expected a path without")), name)
+      assertEquals(here.toFile.list.toSeq, Nil, name)
 
   folder.test("a recording is never overwritten"): folder =>
     val file = folder.resolve("flight.duckdb")
