@@ -191,7 +191,7 @@ lazy val record = project
 /** What a browser and Foxglove see of a flight, over WebSockets. */
 lazy val view = project
   .settings(artifact("view", "Flights in the browser and in Foxglove, live and replayed"))
-  .dependsOn(record % "compile->compile;test->test")
+  .dependsOn(link, record % "compile->compile;test->test")
   .settings(libraryDependencies ++= Seq(httpCore, upickle) ++ pekkoStream ++ munit)
 
 /** The loops; flights put together, live and in virtual time, and through faults. */

@@ -1,15 +1,16 @@
 package skein.cli
 
+import java.net.InetAddress
 import java.util.concurrent.Executors
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.http.scaladsl.Http
 import org.apache.pekko.http.scaladsl.model.*
-import org.apache.pekko.http.scaladsl.model.headers.Origin
-import org.apache.pekko.stream.scaladsl.Sink
 import scala.concurrent.{ExecutionContext, Future}
+import scala.util.Try
 import skein.cluster.{CoordinatorNode, Endpoint}
-import skein.view.{Access, HttpSystem}
+import skein.link.{Address, Seats}
+import skein.units.Clock
+import skein.view.{Access, HttpPort, HttpSystem}
 
 /** Tells how it goes to whoever asks over HTTP, `GET /metrics`: Prometheus, or a person. It has an actor
   * system and a thread of its own.
@@ -28,18 +29,17 @@ private[cli] object MetricsServer:
   ): Either[String, A] =
     val threads = Executors.newSingleThreadExecutor(Thread.ofPlatform.daemon.name("skein-metrics").factory)
     try
-      val few                   = "max-connections = 32\nrequest-timeout = 10s"
       given system: ActorSystem =
-        HttpSystem("skein-metrics", ExecutionContext.fromExecutorService(threads), few)
+        HttpSystem("skein-metrics", ExecutionContext.fromExecutorService(threads), "request-timeout = 10s")
       given ExecutionContext = ExecutionContext.parasitic
-      val bound              = Http()
-        .newServerAt(listen.host, listen.port)
-        .connectionSource()
-        .to(Sink.foreach: connection =>
-          val access = Option.when(listen.isLoopback)(Access(connection.localAddress.getPort))
-          connection.handleWithSyncHandler(answer(_, access, text)): Unit)
-        .run()
-      val serving = bound
+      val names              = if listen.isLoopback then Set.empty[String] else ownNames
+      val serving            = HttpPort
+        .bind(
+          listen.host,
+          listen.port,
+          Seats(MostConnections, Clock.system),
+          Access(_, Address(listen.host, listen.port).uriHost, listen.isLoopback, names)
+        )((request, _) => answer(request, text))
         .map(Right(_))
         .recover(error => Left(s"--metrics: cannot listen at $listen: ${error.getMessage}"))
       try
@@ -53,17 +53,20 @@ private[cli] object MetricsServer:
   private def ended(system: ActorSystem): Future[Done] =
     system.terminate().map(_ => Done)(using ExecutionContext.parasitic)
 
-  private def answer(request: HttpRequest, access: Option[Access], text: () => String)(using
-      ActorSystem
-  ): HttpResponse =
+  private def answer(request: HttpRequest, text: () => String)(using ActorSystem): HttpResponse =
     request.discardEntityBytes()
-    val origin = request.header[Origin].map(_.origins.mkString(" "))
-    access.flatMap(_.refusal(request.uri.authority.toString, origin)) match
-      case Some(why)                                 => plain(StatusCodes.Forbidden, why)
-      case None if request.method != HttpMethods.GET => plain(StatusCodes.MethodNotAllowed, "expected GET")
-      case None if request.uri.path.toString == "/metrics" =>
-        HttpResponse(entity = HttpEntity(Prometheus, text().getBytes("UTF-8")))
-      case None => plain(StatusCodes.NotFound, "expected /metrics")
+    if request.method != HttpMethods.GET then plain(StatusCodes.MethodNotAllowed, "expected GET")
+    else if request.uri.path.toString == "/metrics" then
+      HttpResponse(entity = HttpEntity(Prometheus, text().getBytes("UTF-8")))
+    else plain(StatusCodes.NotFound, "expected /metrics")
+
+  /** By which others may know this machine. */
+  private def ownNames: Set[String] =
+    Try(InetAddress.getLocalHost).toOption.toSet.flatMap(own =>
+      Set(own.getHostName, own.getCanonicalHostName)
+    )
+
+  private val MostConnections = 32
 
   private def plain(status: StatusCode, why: String) = HttpResponse(status, entity = why + "\n")
 
