@@ -102,15 +102,21 @@ let seeking = false;
 
 function draw(at) {
   requestAnimationFrame(draw);
-  if (!changed || !flight) return;
-  changed = false;
-  window.skein.frames++;
-  map.draw(flight);
-  if (at - drawn < 200) return;
+  if (!flight) return;
+  if (changed) {
+    changed = false;
+    stale = true;
+    window.skein.frames++;
+    map.draw(flight);
+  }
+  // What came last is drawn, too, when nothing follows.
+  if (!stale || at - drawn < 200) return;
+  stale = false;
   drawn = at;
   plots.draw(flight);
   words();
 }
+let stale = false;
 let drawn = 0, told = -1;
 
 function words() {
