@@ -203,7 +203,7 @@ lazy val record = project.in(file("record/record"))
 /** What a browser and Foxglove see of a flight, over WebSockets. */
 lazy val view = project.in(file("record/view"))
   .settings(artifact("view", "Flights in the browser and in Foxglove, live and replayed"))
-  .dependsOn(record % "compile->compile;test->test")
+  .dependsOn(link, record % "compile->compile;test->test")
   .settings(libraryDependencies ++= Seq(httpCore, upickle) ++ pekkoStream ++ munit)
 
 /** The loops; flights put together, live and in virtual time. */

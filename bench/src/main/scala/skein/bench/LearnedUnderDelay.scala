@@ -26,7 +26,7 @@ object LearnedUnderDelay:
 
   /** @param captures flights in which the pursuer came as near as [[CaptureM]]
     */
-  private final case class Row(
+  private[bench] final case class Row(
       policy: String,
       loop: String,
       link: String,
@@ -61,7 +61,7 @@ object LearnedUnderDelay:
 
   private def flownBy(side: String, folder: Path, flights: Int, seed: String): Vector[Row] =
     val taught = Vector("paused" -> "none", "stream" -> "vpn").map: (loop, link) =>
-      s"trained under $loop over $link" -> learned(
+      s"trained ${timing(loop, link)}" -> learned(
         folder.resolve(s"$side-$loop-$link"),
         question(side, loop, link, seed)
       )
@@ -128,14 +128,18 @@ object LearnedUnderDelay:
 
   private val colours = Vector(Colour(0x111111), Colour(0x009e73), Colour(0xd55e00), Colour(0x0072b2))
 
+  /** Under which a policy is trained or flown. */
+  private def timing(loop: String, link: String) =
+    if loop == "paused" then "on the paused simulator" else s"under $loop over $link"
+
   /** A row per loop and policy: the mean as a disc, a standard deviation to either side. */
-  private def picture(side: String, rows: Vector[Row]): Drawing =
+  private[bench] def picture(side: String, rows: Vector[Row]): Drawing =
     val most   = rows.map(row => row.distance.mean + row.distance.sd).max
     val height = 20.0 * rows.size
     val panel  = Panel(
       PlotAxis.around("distance over the last 10 s, m", 0, most),
       PlotAxis.exactly("", 0, rows.size.toDouble, 1).copy(ticks = Vector.empty),
-      left = 360,
+      left = 400,
       top = 34,
       width = 460,
       height
@@ -149,7 +153,7 @@ object LearnedUnderDelay:
       Vector(
         Mark.Text(
           Point(panel.left - 10, y + 4),
-          s"${row.loop} over ${row.link}: ${row.policy}",
+          s"flown ${timing(row.loop, row.link)}: ${row.policy}",
           Theme.labelSize,
           Theme.labelColour,
           Anchor.End

@@ -18,8 +18,7 @@ object BudgetFigure:
     */
   def apply(maps: Vector[BudgetMap]): Drawing =
     val (_, unit) = maps.head.tolerance.shown(maps.head.unit)
-    val most      = maps.map(largest).max
-    val scale     = ColourScale.aroundZero(most)
+    val scale     = scaleOf(maps)
     val cells     = maps.map(panel(_, scale))
     val title     =
       s"${maps.head.policy}: ${maps.head.objective}, how far off the paused truth, $unit".stripSuffix(", ")
@@ -31,25 +30,40 @@ object BudgetFigure:
         Mark.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
         Mark.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize)
       ) ++
-        Legend(
-          62,
-          Legend.line(s"${maps.head.tolerance.text(maps.head.unit)} off the truth", limit),
-          Legend.box("no such link: jitter without latency", empty)
-        ).shapes.map(_.moved(0, 40))
+        Legend(62, legend(maps)*).shapes.map(_.moved(0, 40))
     )
     Drawing.stacked(head, grid)
 
-  private def panel(map: BudgetMap, scale: ColourScale): Drawing =
-    val per            = map.legs.perRoundTrip
-    val (factor, unit) = map.tolerance.shown(map.unit)
-    val budget         = map.budget
-    val heat           = HeatMap(
-      budget.meansMs.map(_ / per),
-      budget.jittersMs.map(_ / per),
-      budget.jittersMs.indices.toVector.map: i =>
-        budget.meansMs.indices.toVector.map(j => budget.deviation(i, j).map(_ * factor))
+  /** Of what is drawn of any of the maps. */
+  private[budget] def legend(maps: Vector[BudgetMap]): Vector[Legend.Item] =
+    val isPassed = maps.exists(contoursOf(_).nonEmpty)
+    val hasGaps  = maps.exists(heatOf(_).values.exists(_.exists(_.isEmpty)))
+    Option.when(isPassed)(Legend.line(
+      s"${maps.head.tolerance.text(maps.head.unit)} off the truth",
+      limit
+    )).toVector ++
+      Option.when(hasGaps)(Legend.box("no such link: jitter without latency", empty))
+
+  private def heatOf(map: BudgetMap): HeatMap =
+    val per         = map.legs.perRoundTrip
+    val (factor, _) = map.tolerance.shown(map.unit)
+    HeatMap(
+      map.budget.meansMs.map(_ / per),
+      map.budget.jittersMs.map(_ / per),
+      map.budget.jittersMs.indices.toVector.map: i =>
+        map.budget.meansMs.indices.toVector.map(j => map.budget.deviation(i, j).map(_ * factor))
     )
-    val panel = Panel(
+
+  private def contoursOf(map: BudgetMap) =
+    val (factor, _) = map.tolerance.shown(map.unit)
+    Vector(-1, 1).map(_ * map.tolerance.value * factor).flatMap(heatOf(map).contour)
+
+  private def panel(map: BudgetMap, scale: ColourScale): Drawing =
+    val per       = map.legs.perRoundTrip
+    val (_, unit) = map.tolerance.shown(map.unit)
+    val budget    = map.budget
+    val heat      = heatOf(map)
+    val panel     = Panel(
       PlotAxis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
       PlotAxis.exactly("jitter p99 − p50, ms", heat.ys.head, heat.ys.last),
       left = 62,
@@ -57,11 +71,7 @@ object BudgetFigure:
       width,
       height
     )
-    val contours =
-      for
-        level  <- Vector(-1, 1).map(_ * map.tolerance.value * factor)
-        (a, b) <- heat.contour(level)
-      yield Mark.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
+    val contours = contoursOf(map).map((a, b) => Mark.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit))
     val marks = map.marks.filter(map.isOnMap).flatMap: link =>
       val at = panel.at(link.roundTrip.mean.toMillis / per, link.roundTrip.jitter.toMillis / per)
       Vector(
@@ -86,16 +96,23 @@ object BudgetFigure:
         ) ++ panel.xAxis ++ panel.yAxis
     )
 
-  /** The largest deviation of most cells: a few wild ones shall not make the others pale, nor those with a
+  /** For the deviations of most cells: a few wild ones shall not make the others pale, nor those with a
     * flight that never came to a measure.
     */
-  private def largest(map: BudgetMap): Double =
-    val (factor, _) = map.tolerance.shown(map.unit)
-    val sizes       =
+  private[budget] def scaleOf(maps: Vector[BudgetMap]): ColourScale =
+    val offs =
       for
+        map <- maps
+        (factor, _) = map.tolerance.shown(map.unit)
         i   <- map.budget.jittersMs.indices
         j   <- map.budget.meansMs.indices
         off <- map.budget.deviation(i, j)
         if off.abs * map.budget.per < WholeFlights.Never / (2 * map.episodes)
-      yield off.abs * factor
-    sizes.sorted.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(2 * map.tolerance.value * factor)
+      yield off * factor
+    val leastReach = maps.map(map => 2 * map.tolerance.value * map.tolerance.shown(map.unit)._1).max
+    val sizes      = offs.map(_.abs).sorted
+    val reach      = sizes.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(leastReach)
+    ColourScale.aroundZero(
+      offs.minOption.getOrElse(0.0).min(0).max(-reach),
+      if offs.forall(_ <= 0) && offs.nonEmpty then 0 else reach
+    )

@@ -71,7 +71,7 @@ final class DecideCommand(using scenarios: Scenarios)
   private def tcp(address: Address, secured: SolverSecurity.Checked): Serving = desk =>
     try
       val transport = TcpTransport(certificates = secured.certificates)
-      val server    = Edge.await(SolverServer.start(address, transport, desk))
+      val server    = Edge.await(SolverServer.start(address, transport, desk, Clock.system))
       Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
       Right(Served(() => server.close()))
     catch case error: TransportError => Left(error.getMessage)

@@ -98,7 +98,9 @@ final class FlyCommand(using Scenarios)
             shows    = Shows()
             requests = OutsideRequests()
             shown    =
-              Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.imagingSensors))
+              Option.when(options.view.view.value)(
+                OnShow(shows, requests, scene, settings.imagingSensors, settings.scenario)
+              )
             live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured, isTcp)
             flown <- options.view.serving(shows, controlled = true)(live.fly(plans))
           yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), twins, out)))

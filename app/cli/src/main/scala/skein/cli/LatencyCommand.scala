@@ -6,7 +6,7 @@ import org.apache.pekko.stream.scaladsl.Sink
 import scala.concurrent.Future
 import scala.util.{Failure, Success, Try}
 import skein.airsim.{AirSimClient, AirSimError}
-import skein.figures.LatencyFigure
+import skein.figures.{FlightTheme, LatencyFigure}
 import skein.link.*
 import skein.measure.Distribution
 import skein.report.{Section, TextHistogram, TextTable}
@@ -55,8 +55,11 @@ object LatencyCommand
       failures   = answers.collect { case Failure(reason) => reason.getMessage }
       roundTrips = answers.collect { case Success(roundTrip) => roundTrip.toMillis }
       samples <- Distribution.of(roundTrips).toRight(s"no ping was answered: ${failures.mkString("; ")}")
-      drawing <- LatencyFigure(Seq(profile.name -> samples)).toRight("nothing to draw")
-      files   <- OutFolder.write(folder, OutFolder.picture("latency", drawing, s"Round trips to $simulator"))
+      isDirect = link.profile == LinkProfile.none
+      title    = s"to $simulator" + (if isDirect then "" else s", ${FlightTheme.link(profile.name)}")
+      drawing <-
+        LatencyFigure(Seq(LatencyFigure.Measured(title, profile.name, samples))).toRight("nothing to draw")
+      files <- OutFolder.write(folder, OutFolder.picture("latency", drawing, s"Round trips to $simulator"))
     yield
       val shown = Shown(options.json.value)
       val table = quantileTable(profile, samples)

@@ -7,7 +7,8 @@ import skein.flight.{LiveFlights, OutsideRequests}
 import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
 import skein.record.{RecordingHeader, Record, ImagingSensor, Topic}
 import skein.scene.Scene
-import skein.units.Span
+import skein.scenario.Scenario
+import skein.units.{Clock, Span}
 import skein.view.{FlightControl, Feed, Gauge, LiveShow, Shows}
 
 /** Live flights on show, each with its records and its graph as it runs. */
@@ -15,7 +16,8 @@ private[cli] final class OnShow(
     shows: Shows,
     requests: OutsideRequests,
     scene: Scene,
-    sensors: Vector[ImagingSensor]
+    sensors: Vector[ImagingSensor],
+    scenario: Scenario
 ):
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
 
@@ -24,13 +26,13 @@ private[cli] final class OnShow(
     val feed  = Feed()
     val gauge = GraphGauge()
     graphs.put(heading.flight.id, gauge): Unit
-    val graph    = Gauge(OnShow.topic, Span.ofMillis(500), gauge.json)
+    val graph    = Gauge(OnShow.topic, Span.ofMillis(500), () => Some(gauge.json()))
     val controls =
       FlightControl.values.map(control => control -> (() => act(control, heading.flight.id)))
     shows.add(LiveShow(
       heading,
       feed,
-      Vector(graph),
+      Vector(ScenarioGauge(scenario, heading.vehicles.map(_.name).toVector, Clock.system).gauge, graph),
       controls = controls.toMap,
       scene = scene,
       sensors = sensors

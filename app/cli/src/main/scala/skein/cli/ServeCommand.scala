@@ -11,6 +11,7 @@ import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
 import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
 import skein.units.{Clock, Expect}
+import skein.view.Shows
 
 /** Options of `./skein serve`. */
 final case class ServeOptions(
@@ -47,7 +48,8 @@ final case class ServeOptions(
       "lets an external autopilot fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), " +
         "ardupilot (JSON, UDP 9002, 9012, …) or betaflight (UDP 9002, one vehicle)"
     )
-    hil: Option[String]
+    hil: Option[String],
+    view: ViewOptions
 )
 
 /** `./skein serve`: runs the built-in simulator until Ctrl-C. */
@@ -87,17 +89,21 @@ object ServeCommand
         s"--mavlink-instance: expected 0 to $mostInstance, came $instance"
       mavlink =
         Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host, instance))
-      hil = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
-      _ <- serve(
-        SimulatorSettings(
-          world,
-          address,
-          overload,
-          options.speed,
-          scene = scene.scene,
-          mavlink = mavlink,
-          hil = hil,
-          kind = kind
+      hil   = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
+      shows = Shows()
+      _ <- options.view.serving(shows)(
+        serve(
+          SimulatorSettings(
+            world,
+            address,
+            overload,
+            options.speed,
+            scene = scene.scene,
+            mavlink = mavlink,
+            hil = hil,
+            kind = kind
+          ),
+          Option.when(options.view.view.value)(shows)
         )
       )
     yield ()
@@ -123,7 +129,7 @@ object ServeCommand
       supported <- SimulatorSettings.supported(world).left.map(error => s"$file: ${error.message}")
     yield supported
 
-  private def serve(settings: SimulatorSettings): Either[String, Unit] =
+  private def serve(settings: SimulatorSettings, shows: Option[Shows]): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")
     try
       val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
@@ -146,9 +152,11 @@ object ServeCommand
       // What it runs is compiled by then.
       val leading =
         system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
+      val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
       val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
       telling.cancel()
       leading.cancel()
+      shown.foreach(_.cancel())
       Edge.await(server.close())
       outcome
     catch case error: TransportError => Left(error.getMessage)

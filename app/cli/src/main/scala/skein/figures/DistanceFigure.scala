@@ -2,15 +2,20 @@ package skein.figures
 
 import skein.measure.{Distribution, FlightSet, FlightSummary}
 import skein.plot.*
+import skein.units.Decimals.brief
 
 /** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a
-  * panel stand mean and range of the last 10 s for each curve in the legend's order: ours as a coloured disc,
-  * the paper's as a black diamond.
+  * panel stand mean and range of the last 10 s of each flight, above its name: ours as a coloured disc, the
+  * paper's as a black diamond. The axis fits our curves; where a range of the paper's goes on beyond it, an
+  * arrow says how far, or where the mean is.
   */
 object DistanceFigure:
   private val plotWidth  = 830.0
   private val plotHeight = 220.0
   private val slotWidth  = 26.0
+
+  /** Of a small text. */
+  private val letterWidth = 4.9
 
   def apply(set: FlightSet): Option[Drawing] =
     val linksOfNote = set.links.filter(link => set.over(link).exists(flight => !set.truth.contains(flight)))
@@ -26,7 +31,7 @@ object DistanceFigure:
     val curves    = flights.flatMap(summary => summary.distance.map(summary -> _))
     val published =
       flights.flatMap(summary => summary.published.flatMap(_.distance))
-    val highest = (curves.flatMap(_._2.points.map(_._2)) ++ published.map(_.most)).max
+    val highest = curves.flatMap(_._2.points.map(_._2)).max
     val panel   = Panel(
       PlotAxis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
       PlotAxis.around("distance, m", 0, highest),
@@ -43,6 +48,16 @@ object DistanceFigure:
       case ((summary, curve), index) =>
         val x = stripsLeft + (index + 0.5) * slotWidth
         curve.lastTenSeconds.toVector.flatMap(strip(panel, x, summary, _))
+    val named = curves.zipWithIndex.collect:
+      case ((summary, curve), index) if curve.lastTenSeconds.isDefined =>
+        Mark.Text(
+          Point(stripsLeft + (index + 0.5) * slotWidth + 3, panel.bottom + 8),
+          summary.name,
+          Theme.smallSize,
+          anchor = Anchor.End,
+          upwards = true
+        )
+    val below = named.map(_.content.length).maxOption.fold(0.0)(_ * letterWidth + 12)
     val above = Point(stripsLeft, panel.top - 10)
     val signs = Seq(curves.flatMap(_._2.lastTenSeconds) -> "ours ●", published -> "paper ◆")
       .collect { case (values, sign) if values.nonEmpty => sign }
@@ -50,8 +65,8 @@ object DistanceFigure:
       Option.when(signs.nonEmpty)(Mark.Text(above, signs.mkString("last 10 s: ", ", ", ""), Theme.tickSize))
     val drawn = Drawing(
       stripsLeft + stripsWidth + 50,
-      plotHeight + 84,
-      panel.axes ++ heading ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++ lines ++ strips
+      plotHeight + 84.0.max(panel.top + below),
+      panel.axes ++ heading ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++ lines ++ strips ++ named
     )
     Legend.titled(panel, FlightTheme.link(link), drawn, FlightTheme.names(flights, strokes)*)
 
@@ -62,12 +77,19 @@ object DistanceFigure:
       Mark.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
     )
     val paper = summary.published.flatMap(_.distance).toVector.flatMap: published =>
-      Vector(
-        Mark.line(
-          Point(x + 5, panel.atY(published.least)),
-          Point(x + 5, panel.atY(published.most)),
-          Stroke(FlightTheme.published, 1.2)
-        ),
-        FlightTheme.diamond(Point(x + 5, panel.atY(published.mean)))
-      )
+      val isMeanSeen = published.mean <= panel.y.to
+      val top        = Point(x + 5, panel.atY(published.most.min(panel.y.to)))
+      val low = Point(x + 5, panel.atY(published.least.min(panel.y.to - (panel.y.to - panel.y.from) * 0.06)))
+      val diamond =
+        Option.when(isMeanSeen)(FlightTheme.diamond(Point(x + 5, panel.atY(published.mean)))).toVector
+      val goesOn =
+        if published.most <= panel.y.to then Vector.empty
+        else
+          val head = Vector(top.moved(-3, 5), top, top.moved(3, 5))
+          val text = if isMeanSeen then s"to ${published.most.brief} m" else s"◆ ${published.mean.brief} m"
+          Vector(
+            Mark.Path(head, Some(Stroke(FlightTheme.published, 1.2))),
+            Mark.Text(top.moved(5, 8), text, Theme.smallSize)
+          )
+      (Mark.line(low, top, Stroke(FlightTheme.published, 1.2)) +: goesOn) ++ diamond
     ours ++ paper

@@ -33,7 +33,8 @@ object Figure:
         "Distance between where a vehicle was predicted to be and where it then was, " +
           "by how far its reading was carried forward, in bins of " +
           s"${PredictionErrors.BinMs} ms: medians and 95 % quantiles; " +
-          s"bins with fewer than ${PredictionErrors.Fewest} predictions are left out.",
+          s"bins with fewer than ${PredictionErrors.Fewest} predictions are left out, and one or two bins without " +
+          "neighbours are discs.",
         drawing
       )
 
@@ -45,7 +46,8 @@ object Figure:
         "Distance over time",
         "Horizontal distance between pursuer and evader at equal instants of the " +
           "simulator's clock. Right of each panel, mean and range over the last 10 " +
-          "s in the legend's order: ours as coloured discs, the paper's as black diamonds.",
+          "s of each flight: ours as coloured discs, the paper's as black diamonds; an arrow says how far a " +
+          "range of the paper's goes on beyond the axis, or where its mean is.",
         drawing
       )
 
@@ -54,7 +56,7 @@ object Figure:
     Figure(
       "trajectories",
       "Trajectories",
-      "Seen from above, north up, with equal scales on both axes of a panel. The pursuer has " +
+      "Seen from above, north up, all panels of one scale, which is that of both axes. The pursuer has " +
         "the colour of its loop, the evader is grey; rings are starts, discs are ends.",
       drawing
     )
@@ -68,14 +70,15 @@ object Figure:
     val above = Figure(
       s"$name-trajectories",
       s"$title: trajectories",
-      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends. In the legend " +
-        "the vehicles of a role stand in the fleet's order.",
+      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends. Where vehicles " +
+        "flew the same way, the wider line is that of the earlier one in the legend. A red ring is where a limit was " +
+        "broken worst.",
       ScenarioFigure.trajectories(flown)
     )
-    val altitudes = Option.when(!flown.scenario.isPlanar)(Figure(
+    val altitudes = Option.when(ScenarioFigure.hasAltitudes(flown))(Figure(
       s"$name-altitudes",
       s"$title: altitudes",
-      "Above the origin, all panels of one scale.",
+      "Above the origin, all panels of one scale; limits of altitude where they are near, or were broken.",
       ScenarioFigure.altitudes(flown)
     ))
     val series = flown.scenario.series.zipWithIndex.map: (one, index) =>

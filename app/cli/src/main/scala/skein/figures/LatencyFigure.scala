@@ -9,16 +9,23 @@ import skein.units.Decimals.brief
   * the link's profile, which for `direct` and `vpn` are the paper's own samples.
   */
 object LatencyFigure:
-  private val measured     = Colour(0x7aa6c2)
+  private val bar          = Colour(0x7aa6c2)
   private val profileLine  = Stroke(FlightTheme.published, 1.1)
   private val halvesLine   = Stroke(Colour(0xd55e00), 1.3)
   private val quantileLine = Stroke(FlightTheme.published.faded(0.6), 0.8, Vector(3, 2))
 
-  /** @param roundTripsMs by the name of the link, in the order of the panels
+  /** One panel.
+    *
+    * @param title of what was measured
+    * @param link its profile is drawn beside it, if it has one
     */
-  def apply(roundTripsMs: Seq[(String, Distribution)]): Option[Drawing] =
-    Option.when(roundTripsMs.nonEmpty):
-      Drawing.stacked(Drawing.grid(roundTripsMs.map(panel(_, _)), columns = 3.min(roundTripsMs.size)), legend)
+  final case class Measured(title: String, link: String, roundTripsMs: Distribution)
+
+  /** In the order of the panels. */
+  def apply(measured: Seq[Measured]): Option[Drawing] =
+    Option.when(measured.nonEmpty):
+      val panels = Drawing.grid(measured.map(panel), columns = 3.min(measured.size))
+      Drawing.stacked(panels, legend(measured, panels.width - 52))
 
   def apply(set: FlightSet): Option[Drawing] =
     apply:
@@ -27,10 +34,11 @@ object LatencyFigure:
         samples <- Distribution.of(set.over(link).flatMap(_.roundTripsMs).flatMap(_.sorted))
         // Virtual flights without a network have but one round trip.
         if samples.sorted.head < samples.sorted.last
-      yield (link, samples)
+      yield Measured(FlightTheme.link(link), link, samples)
 
-  private def panel(link: String, samples: Distribution): Drawing =
-    val profile = profileOf(link)
+  private def panel(measured: Measured): Drawing =
+    val samples = measured.roundTripsMs
+    val profile = profileOf(measured.link)
     val most    = axisEndMs(samples, profile)
     val step    = binWidthMs(most)
     val width   = BigDecimal(step).bigDecimal.stripTrailingZeros.toPlainString
@@ -57,7 +65,7 @@ object LatencyFigure:
           panel.atY(percent),
           panel.atX((bin + 1) * step) - 0.5,
           panel.bottom,
-          measured
+          bar
         )
     val lines = Vector(density -> profileLine, halves -> halvesLine).collect:
       case (points, stroke) if points.nonEmpty => panel.curve(points, stroke)
@@ -70,7 +78,7 @@ object LatencyFigure:
       "max"    -> samples.most
     ).map((name, ms) => s"$name ${ms.brief}").mkString(s"n ${samples.count}, ", ", ", " ms")
     val titles = Vector(
-      panel.title(FlightTheme.link(link)).moved(0, -14),
+      panel.title(measured.title).moved(0, -14),
       Mark.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize)
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
@@ -82,14 +90,19 @@ object LatencyFigure:
     val longest = samples.most.min(1.25 * samples.p99)
     profile.fold(longest)(known => known.quantile(1).toMillis.max(longest))
 
-  private def legend: Drawing =
-    Legend(
-      52,
-      Legend.box("measured", measured),
-      Legend.line("the link's profile", profileLine),
-      Legend.line("its quantiles", quantileLine),
-      Legend.line("half of a sample each way, as emulated", halvesLine)
-    )
+  /** Of what is drawn. */
+  private def legend(measured: Seq[Measured], width: Double): Drawing =
+    val profiles = measured.flatMap(one => profileOf(one.link))
+    val items    = Seq(
+      Some(Legend.box("measured", bar)),
+      Option.when(profiles.exists(densityOf(_, step = 1).nonEmpty))(Legend.line(
+        "the link's profile",
+        profileLine
+      )),
+      Option.when(profiles.nonEmpty)(Legend.line("its quantiles", quantileLine)),
+      Option.when(profiles.nonEmpty)(Legend.line("half of a sample each way, as emulated", halvesLine))
+    ).flatten
+    Legend.rows(52, width, items*)
 
   /** The profile's 5, 50 and 95 % quantiles. */
   private def quantileMarks(panel: Panel, profile: LatencyDistribution): Vector[Mark] =

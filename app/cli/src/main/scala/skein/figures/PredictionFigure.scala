@@ -5,7 +5,8 @@ import skein.plot.*
 
 /** Prediction error by how far readings were carried forward, a panel per loop and link: medians and 95 %
   * quantiles, each with dashes of its own; of the deciding vehicle itself in colour, of others in grey. A
-  * line ends where nothing was measured, and what stands alone is a disc, of a 95 % quantile a hollow one.
+  * line ends where too little was measured, and fewer than three neighbours are discs, of a 95 % quantile
+  * hollow ones.
   */
 object PredictionFigure:
   val name = "prediction"
@@ -15,7 +16,7 @@ object PredictionFigure:
     val panels = drawn.map(panel)
     Option.when(panels.nonEmpty)(Drawing.stacked(
       Drawing.grid(panels, columns = 3.min(panels.size)),
-      legend(kinds.filter(kind => drawn.exists(kind.of(_).byAge.nonEmpty)).reverse)
+      legend(drawn, kinds.filter(kind => drawn.exists(kind.of(_).byAge.nonEmpty)).reverse)
     ))
 
   /** Whose predictions. */
@@ -63,34 +64,39 @@ object PredictionFigure:
         kind    <- kinds
         share   <- shares
         stretch <- kind.of(group).stretches
-      yield line(
-        panel,
-        stretch.map((age, errors) => (age.toDouble, 1000 * share.ofM(errors))),
-        share.stroke(kind),
-        share.isHollow
-      )
+        mark    <- marks(
+          panel,
+          stretch.map((age, errors) => (age.toDouble, 1000 * share.ofM(errors))),
+          share.stroke(kind),
+          share.isHollow
+        )
+      yield mark
     val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
-  private def line(
+  /** Two points are no curve. */
+  private val FewestOfCurve = 3
+
+  private def marks(
       panel: Panel,
       points: Vector[(Double, Double)],
       stroke: Stroke,
       isHollow: Boolean
-  ): Mark = points match
-    case Vector((x, y)) if isHollow =>
-      Mark.Disc(panel.at(x, y), 2.6, Some(Stroke(stroke.colour, 1.2)), Some(FlightTheme.halo))
-    case Vector((x, y)) => Mark.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour))
-    case several        => panel.curve(several, stroke)
+  ): Vector[Mark] =
+    if points.sizeIs >= FewestOfCurve then Vector(panel.curve(points, stroke))
+    else points.map((x, y) => sign(panel.at(x, y), stroke, isHollow))
+
+  private def sign(at: Point, stroke: Stroke, isHollow: Boolean): Mark =
+    if isHollow then Mark.Disc(at, 2.6, Some(Stroke(stroke.colour, 1.2)), Some(FlightTheme.halo))
+    else Mark.Disc(at, 2.6, None, Some(stroke.colour))
+
+  /** As the marks of the curves are, where there is a curve, and of discs where there are only these. */
+  private def item(groups: Vector[PredictionGroup], kind: Kind, share: Share): Legend.Item =
+    val label   = s"${kind.name}, ${share.name}"
+    val isCurve = groups.exists(kind.of(_).stretches.exists(_.sizeIs >= FewestOfCurve))
+    if isCurve then Legend.line(label, share.stroke(kind))
+    else Legend.Item(label, 8, at => Vector(sign(at.moved(4, 0), share.stroke(kind), share.isHollow)))
 
   /** A row for each, so that it is no wider than a panel. */
-  private def legend(kinds: Vector[Kind]): Drawing = Drawing.stacked(
-    kinds.map(kind =>
-      Legend(
-        52,
-        shares.map(share =>
-          Legend.line(s"${kind.name}, ${share.name}", share.stroke(kind))
-        )*
-      )
-    )*
-  )
+  private def legend(groups: Vector[PredictionGroup], kinds: Vector[Kind]): Drawing =
+    Drawing.stacked(kinds.map(kind => Legend(52, shares.map(item(groups, kind, _))*))*)

@@ -3,7 +3,7 @@ package skein.figures
 import java.util.Locale
 import skein.measure.ScenarioFlights
 import skein.plot.*
-import skein.scenario.{Curve, Result, Scenario, Series}
+import skein.scenario.{Curve, Fence, Kept, Limit, Result, Scenario, Series}
 
 /** Pictures of a scenario's flights: where the vehicles flew, and what it draws over time. */
 object ScenarioFigure:
@@ -21,22 +21,49 @@ object ScenarioFigure:
     val span   = (norths.max - norths.min).max(easts.max - easts.min).max(1) * 1.06
     val east   = PlotAxis.centred("east y, m", easts, span)
     val north  = PlotAxis.centred("north x, m", norths, span)
-    val panels = flown.flights.map: flight =>
+    val fences = flown.scenario.limits.flatMap(_.kept).collect { case Kept.Inside(fence) => fence }
+    def fence(panel: Panel) = fences.flatMap(outline(panel, _))
+    val panels              = flown.flights.map: flight =>
       val panel = Panel(east, north, 52, 34, side, side)
       val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(
         side + 72,
         side + 82,
-        (title +: panel.axes) ++ paths(panel, flight.result) ++ broken(panel, flight.result)
+        (title +: panel.axes) ++ fence(panel) ++ paths(panel, flight.result) ++ broken(panel, flight.result)
       )
+    val grid     = Drawing.grid(panels, columns = 4.min(panels.size))
+    val isFenced = fence(Panel(east, north, 0, 0, side, side)).nonEmpty
     Drawing.stacked(
-      Drawing.grid(panels, columns = 4.min(panels.size)),
-      Legend(52, legend(flown)*)
+      grid,
+      Legend.rows(
+        52,
+        grid.width - 52,
+        (legend(flown) ++ Option.when(isFenced)(Legend.line("geofence", boundLine)))*
+      )
     )
+
+  /** As far as it lies in the panel. */
+  private def outline(panel: Panel, fence: Fence): Vector[Mark] =
+    val corners = fence match
+      case Fence.Circle(north, east, radius) =>
+        Vector.tabulate(181): degree =>
+          val angle = math.toRadians(2.0 * degree)
+          (north + radius * math.cos(angle), east + radius * math.sin(angle))
+      case Fence.Polygon(corners) => corners :+ corners.head
+    val fine = corners.zip(corners.drop(1)).flatMap { case ((n0, e0), (n1, e1)) =>
+      Vector.tabulate(50)(step => (n0 + (n1 - n0) * step / 50, e0 + (e1 - e0) * step / 50))
+    } :+ corners.last
+    def isIn(at: (Double, Double)) =
+      at._1 >= panel.y.from && at._1 <= panel.y.to && at._2 >= panel.x.from && at._2 <= panel.x.to
+    Vector
+      .unfold(fine): left =>
+        val (stretch, rest) = left.dropWhile(!isIn(_)).span(isIn)
+        Option.when(stretch.nonEmpty)((stretch, rest))
+      .map(stretch => panel.curve(stretch.map(_.swap), boundLine))
 
   private def paths(panel: Panel, result: Result): Vector[Mark] =
     val track   = result.tracks
-    val strokes = VehicleTheme.of(result.scenario, 1)
+    val strokes = layered(result.scenario, 1)
     track.vehicles.toVector.flatMap: vehicle =>
       val stroke           = strokes(vehicle)
       val colour           = stroke.colour
@@ -50,6 +77,14 @@ object ScenarioFigure:
         Mark.Disc(at(track.instants.last), 3, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
       )
 
+  /** Lines that get thinner from vehicle to vehicle, so that those who fly the same way are all seen. */
+  private def layered(scenario: Scenario, width: Double): Vector[Stroke] =
+    val strokes = VehicleTheme.of(scenario, width)
+    if strokes.sizeIs > MostNamed then strokes
+    else
+      strokes.zipWithIndex.map: (stroke, vehicle) =>
+        stroke.copy(width = width + WidestMore * (strokes.size - 1 - vehicle) / (strokes.size - 1).max(1))
+
   private def broken(panel: Panel, result: Result): Vector[Mark] =
     for
       violation <- result.violations
@@ -59,30 +94,51 @@ object ScenarioFigure:
       val place   = panel.at(result.tracks.eastM(vehicle)(instant), result.tracks.northM(vehicle)(instant))
       Mark.Disc(place, 5, Some(Stroke(red, 1.2)))
 
-  /** Every vehicle's altitude over time, one panel per flight, all panels of one scale. */
+  /** Whether altitudes differ, or are limited. */
+  def hasAltitudes(flown: ScenarioFlights): Boolean =
+    !flown.scenario.isPlanar || flown.flights.exists(_.result.violations.exists(at =>
+      altitudeOf(at.limit).isDefined
+    ))
+
+  private def altitudeOf(limit: Limit): Option[Double] = limit.kept.collect:
+    case Kept.Above(least) => least
+    case Kept.Below(most)  => most
+
+  /** Every vehicle's altitude over time, one panel per flight, all panels of one scale; limits of altitude
+    * where they were broken or are near, and a red ring where one was broken worst.
+    */
   def altitudes(flown: ScenarioFlights): Drawing =
     val tracks = flown.flights.map(_.result.tracks)
-    val most   = -tracks.flatMap(_.downM.map(_.min)).min
-    val least  = -tracks.flatMap(_.downM.map(_.max)).max
+    val broken = flown.flights.flatMap(_.result.violations).map(_.limit).distinct
+    val most   = (-tracks.flatMap(_.downM.map(_.min)).min +: broken.flatMap(altitudeOf)).max
+    val least  = (-tracks.flatMap(_.downM.map(_.max)).max +: broken.flatMap(altitudeOf)).min.min(0)
+    val axis   = PlotAxis.around("altitude, m", least, most)
+    val near   = flown.scenario.limits.filter(altitudeOf(_).exists(at => at >= axis.from && at <= axis.to))
     val panels = flown.flights.map: flight =>
       val track = flight.result.tracks
       val panel = Panel(
         PlotAxis.around("time, s", 0, tracks.map(_.lastS).max, 8),
-        PlotAxis.around("altitude, m", least.min(0), most),
+        axis,
         52,
         34,
         plotWidth / 2,
         plotHeight
       )
-      val strokes = VehicleTheme.of(flight.result.scenario, 1.2)
+      val strokes = layered(flight.result.scenario, 1.2)
       val lines   = track.vehicles.toVector.map: vehicle =>
         panel.curve(
           track.instants.map(instant => (track.timeS(instant), track.altitudeM(vehicle, instant))),
           strokes(vehicle)
         )
+      val rings = flight.result.violations.filter(at => altitudeOf(at.limit).isDefined).map: violation =>
+        Mark.Disc(panel.at(violation.worstAtS, violation.worst), 5, Some(Stroke(red, 1.2)))
+      val held  = near.flatMap(altitudeOf).map(panel.level(_, boundLine))
       val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
-      Drawing(plotWidth / 2 + 76, plotHeight + 84, (title +: panel.axes) ++ lines)
-    Drawing.stacked(Drawing.grid(panels, columns = 2.min(panels.size)), Legend(52, roles(flown.scenario)*))
+      Drawing(plotWidth / 2 + 76, plotHeight + 84, (title +: panel.axes) ++ held ++ lines ++ rings)
+    val grid  = Drawing.grid(panels, columns = 2.min(panels.size))
+    val items = vehicles(flown.scenario) ++ near.map(limit => Legend.line(limit.text, boundLine)) ++
+      Option.when(broken.exists(altitudeOf(_).isDefined))(brokenItem)
+    Drawing.stacked(grid, Legend.rows(52, grid.width - 52, items*))
 
   /** What the scenario draws over time, one panel per link, a line per loop, the truth in each.
     *
@@ -131,8 +187,9 @@ object ScenarioFigure:
           case Vector((x, y)) => Mark.Disc(panel.at(x, y), 1.2, None, Some(stroke.colour))
           case several        => panel.curve(several, stroke)
     val held  = bound.map(bound => panel.level(bound.value, boundLine))
+    val seen  = flights.filter(drawn(_)._2.stretches.nonEmpty)
     val items =
-      FlightTheme.names(flights.map(_.summary), strokes) ++ bound.map(bound =>
+      FlightTheme.names(seen.map(_.summary), strokes) ++ bound.map(bound =>
         Legend.line(bound.name, boundLine)
       )
     val plot = Drawing(plotWidth + 76, plotHeight + 84, panel.axes ++ held ++ lines)
@@ -151,10 +208,17 @@ object ScenarioFigure:
 
   private def legend(flown: ScenarioFlights): Seq[Legend.Item] =
     val anyBroken = flown.flights.exists(_.result.violations.nonEmpty)
-    roles(flown.scenario) ++ Seq(
+    vehicles(flown.scenario) ++ Seq(
       disc("start", 2.8, Some(Stroke(Theme.labelColour, 1.2)), Some(FlightTheme.halo)),
       disc("end", 3, None, Some(Theme.labelColour))
-    ) ++ Option.when(anyBroken)(disc("a limit broken", 5, Some(Stroke(red, 1.2)), None))
+    ) ++ Option.when(anyBroken)(brokenItem)
+
+  private def brokenItem = disc("a limit broken", 5, Some(Stroke(red, 1.2)), None)
+
+  /** Few by their names, many by their roles. */
+  private[figures] def vehicles(scenario: Scenario): Seq[Legend.Item] =
+    if scenario.agents.sizeIs > MostNamed then roles(scenario)
+    else scenario.agents.zip(layered(scenario, 1.6)).map((agent, stroke) => Legend.line(agent.name, stroke))
 
   private def roles(scenario: Scenario): Seq[Legend.Item] =
     val strokes = VehicleTheme.of(scenario, 2.2)
@@ -182,3 +246,9 @@ object ScenarioFigure:
     )
 
   private val MostInLegend = 12
+
+  /** Vehicles that stand in a legend by their names. */
+  private val MostNamed = 8
+
+  /** By how much the first vehicle's line is wider than the last one's. */
+  private val WidestMore = 3.0

@@ -45,29 +45,7 @@ final case class ColourScale(
       .map(tick => text(tick, axis.text(tick)))
     boxes ++ ticks ++ ends.map(_._2) :+ Mark.Text(Point(left, top - 8), label, Theme.tickSize)
 
-  /** An error bar for beside [[bar]], around its middle, no longer than it; none where all has one colour.
-    *
-    * @param off how far values are off to either side
-    */
-  def errorBar(x: Double, top: Double, bottom: Double, off: Double, stroke: Stroke): Vector[Mark] =
-    if !(to > from) then Vector.empty
-    else
-      ColourScale.errorBar(
-        Point(x, (top + bottom) / 2),
-        (bottom - top) * (off / (to - from)).min(0.5),
-        stroke
-      )
-
 object ColourScale:
-  /** An upright one.
-    *
-    * @param off half its length
-    */
-  def errorBar(middle: Point, off: Double, stroke: Stroke): Vector[Mark] =
-    def cap(at: Point) = Mark.line(at.moved(-3, 0), at.moved(3, 0), stroke)
-    val (low, high)    = (middle.moved(0, off), middle.moved(0, -off))
-    Vector(Mark.line(low, high, stroke), cap(low), cap(high))
-
   enum End:
     case Low, High
 
@@ -78,12 +56,22 @@ object ColourScale:
     Vector(0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725)
   )
 
-  /** White in the middle, blue below and red above (ColorBrewer's RdBu, turned round). */
-  def aroundZero(most: Double): ColourScale = ColourScale(
-    -most,
-    most,
-    Vector(0x2166ac, 0x67a9cf, 0xd1e5f0, 0xffffff, 0xfddbc7, 0xef8a62, 0xb2182b)
-  )
+  /** White at zero, blue below and red above (ColorBrewer's RdBu, turned round), as far to either side as
+    * there are values: where all are on one side of zero, that side alone.
+    *
+    * @param least at most 0
+    * @param most at least 0
+    */
+  def aroundZero(least: Double, most: Double): ColourScale =
+    val reach = most.max(-least)
+    // A sliver of the other side would be too thin to be seen.
+    if -least < 0.05 * reach then ColourScale(0, reach, White +: Reds)
+    else if most < 0.05 * reach then ColourScale(-reach, 0, Blues :+ White)
+    else ColourScale(-reach, reach, (Blues :+ White) ++ Reds)
+
+  private val White = 0xffffff
+  private val Blues = Vector(0x2166ac, 0x67a9cf, 0xd1e5f0)
+  private val Reds  = Vector(0xfddbc7, 0xef8a62, 0xb2182b)
 
   private def mixed(a: Int, b: Int, share: Double): Colour =
     def channel(shift: Int) =

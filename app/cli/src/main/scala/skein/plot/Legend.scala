@@ -40,8 +40,11 @@ object Legend:
     if title.length * titleLetter + gap + legend.width <= panel.width then
       val beside = legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
       drawn.copy(shapes = shapes ++ beside)
-    else
-      val rows = items.foldLeft(Vector.empty[Vector[Item]]):
-        case (before :+ row, item) if (row :+ item).map(room).sum <= panel.width => before :+ (row :+ item)
-        case (before, item)                                                      => before :+ Vector(item)
-      Drawing.stacked(drawn.copy(shapes = shapes) +: rows.map(row => Legend(panel.left, row*))*)
+    else Drawing.stacked(drawn.copy(shapes = shapes), rows(panel.left, panel.width, items*))
+
+  /** Items in rows that are no longer than `width`, unless one item is. */
+  def rows(left: Double, width: Double, items: Item*): Drawing =
+    val filled = items.foldLeft(Vector.empty[Vector[Item]]):
+      case (before :+ row, item) if (row :+ item).map(room).sum <= width => before :+ (row :+ item)
+      case (before, item)                                                => before :+ Vector(item)
+    Drawing.stacked(filled.map(row => Legend(left, row*))*)

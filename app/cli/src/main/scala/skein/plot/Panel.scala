@@ -19,6 +19,25 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       else kept :+ point
     Mark.Path(kept, Some(stroke))
 
+  /** Likewise, cut where it leaves the axis at the left. */
+  def cut(values: Vector[(Double, Double)], stroke: Stroke): Vector[Mark] =
+    def isIn(value: (Double, Double))                        = value._2 >= y.from && value._2 <= y.to
+    def edge(one: (Double, Double), other: (Double, Double)) =
+      val to    = if one._2 > y.to || other._2 > y.to then y.to else y.from
+      val share = (to - one._2) / (other._2 - one._2)
+      (one._1 + (other._1 - one._1) * share, to)
+    val pieces = values.zip(values.drop(1)).foldLeft(Vector.empty[Vector[(Double, Double)]]):
+      case (done, (one, other)) =>
+        (isIn(one), isIn(other)) match
+          case (true, true) if done.lastOption.exists(_.last == one)  => done.init :+ (done.last :+ other)
+          case (true, true)                                           => done :+ Vector(one, other)
+          case (true, false) if done.lastOption.exists(_.last == one) =>
+            done.init :+ (done.last :+ edge(one, other))
+          case (true, false) => done :+ Vector(one, edge(one, other))
+          case (false, true) => done :+ Vector(edge(one, other), other)
+          case _             => done
+    pieces.map(curve(_, stroke))
+
   /** A line from the left edge to the right one. */
   def level(value: Double, stroke: Stroke): Mark =
     Mark.line(Point(left, atY(value)), Point(right, atY(value)), stroke)

@@ -5,8 +5,9 @@ import skein.plot.*
 import skein.units.Decimals.significant
 
 /** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found
-  * candidate marked, and the defaults. Beside a map's colours stands the standard error of a cell, since pure
-  * noise has all the colours too.
+  * candidate marked, and the defaults. The axis, or the scale of colours, fits the better nine tenths where
+  * the rest would take most of it. A map's legend tells the standard error of a cell, since pure noise has
+  * all the colours too.
   */
 object LandscapeFigure:
   private val width  = 560.0
@@ -14,13 +15,13 @@ object LandscapeFigure:
   private val line   = Colour(0x0072b2)
   private val found  = Colour(0xd55e00)
   private val plain  = Colour(0x111111)
-  private val error  = Stroke(plain, 1.2)
 
   /** @param value what the objective is, with its unit, for the axis or the scale
     * @param direction where the objective is to go
     */
   def apply(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
-    if landscape.y.isEmpty then curve(landscape, title, value) else map(landscape, title, value, direction)
+    if landscape.y.isEmpty then curve(landscape, title, value, direction)
+    else map(landscape, title, value, direction)
 
   private val MostNamed = 3
 
@@ -36,14 +37,16 @@ object LandscapeFigure:
           .mkString("at the best: ", ", ", "")
 
   /** Of values that are no number, as of vehicles that fly off without end, nothing is drawn. */
-  private def curve(landscape: Landscape, title: String, value: String): Drawing =
+  private def curve(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
     val axis   = landscape.space.axes(landscape.x)
     val points = landscape.xs.zip(landscape.cells.head).filter((_, tally) =>
       (tally.mean + tally.sd).isFinite && (tally.mean - tally.sd).isFinite
     )
-    val low   = points.map((_, tally) => tally.mean - tally.sd).minOption.getOrElse(0.0)
-    val high  = points.map((_, tally) => tally.mean + tally.sd).maxOption.getOrElse(1.0)
-    val panel = Panel(
+    // What flies off shall not make the rest flat: the scale of a map's colours fits here, too.
+    val fitting     = LandscapeScale.of(points.map(_._2.mean), direction)
+    val near        = points.filter((_, tally) => tally.mean >= fitting.from && tally.mean <= fitting.to)
+    val (low, high) = ends(near.map((_, tally) => (mean = tally.mean, sd = tally.sd)))
+    val panel       = Panel(
       PlotAxis.exactly(AxisTitle.of(axis.name).text, axis.least, axis.most),
       PlotAxis.around(value, low, high),
       left = 62,
@@ -51,31 +54,41 @@ object LandscapeFigure:
       width,
       height
     )
-    val band = points.map((x, tally) => panel.at(x, tally.mean + tally.sd)) ++
-      points.reverse.map((x, tally) => panel.at(x, tally.mean - tally.sd))
-    def marked(x: Double, colour: Colour) =
-      Mark.line(
-        Point(panel.atX(x), panel.top),
-        Point(panel.atX(x), panel.bottom),
-        Stroke(colour, 1.6, Vector(5, 3))
-      )
+    def edge(x: Double, y: Double) = panel.at(x, y.max(panel.y.from).min(panel.y.to))
+    val band                       = points.map((x, tally) => edge(x, tally.mean + tally.sd)) ++
+      points.reverse.map((x, tally) => edge(x, tally.mean - tally.sd))
+    def marked(x: Double, stroke: Stroke) =
+      Mark.line(Point(panel.atX(x), panel.top), Point(panel.atX(x), panel.bottom), stroke)
     val legend = Legend(
       panel.left,
       Legend.line("mean", Stroke(line, 2)),
       Legend.box("± one standard deviation of the episodes", line.tinted(0.25)),
-      Legend.line(s"found, ${landscape.best.head.significant(4)}", Stroke(found, 1.6, Vector(5, 3))),
-      Legend.line(s"default, ${axis.default.significant(4)}", Stroke(plain, 1.6, Vector(5, 3)))
+      Legend.line(s"found, ${landscape.best.head.significant(4)}", foundLine),
+      Legend.line(s"default, ${axis.default.significant(4)}", defaultLine)
     )
     Drawing(
       panel.right + 40,
       panel.bottom + 44,
       (panel.title(title).moved(0, -22) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ Vector(
-        Mark.Path(band, None, Some(line.faded(0.25)), closed = true),
-        panel.curve(points.map((x, tally) => (x, tally.mean)), Stroke(line, 2)),
-        marked(axis.default, plain),
-        marked(landscape.best.head, found)
+        Mark.Path(band, None, Some(line.faded(0.25)), closed = true)
+      ) ++ panel.cut(points.map((x, tally) => (x, tally.mean)), Stroke(line, 2)) ++ Vector(
+        marked(landscape.best.head, foundLine),
+        marked(axis.default, defaultLine)
       )
     )
+
+  /** Broad and pale below the thin default, so that both are seen where they are the same. */
+  private val foundLine   = Stroke(found.tinted(0.6), 5)
+  private val defaultLine = Stroke(plain, 1.4, Vector(5, 3))
+
+  /** Of an axis for means and most of their standard deviations. */
+  private[search] def ends(near: Vector[(mean: Double, sd: Double)]): (Double, Double) =
+    if near.isEmpty then (0.0, 1.0)
+    else
+      val (least, most) = (near.map(_.mean).min, near.map(_.mean).max)
+      val sds           = near.map(_.sd).sorted
+      val margin        = sds(((sds.size - 1) * 0.9).toInt)
+      (least - margin, most + margin)
 
   private def map(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
     val (xAxis, yAxis) = (landscape.space.axes(landscape.x), landscape.space.axes(landscape.y.get))
@@ -90,17 +103,18 @@ object LandscapeFigure:
     )
     val heat   = HeatMap(landscape.xs, landscape.ys, landscape.cells.map(_.map(tally => Some(tally.mean))))
     val scale  = LandscapeScale.of(landscape.cells.flatten.map(_.mean), direction)
-    val best   = disc(panel.at(landscape.best(landscape.x), landscape.best(landscape.y.get)), found)
-    val paper  = disc(panel.at(xAxis.default, yAxis.default), plain)
-    val off    = scale.errorBar(panel.right + 16, panel.top, panel.bottom, landscape.standardError, error)
+    val best   = ring(panel.at(landscape.best(landscape.x), landscape.best(landscape.y.get)))
+    val paper  = disc(panel.at(xAxis.default, yAxis.default))
+    val off    = s"standard error of a cell ${landscape.standardError.significant(2)}"
     val legend = Legend(
       panel.left,
-      Vector(
-        named("found", found),
-        named("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain)
-      ) ++ Option.when(off.nonEmpty)(
-        Legend.Item("± standard error", 6, at => ColourScale.errorBar(at.moved(3, 0), 6, error))
-      )*
+      Legend.Item("found", 16, at => ring(at.moved(8, 0))),
+      Legend.Item(
+        "default" + (if landscape.space.dimension > 2 then ", the others as found" else ""),
+        8,
+        at => Vector(disc(at.moved(4, 0)))
+      ),
+      Legend.Item(off, 0, _ => Vector.empty)
     )
     Drawing(
       panel.right + 120,
@@ -110,12 +124,14 @@ object LandscapeFigure:
         legend.shapes.map(_.moved(0, panel.top - 30)) ++
         heat.cells(panel, scale) ++
         scale.bar(panel.right + 24, panel.top, panel.bottom, value) ++
-        off ++
-        panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
+        panel.xAxis ++ panel.yAxis ++ (best :+ paper)
     )
 
-  private def disc(centre: Point, colour: Colour): Mark =
-    Mark.Disc(centre, 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
+  /** Wide enough to be seen around the default. */
+  private def ring(centre: Point): Vector[Mark] = Vector(
+    Mark.Disc(centre, 7.5, Some(Stroke(Colour(0xffffff), 4.2))),
+    Mark.Disc(centre, 7.5, Some(Stroke(found, 2.2)))
+  )
 
-  private def named(label: String, colour: Colour): Legend.Item =
-    Legend.Item(label, 10, at => Vector(disc(at.moved(5, 0), colour)))
+  private def disc(centre: Point): Mark =
+    Mark.Disc(centre, 3.6, Some(Stroke(Colour(0xffffff), 1.2)), Some(plain))

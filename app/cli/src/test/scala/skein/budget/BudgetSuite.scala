@@ -123,3 +123,11 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assert(!clue(inside).contains("not drawn") && isDrawn)
     val (outside, isDrawnToo) = texts(LatencyDistribution.Vpn)
     assert(clue(outside).endsWith("; not drawn: the map ends before it, at 100 and 20 ms") && !isDrawnToo)
+
+  test("a map's legend names what is drawn, and its colours are those of the side that the values are on"):
+    def labels(truth: Vector[Double]) = BudgetFigure.legend(Vector(shown(truth))).map(_.label)
+    assert(!labels(Vector(8, 8, 8)).exists(_.contains("off the truth")), labels(Vector(8, 8, 8)))
+    assert(labels(Vector(8, 8.2, 9)).exists(_.contains("off the truth")), labels(Vector(8, 8.2, 9)))
+    val scale = BudgetFigure.scaleOf(Vector(shown(Vector(8, 8.2, 9))))
+    assertEquals(scale.from, 0.0)
+    assert(BudgetFigure.scaleOf(Vector(shown(Vector(8, 7.5, 9)))).from < 0)

@@ -89,7 +89,10 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def served[A](shows: SSLContext)(body: Address => A): A =
     val server =
-      Await.result(SolverServer.start(loopback, transport(Some(shows)), SolvedFlight.desk()), 20.seconds)
+      Await.result(
+        SolverServer.start(loopback, transport(Some(shows)), SolvedFlight.desk(), Clock.system),
+        20.seconds
+      )
     try body(server.address)
     finally Await.result(server.close(), 20.seconds): Unit
 
@@ -118,7 +121,10 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(why).contains(s"the solver at $at asks for certificates; expected --tls FOLDER"))
 
   test("a flight with certificates is told what its solver lacks so long before its patience ends"):
-    val server = Await.result(SolverServer.start(loopback, transport(None), SolvedFlight.desk()), 20.seconds)
+    val server = Await.result(
+      SolverServer.start(loopback, transport(None), SolvedFlight.desk(), Clock.system),
+      20.seconds
+    )
     try
       val at     = server.address
       val link   = TcpLink(transport(Some(own)), at, () => SolverOptions.lacksTls(at))

@@ -61,8 +61,12 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
           )
         )(using threads)
       val told   = saids.map((protocol, said) => protocol -> Await.result(said, 4.minutes))
-      val topics = FlightTopics.all(Vehicles).map(_.name).toSet ++ Sights + "/skein/graph"
-      val seens  = told.map((protocol, said) => protocol -> ujson.read(said.fold(fail(_), identity)))
+      val topics = FlightTopics.all(Vehicles).map(_.name).toSet ++ Sights ++ Set(
+        "/skein/graph",
+        "/skein/clock",
+        "/skein/scenario"
+      )
+      val seens = told.map((protocol, said) => protocol -> ujson.read(said.fold(fail(_), identity)))
       // Before the flight is ended, which has ended by itself where something never came.
       for (protocol, seen) <- seens do
         assertEquals((seen("protocol").str, seen("wrong")), (protocol, ujson.Arr()))
@@ -102,6 +106,12 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         ),
         step("ask", "before", shown),
         step("ask", "obstacles", "skein.flight.obstacles.length"),
+        step("wait", "skein.flight.own.length && skein.flight.series.own0.buckets.length"),
+        step(
+          "ask",
+          "own",
+          "[skein.flight.own[0].title, skein.flight.series.altitude.buckets.at(-1).values[0]]"
+        ),
         step("wait", "skein.cameras.length === 2 && skein.cameras.every(one => one.shown > 3)"),
         step("ask", "cameras", "skein.cameras.map(one => [one.name, one.canvas.width, one.canvas.height])"),
         step(
@@ -127,7 +137,10 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         step("click", "#abort"),
         step("wait", "skein.flight.ending"),
         step("wait", "!skein.isConnected"),
-        step("ask", "state", "document.getElementById('state').textContent")
+        step("ask", "state", "document.getElementById('state').textContent"),
+        step("ask", "ended", Standing),
+        step("sleep", 1500),
+        step("ask", "later", Standing)
       )
       flying.land()
       val file     = out.resolve("predictive-vpn.duckdb")
@@ -139,6 +152,12 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       )
       assertEquals(seen("questions").arr.size, 3)
       assertEquals(seen("told")("state").str, "Stopped: it was stopped from outside")
+      assertEquals(seen("told")("ended"), seen("told")("later"))
+      // The page's time is the flight's: it begins with the first reading.
+      val flown = recorded.ending.get.at.since(recorded.readings.map(_.state.sentAt).min).toSeconds
+      assertEqualsDouble(seen("told")("ended")(0).num, flown, 0.3)
+      assertEquals(seen("told")("own")(0).str, "distance, m")
+      assertEqualsDouble(seen("told")("own")(1).num, 20, 10)
       // A street's objects, and its sky above what two cameras see.
       assert(seen("told")("obstacles").num >= 10, seen("told")("obstacles").toString)
       assertEquals(
@@ -222,6 +241,13 @@ object ViewLiveSuite:
   )
 
   private val Vehicles = Vector("Pursuer", "Evader")
+
+  /** What is not to move when a flight has ended. */
+  private val Standing =
+    "[skein.flight.now, document.getElementById('time').textContent, " +
+      "[...skein.flight.vehicles.values()].map(one => [one.trail.length, one.north]), " +
+      "Object.values(skein.flight.series).map(one => one.buckets.length), " +
+      "[...document.querySelectorAll('#plots canvas, #map canvas')].map(one => one.toDataURL().length)]"
 
   private val Sights = Vehicles.toSet.flatMap(name =>
     Set(s"/vehicles/$name/front_center/image", s"/vehicles/$name/front_center/calibration")

@@ -22,6 +22,35 @@ class SparseFiguresSuite extends munit.FunSuite:
     assertEquals(headings(12), Vector("last 10 s: ours ●"))
     assertEquals(headings(60), Vector("last 10 s: ours ●, paper ◆"))
 
+  test("the paper's farthest does not squeeze our curves, and each column beside them has its flight's name"):
+    val flights = Report.of(Seq(SyntheticFlight("sequential", "vpn", seed = 2, 60)))
+    val figure  = DistanceFigure(flights).get
+    val ours    = flights.flights.flatMap(_.distance).flatMap(_.points.map(_._2)).max
+    assert(flights.flights.flatMap(_.published).flatMap(_.distance).map(_.most).max > 1.3 * ours, ours)
+    val heights =
+      figure.shapes.collect { case Mark.Path(points, _, None, _) if points.size > 20 => points.map(_.y) }
+    // The panel is 220 high, from 34 on.
+    assert(heights.flatten.min < 34 + 0.3 * 220, heights.flatten.min)
+    assert(texts(figure).contains("◆ 41 m") || texts(figure).contains("◆ 40 m"), texts(figure))
+    val upright = figure.shapes.collect { case text: Mark.Text if text.upwards => text.content }
+    assertEquals(upright.toSet, Set("distance, m", "sequential"))
+
+  test("a legend names what is drawn: of a link without a profile, the measured round trips alone"):
+    val trips                = Distribution.of(Vector.tabulate(100)(index => 130 + index * 0.1)).get
+    def legend(link: String) =
+      texts(LatencyFigure(Seq(LatencyFigure.Measured("to 10.0.0.7:41451", link, trips))).get)
+        .filter(Set(
+          "measured",
+          "the link's profile",
+          "its quantiles",
+          "half of a sample each way, as emulated"
+        ))
+    assertEquals(legend("none"), Vector("measured"))
+    assertEquals(legend("direct").size, 4)
+    val real = LatencyFigure(Seq(LatencyFigure.Measured("to 10.0.0.7:41451", "none", trips))).get
+    assert(texts(real).contains("to 10.0.0.7:41451") && !texts(real).exists(_.contains("no network")))
+    assertEquals(real.width, 378.0)
+
   test("a single score of a learner is seen"):
     val colour           = LearningCurve.learned
     def discs(many: Int) =
@@ -35,7 +64,9 @@ class SparseFiguresSuite extends munit.FunSuite:
   test("a round trip far longer than all others is told, and does not squeeze them"):
     val usual  = Vector.tabulate(1000)(index => 30 + index * 0.02)
     val shapes =
-      LatencyFigure(Seq("direct" -> Distribution.of(usual ++ Vector.fill(9)(900.0)).get)).get.shapes.toVector
+      LatencyFigure(
+        Seq(LatencyFigure.Measured("direct", "direct", Distribution.of(usual ++ Vector.fill(9)(900.0)).get))
+      ).get.shapes.toVector
     val bars = shapes.collect:
       case Mark.Path(points, None, Some(_), _) => points.map(_.x).max - points.map(_.x).min
     assert(bars.sum > 40, s"the bars are ${bars.sum} wide together")

@@ -18,7 +18,13 @@ class HeatMapSuite extends munit.FunSuite:
     assertEquals(holed.cells(panel, ColourScale.viridis(-1, 0)).size, 10 * 21)
 
   test("a scale's ends have its first and last colours, and values beyond them too"):
-    val scale = ColourScale.aroundZero(2)
+    val scale = ColourScale.aroundZero(-2, 2)
     assertEquals(scale.of(-9), Colour(0x2166ac))
     assertEquals(scale.of(0), Colour(0xffffff))
     assertEquals(scale.of(2), Colour(0xb2182b))
+
+  test("where all values are on one side of zero, that side has the whole palette"):
+    val (above, below) = (ColourScale.aroundZero(0, 3), ColourScale.aroundZero(-3, 0.1))
+    assertEquals((above.from, above.to, below.from, below.to), (0.0, 3.0, -3.0, 0.0))
+    assertEquals((above.of(0), below.of(0)), (Colour(0xffffff), Colour(0xffffff)))
+    assertEquals((above.of(3), below.of(-3)), (Colour(0xb2182b), Colour(0x2166ac)))

@@ -1,7 +1,7 @@
 package skein.report
 
 import skein.flight.VirtualFlights
-import skein.figures.PredictionFigure
+import skein.figures.{FlightTheme, PredictionFigure}
 import skein.loop.LoopKind
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionErrors, PredictionGroup}
 import skein.plot.Mark
@@ -17,8 +17,8 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
   test("errors are sorted by age into bins around multiples of 20 ms, of which small ones are left out"):
     val samples = Vector.tabulate(40)(index => (91.0 + index % 18, index / 1000.0)) ++
       Vector.fill(PredictionErrors.Fewest - 1)((50.0, 9.0))
-    val errors = PredictionErrors(made = 70, samples)
-    assertEquals(errors.unverified, 70 - 59)
+    val errors = PredictionErrors(made = 90, samples)
+    assertEquals(errors.unverified, 90 - 79)
     assertEquals(errors.byAge.map(_._1), Vector(100))
     assertEquals(errors.around(100).map(_.count), Some(40))
     assertEqualsDouble(errors.around(100).get.quantile(0.95), 0.95 * 0.039, 1e-9)
@@ -59,6 +59,16 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
       texts(own)
     )
     assert(texts(both).contains("others, median"), texts(both))
+
+  test("two ages are no curve, neither in the picture nor in its legend"):
+    val shapes =
+      PredictionFigure(Vector(PredictionGroup("predictive", "vpn", measured(20, 40), measured()))).get.shapes
+    // Two discs each of the median and of the 95 % quantile, and one each in the legend.
+    assertEquals(shapes.count { case _: Mark.Disc => true; case _ => false }, 6)
+    val sloped = shapes.collect:
+      case Mark.Path(points, Some(stroke), _, false)
+          if stroke.colour.rgb == FlightTheme.of("predictive").rgb => points
+    assertEquals(sloped, Vector.empty)
 
   private lazy val flights =
     fly(List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive), Span.ofMillis(100))

@@ -1,7 +1,7 @@
 package skein.search
 
 import skein.optimise.{Direction, Evaluator, RunningStats}
-import skein.plot.{Colour, ColourScale, Mark, Stroke}
+import skein.plot.{ColourScale, Mark}
 import skein.policy.{Axis, SearchSpace}
 import skein.testing.Optimised
 
@@ -65,19 +65,16 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assertEquals(LandscapeFigure.fixed(at(6)), Some("4 others at the best"))
     val shapes = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes
     val texts  = shapes.collect { case text: Mark.Text => text.content }
-    // All cells are equal: there is no bar to name.
-    assert(!texts.contains("± standard error"))
-    // What is marked, and the same marks in the legend.
-    assertEquals(
-      shapes.collect { case disc: Mark.Disc => disc.fill }.groupBy(identity).values.map(_.size).toVector,
-      Vector(2, 2)
-    )
+    // What is marked, and the same marks in the legend: the found one as a ring, which does not hide the default.
+    val (rings, discs) = shapes.collect { case disc: Mark.Disc => disc }.partition(_.fill.isEmpty)
+    assertEquals((rings.groupBy(_.centre).size, discs.groupBy(_.centre).size), (2, 2))
+    assert(rings.map(_.radius).min > discs.map(_.radius).max + 2)
     assert(
       Set("title", "turn rate, rad/s", "lead", "at the best: capture radius = 1.5 m").subsetOf(texts.toSet),
       texts
     )
 
-  test("beside a map's colours stands the standard error: of pure noise a good part of the scale"):
+  test("a map's legend tells the standard error of a cell, and nothing stands beside its colours"):
     val random = java.util.SplittableRandom(1)
     val noise  = at(2).copy(
       xs = Vector.tabulate(21)(_ / 10.0),
@@ -86,16 +83,39 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     )
     // A uniform number's standard deviation is 1/√12, and a quarter of it that of the mean of 16.
     assertEqualsDouble(noise.standardError, 1 / math.sqrt(12) / 4, 0.002)
-    val scale  = LandscapeScale.of(noise.cells.flatten.map(_.mean), Direction.Minimise)
-    val height = scale.errorBar(0, 0, 300, noise.standardError, Stroke(Colour(0), 1)).head match
-      case Mark.Path(Vector(low, high), _, _, _) => low.y - high.y
-      case other                                 => fail(s"expected a line, came $other")
-    assertEqualsDouble(height, 300 * 2 * noise.standardError / (scale.to - scale.from), 1e-9)
-    assert(height > 75, height)
-    assertEquals(
-      LandscapeScale.of(Vector(1, 1), Direction.Minimise).errorBar(0, 0, 9, 1, Stroke(Colour(0), 1)),
-      Vector.empty
+    val texts = LandscapeFigure(noise, "title", "m", Direction.Minimise).shapes.collect {
+      case text: Mark.Text =>
+        text.content
+    }
+    assert(texts.exists(_.startsWith("standard error of a cell 0.07")), texts)
+
+  private def alongOne(means: Vector[Double], best: Double) =
+    val xs = means.indices.toVector.map(_.toDouble)
+    Landscape(
+      SearchSpace(Vector(Axis("gain", 0, xs.last, default = 1))),
+      Vector(best),
+      0,
+      None,
+      xs,
+      Vector(0.0),
+      Vector(means.map(mean => RunningStats(16, mean, 0.16)))
     )
+
+  test("a few values that are far off do not flatten a curve, which is cut where it leaves the axis"):
+    val flat   = Vector.tabulate(30)(at => 10.7 + at * 0.01) ++ Vector(40.0, 80.0)
+    val figure = LandscapeFigure(alongOne(flat, 3), "title", "distance, m", Direction.Minimise)
+    val ticks  = figure.shapes.collect { case text: Mark.Text => text.content }.flatMap(_.toDoubleOption)
+    assert(!ticks.exists(_ > 35), ticks)
+    val places = figure.shapes.collect { case Mark.Path(points, _, _, _) => points }.flatten
+    assert(places.forall(at => at.y >= 0 && at.y <= figure.height), places)
+
+  test("where the found value is the default, both lines are seen"):
+    val figure = LandscapeFigure(alongOne(Vector(3.0, 1, 2), 1), "title", "distance, m", Direction.Minimise)
+    val lines  = figure.shapes.collect:
+      case Mark.Path(Vector(from, to), Some(stroke), _, _) if from.x == to.x && from.y != to.y => stroke
+    val marks = lines.filter(_.width > 1)
+    assertEquals(marks.map(_.dash.isEmpty), Vector(true, false), marks)
+    assert(marks(0).width > 2 * marks(1).width)
 
   test("parameters are called what they are, with their units"):
     val names = Seq(

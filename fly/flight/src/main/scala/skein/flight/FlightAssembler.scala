@@ -2,6 +2,7 @@ package skein.flight
 
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.Materializer
 import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
@@ -89,9 +90,14 @@ final class FlightAssembler(
 
   /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
     *
+    * @param on what its loop runs on: see [[Flight.start]]
     * @return or why it cannot be flown
     */
-  def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightAssembly]] =
+  def start(
+      plan: FlightPlan,
+      recorder: Recorder,
+      on: Option[Materializer] = None
+  ): Future[Either[String, FlightAssembly]] =
     val opened   = Opened()
     val starting =
       for
@@ -135,7 +141,8 @@ final class FlightAssembler(
           settings.duration,
           clock,
           endCondition,
-          () => watchdog.onTime
+          () => watchdog.onTime,
+          on
         )
         endCondition.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then

@@ -2,6 +2,7 @@ package skein.flight
 
 import java.nio.file.{Files, Path}
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.Materializer
 import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
@@ -95,17 +96,22 @@ object LiveFlights:
       .flatMap:
         case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
+          // Its end is the flight's, of which the graph is asked until then.
+          val own = Materializer(system)
           assembler
-            .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps))
+            .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps), Some(own))
             .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
             .flatMap:
               case Left(reason) =>
+                own.shutdown()
                 recorder
                   .close()
                   .map: _ =>
                     unmade(plan.file(folder))
                     Left(s"${plan.id}: $reason")
-              case started => Future.successful(started)
+              case started =>
+                for assembly <- started do assembly.landed.onComplete(_ => own.shutdown())
+                Future.successful(started)
 
   /** Takes away the recording of a flight that was not flown, which would be in the way when it is tried
     * again.

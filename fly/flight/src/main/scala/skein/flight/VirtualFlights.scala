@@ -152,7 +152,7 @@ object VirtualFlights:
   ): Future[SolverServer] =
     def deciders = FlightDeciders.of(RecordedPlan(settings, plan), FlightAssembler.counted)
     val desk     = SolverDesk(plan.seed, Here, _ => deciders, clock, system.dispatcher)
-    SolverServer.start(SolverAt, network.host(There), desk)
+    SolverServer.start(SolverAt, network.host(There), desk, clock)
 
   private val Here     = "localhost"
   private val There    = "solver"

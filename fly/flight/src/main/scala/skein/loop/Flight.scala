@@ -57,6 +57,8 @@ object Flight:
     * @param loop one of ours, or a user's own
     * @param time what lets the simulator's time pass; only `paused` needs it
     * @param onTime how it has ended when its time is over
+    * @param on what one of our loops runs on, else what the system's other streams do. Its own can be asked for
+    *   the graph, whatever the others do: one that ends before it answers keeps the answers of all
     */
   def start(
       loop: AnyLoop,
@@ -65,7 +67,8 @@ object Flight:
       duration: Span,
       clock: Clock,
       recorder: Recorder,
-      onTime: () => FlightOutcome = () => FlightOutcome.Completed
+      onTime: () => FlightOutcome = () => FlightOutcome.Completed,
+      on: Option[Materializer] = None
   )(using
       system: ActorSystem
   ): Flight =
@@ -77,7 +80,7 @@ object Flight:
     val (running, streams) = loop match
       case own: OwnLoop   => runOwn(own, team, switch, stopping.future)
       case kind: LoopKind =>
-        val here = SystemMaterializer(system).materializer
+        val here = on.getOrElse(SystemMaterializer(system).materializer)
         val run  =
           graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()(using here)
         (run, Future.successful(here))

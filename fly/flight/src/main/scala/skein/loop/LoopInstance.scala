@@ -1,6 +1,7 @@
 package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.Materializer
 import scala.concurrent.{Future, Promise}
 import skein.policy.{Action, Fleet}
 import skein.port.{Sensor, VehicleError, VehiclePort}
@@ -22,7 +23,10 @@ object LoopInstance:
     else
       val ports   = fleet.agents.map(agent => Silent(agent.policy.sensors))
       val team    = Team(fleet, ports, Clock.system, Forgetting, settings)
-      val flight  = Flight.start(loop, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
+      val own     = Materializer(system)
+      val flight  =
+        Flight.start(loop, team, None, Span.ofSeconds(600), Clock.system, Forgetting, on = Some(own))
+      flight.outcome.onComplete(_ => own.shutdown())
       val running = RunningGraph(team.meters, flight.streams)
       // A graph that has just been started tells nothing yet.
       UntilCertain(running.shape(), MostAsked, AskEvery)(_.isDefined).andThen(_ => flight.stop())

@@ -44,13 +44,15 @@ final class SolverDesk(
   /** Messages have come, in this order; nothing of them is decided before all are looked at.
     *
     * @param reply sends to whom they came from; never waits
-    * @return or what was no message
+    * @return whether any of them was of use: a flight that is, or will be, decided for said hello, or asked;
+    *   or what was no message
     */
-  def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Unit] =
+  def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Boolean] =
     val (mistakes, known) = messages.map(SolverMessageCodec.message).partitionMap(identity)
+    var isOfUse           = false
     val asked             = known.flatMap:
       case SolverMessage.Hello(flight, theirs, briefing) =>
-        greeted(flight, theirs, briefing, reply)
+        isOfUse |= greeted(flight, theirs, briefing, reply)
         None
       case SolverMessage.Ask(question)   => offered(question, reply)
       case SolverMessage.Goodbye(flight) =>
@@ -65,13 +67,14 @@ final class SolverDesk(
       case _ => None
     for (flight, vehicle) <- asked.distinct do next(flight, vehicle)
     mistakes.headOption match
-      case None          => Right(())
+      case None          => Right(isOfUse || asked.nonEmpty)
       case Some(mistake) =>
         lock.synchronized:
           garbled += mistakes.size
         Left(mistake)
 
-  private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Unit =
+  /** @return whether it is, or will be, decided for */
+  private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Boolean =
     val known = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
     def answer(message: SolverMessage) = reply(SolverMessageCodec.bytes(message))
     def no(reason: String)             =
@@ -83,11 +86,13 @@ final class SolverDesk(
       lock.synchronized:
         sessions = sessions.updatedWith(flight)(_.map(_.copy(reply = reply)))
       answer(SolverMessage.Welcome(flight, id, byVectors))
+      true
     else if theirs != build then
       no(
         s"this solver is build $build, the flight's program is " +
           s"build $theirs; start both from the same program"
       )
+      false
     else if begins(flight) then
       Future(decidersOf(briefing))(using workers).onComplete { result =>
         lock.synchronized:
@@ -108,8 +113,12 @@ final class SolverDesk(
           case Success(Left(reason)) => no(reason)
           case Failure(error)        => no(s"it cannot be decided for: $error")
       }(using workers)
-    // It says hello again until then.
-    else if lock.synchronized(greeting(flight)) then answer(SolverMessage.Preparing(flight))
+      true
+    else
+      // It says hello again until then.
+      val isPreparing = lock.synchronized(greeting(flight))
+      if isPreparing then answer(SolverMessage.Preparing(flight))
+      isPreparing
 
   /** A flight says hello until it is answered; once is enough. */
   private def begins(flight: Long): Boolean = lock.synchronized:

@@ -1,8 +1,10 @@
 package skein.flight
 
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import org.apache.pekko.util.ByteString
+import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
 import skein.loop.{Fallback, LoopKind, FlightOutcome, PlanSettings, Replay}
@@ -131,7 +133,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
           byVectors = byVectors
         )
         for
-          _ <- SolverServer.start(at, network.host("solver"), desk)
+          _ <- SolverServer.start(at, network.host("solver"), desk, clock)
           client =
             SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _) => ())
           answer <- client.ready(Span.ofSeconds(3)).transform(result => scala.util.Success(result))
@@ -199,7 +201,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         system.dispatcher
       )
       for
-        _ <- SolverServer.start(at, network.host("solver"), desk)
+        _ <- SolverServer.start(at, network.host("solver"), desk, clock)
         _ <- Future.traverse(garbage): text =>
           Source
             .single(ByteString(text, "ISO-8859-1"))
@@ -220,6 +222,51 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       yield desk.stats
     assertEquals(run.value.garbled, 1L)
     assertEquals(run.value.refused, 0L)
+
+  test(
+    "strangers who stay silent, drip, or say a word and stay lock no flight out, and take nobody's place who asks"
+  ):
+    val word = ByteString(SolverMessageCodec.bytes(SolverMessage.Goodbye(5)))
+    val said = ByteString(0, 0, 0, word.size.toByte) ++ word
+    val run  = VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock                    = Clock.ofNanos(VirtualTime.clock(system))
+      val network                  = MemoryNetwork(NetworkPlan(), 1, clock)
+      val at                       = Address("solver", 7400)
+      val desk                     = SolvedFlight.desk()
+      def often(bytes: ByteString) = Source.tick(Duration.Zero, 300.millis, bytes)
+      val kinds                    = Seq(
+        Source.maybe[ByteString],
+        Source.single(said).concat(Source.maybe),
+        often(said),
+        Source.single(ByteString(0, 0, 1, 0)).concat(often(ByteString(1)))
+      )
+      def strangers(count: Int): Unit = for number <- 0 until count do
+        kinds(number % kinds.size).via(network.host("stranger").connect(at)).runWith(Sink.ignore): Unit
+      def flight(number: Long) = SolverClient(
+        TcpLink(network.host("here"), at),
+        number,
+        SolvedFlight.Build,
+        Briefing.of(settings, settings.plans.last),
+        2,
+        clock,
+        (_, _, _) => ()
+      )
+      for
+        server <- SolverServer.start(at, network.host("solver"), desk, clock)
+        _ = strangers(SolverServer.MostConnections)
+        _ <- after(1500.millis, system.scheduler)(Future.unit)
+        first = flight(1)
+        _ <- first.ready(Span.ofSeconds(3))
+        _ = strangers(SolverServer.MostConnections)
+        _ <- after(1500.millis, system.scheduler)(Future.unit)
+        second = flight(2)
+        _ <- second.ready(Span.ofSeconds(3))
+        stats = desk.stats
+        _ <- Future.traverse(Seq(first, second))(_.close())
+      yield (stats.flights, server.displacedConnections >= 65, server.refusedConnections < 64)
+    assertEquals(run.value, (2, true, true))
 
 /** Runs everything so much later. */
 private final class Later(system: ActorSystem, by: Span) extends ExecutionContext:

@@ -28,7 +28,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
     val _ = Await.result(system.terminate(), 20.seconds)
 
   private def served(id: Long, at: Address): Future[SolverServer] =
-    SolverServer.start(at, TcpTransport(), SolvedFlight.desk(id))
+    SolverServer.start(at, TcpTransport(), SolvedFlight.desk(id), Clock.system)
 
   test("plans come from a solver, within the deadline, and replay"):
     val server = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)

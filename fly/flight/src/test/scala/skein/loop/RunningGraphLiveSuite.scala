@@ -25,3 +25,22 @@ class RunningGraphLiveSuite extends munit.FunSuite:
       assertEquals((found.stages.toSet, found.edges), (Set("one", "two"), Vector((from = "one", to = "two"))))
       switches.foreach(_.shutdown())
     finally Await.result(system.terminate(), 10.seconds): Unit
+
+  test("a flight's graph is told whatever other streams of the same system do"):
+    given system: ActorSystem = ActorSystem("graph-beside-others")
+    val released              = java.util.concurrent.CountDownLatch(1)
+    val entered               = java.util.concurrent.CountDownLatch(1)
+    try
+      // It answers nothing while it waits.
+      Source
+        .single(1)
+        .map: _ =>
+          entered.countDown()
+          released.await()
+        .runWith(Sink.ignore): Unit
+      entered.await()
+      val told = LoopInstance.graph(LoopKind.Stream, skein.scenario.PaperDuel().fleet)
+      assert(Await.result(told, 25.seconds).exists(_.stages.nonEmpty))
+    finally
+      released.countDown()
+      Await.result(system.terminate(), 10.seconds): Unit

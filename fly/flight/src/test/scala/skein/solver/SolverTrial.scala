@@ -77,7 +77,7 @@ object SolverTrial:
       new OpenLink:
         def send(message: Array[Byte]): Either[String, Unit] = down.toLeft:
           greetings += SolverMessageCodec.message(message).exists(_.isInstanceOf[SolverMessage.Hello])
-          crossing(To.Solver)(desk.foreach(_.received(Seq(message), reply).fold(sys.error(_), identity)))
+          crossing(To.Solver)(desk.foreach(_.received(Seq(message), reply).fold(sys.error(_), _ => ())))
         def close(): Future[Done] = Future.successful(Done)
 
     private def reply(message: Array[Byte]): Unit = crossing(To.Flight)(received(message))

@@ -6,7 +6,7 @@ const statuses = ["playing", "paused", "buffering", "ended"];
 /** Connects, again after a second where the connection ends, and subscribes to what is wanted.
  *  @param on info(serverInfo), row(topic, row, logNs) of JSON, sight(topic, bytes, logNs) of Protocol Buffers, time(ns), playback(state), warning(id, text), closed() */
 export function connect(path, wanted, on) {
-  let socket, ended = false, timer;
+  let socket, ended = false, timer, sign;
   const open = () => {
     const topics = new Map();
     socket = new WebSocket(`ws://${location.host}${path}`, protocols);
@@ -39,9 +39,11 @@ export function connect(path, wanted, on) {
     }
   };
   open();
+  // Who says nothing makes room where many want to look; this asks for nothing.
+  sign = setInterval(() => { if (socket.readyState === WebSocket.OPEN) socket.send('{"op":"subscribe","subscriptions":[]}'); }, 3000);
   return {
     isOpen() { return socket.readyState === WebSocket.OPEN; },
-    close() { ended = true; clearTimeout(timer); socket.close(); },
+    close() { ended = true; clearTimeout(timer); clearInterval(sign); socket.close(); },
     /** Plays or stands, and jumps where a time is given. */
     play(playing, speed, seekNs) {
       if (socket.readyState !== WebSocket.OPEN) return;

@@ -1,4 +1,4 @@
-// What is known of one flight: from rows, in their order. Times are seconds since its first row.
+// What is known of one flight: from rows, in their order. Times are seconds since it began; before that, since its first row.
 
 const trailS = 20, trailEveryS = 0.1, bucketS = 0.1, windowS = 30, mostEvents = 200, mostLines = 6;
 
@@ -8,13 +8,17 @@ export class Flight {
   constructor() {
     this.heading = undefined;
     this.startNs = undefined;
+    this.hasBegun = false;
     this.now = 0;
     this.vehicles = new Map();
     this.events = [];
     this.eventCount = 0;
     this.ending = undefined;
     this.paused = false;
-    this.series = { age: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series() };
+    this.series = { age: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series(), altitude: new Series(Math.min) };
+    // What the scenario draws, and what it forbids.
+    this.own = [];
+    this.limits = [];
     this.obstacles = [];
     this.clouds = new Map();
   }
@@ -22,6 +26,21 @@ export class Flight {
   seconds(ns) {
     this.startNs ??= ns;
     return Number(ns - this.startNs) / 1e9;
+  }
+
+  /** It began at this time, which may be told late. */
+  begin(ns) {
+    const by = this.startNs === undefined ? 0 : Number(this.startNs - ns) / 1e9;
+    this.startNs = ns;
+    this.hasBegun = true;
+    if (by === 0) return;
+    this.now += by;
+    for (const series of Object.values(this.series)) for (const bucket of series.buckets) bucket.time += by;
+    for (const event of this.events) event.at += by;
+    for (const vehicle of this.vehicles.values()) {
+      for (const point of vehicle.trail) point[0] += by;
+      for (const key of ["at", "decided"]) if (vehicle[key] !== undefined) vehicle[key] += by;
+    }
   }
 
   /** Takes a row of one of the recording's tables. */
@@ -42,6 +61,7 @@ export class Flight {
         if (vehicle.trail.length > 1 && at - vehicle.trail.at(-2)[0] < trailEveryS) vehicle.trail.pop();
         vehicle.trail.push([at, vehicle.north, vehicle.east]);
         while (vehicle.trail.length && vehicle.trail[0][0] < at - trailS) vehicle.trail.shift();
+        this.series.altitude.put(at, this.line(vehicle), -vehicle.down);
         // What a simulator shows of itself made no trip.
         if (row.receivedAtNs > row.sentAtNs) this.series.roundTrip.put(at, this.line(vehicle), (row.receivedAtNs - row.sentAtNs) / 1e6);
         this.measure(at);
@@ -71,7 +91,19 @@ export class Flight {
         this.events.length = Math.min(this.events.length, mostEvents);
         if (row.kind === "Paused" || row.kind === "Continued") this.paused = row.kind === "Paused";
         break;
-      case "ending": this.ending = row; break;
+      // It stands still from here on, whatever comes.
+      case "ending": this.ending = row; this.now = at; break;
+      case "clock": this.begin(BigInt(row.startedAtNs)); break;
+      case "scenario":
+        row.series.forEach(({ title, bound, points }, index) => {
+          this.own[index] = { series: `own${index}`, title, bound, single: true };
+          const series = this.series[`own${index}`] ??= new Series();
+          // The last point is of now; all count seconds.
+          for (const [time, value] of points) series.put(at - (points.at(-1)[0] - time), 0, value);
+        });
+        this.limits = row.limits;
+        this.failed = row.failed;
+        break;
     }
   }
 
@@ -154,9 +186,9 @@ function footprint({ pose: { position, orientation: { x, y, z, w } }, size, colo
   };
 }
 
-/** The largest value of each line in each tenth of a second, for some time back. */
+/** The largest value of each line in each tenth of a second, or the least, for some time back. */
 class Series {
-  constructor() { this.buckets = []; }
+  constructor(pick = Math.max) { this.buckets = []; this.pick = pick; }
 
   put(at, line, value) {
     if (value === undefined) return;
@@ -165,7 +197,7 @@ class Series {
     while (last >= 0 && this.buckets[last].time > time + 1e-6) last--;
     if (last < 0 || this.buckets[last].time < time - 1e-6) this.buckets.splice(++last, 0, { time, values: [] });
     const values = this.buckets[last].values;
-    values[line] = Math.max(values[line] ?? -Infinity, value);
+    values[line] = this.pick(values[line] ?? value, value);
     while (this.buckets[0].time < at - windowS) this.buckets.shift();
   }
 

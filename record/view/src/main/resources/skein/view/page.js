@@ -15,7 +15,7 @@ if (/none|swiftshader|llvmpipe|software/i.test(card)) {
 gl?.getExtension("WEBGL_lose_context")?.loseContext();
 
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "graph"];
+const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "clock", "scenario", "graph"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
 const graph = new Graph(find("graph"));
@@ -60,6 +60,7 @@ function show(id) {
       if (topic === "/scene") flight.scene(row);
       else if (topic === "/skein/graph") graph.draw(row, flight.seconds(logNs));
       else flight.row(topic.slice(7), row, logNs);
+      if (topic === "/skein/clock") told = -1;
       changed = true;
     },
     sight(topic, bytes, logNs) {
@@ -67,7 +68,11 @@ function show(id) {
       else cameras.take(topic, bytes, logNs);
       changed = true;
     },
-    time(ns) { flight.now = flight.startNs === undefined ? 0 : flight.seconds(ns); changed = true; },
+    time(ns) {
+      if (flight.ending) return;
+      flight.now = flight.startNs === undefined ? 0 : flight.seconds(ns);
+      changed = true;
+    },
     playback(now) {
       const at = flight.seconds(now.now);
       if (now.seeked && at < flight.now) flight.rewind(at);
@@ -94,22 +99,29 @@ let seeking = false;
 
 function draw(at) {
   requestAnimationFrame(draw);
-  if (!changed || !flight) return;
-  changed = false;
-  window.skein.frames++;
-  map.draw(flight);
-  if (at - drawn < 200) return;
+  if (!flight) return;
+  if (changed) {
+    changed = false;
+    stale = true;
+    window.skein.frames++;
+    map.draw(flight);
+  }
+  // What came last is drawn, too, when nothing follows.
+  if (!stale || at - drawn < 200) return;
+  stale = false;
   drawn = at;
   plots.draw(flight);
   words();
 }
+let stale = false;
 let drawn = 0, told = -1;
 
 function words() {
   const { heading } = flight;
   if (heading) find("what").textContent =
-    `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
-  find("time").textContent = `${flight.now.toFixed(1)} s`;
+    heading.loop === "none" ? `${heading.scenario}, simulator at ${heading.simulator}`
+      : `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
+  find("time").textContent = flight.hasBegun || recorded ? `${flight.now.toFixed(1)} s` : "not begun";
   if (flight.ending) state(`${flight.ending.how}${flight.ending.reason ? `: ${flight.ending.reason}` : ""}`, flight.ending.how === "Failed");
   else if (find("state").textContent !== "not connected") state(flight.paused ? "paused: vehicles hover, nothing is decided" : "", flight.paused);
   find("pause").hidden = flight.paused;
@@ -125,7 +137,8 @@ function words() {
     const item = document.createElement("li"), dot = document.createElement("i");
     dot.style.background = vehicle.colour;
     const age = vehicle.ageMs === undefined ? "" : `, ${vehicle.ageMs.toFixed(0)} ms old at its last decision`;
-    item.append(dot, `${vehicle.name}${age}`);
+    const up = vehicle.down === undefined ? "" : `, ${(-vehicle.down).toFixed(1)} m up`;
+    item.append(dot, `${vehicle.name}${up}${age}`);
     return item;
   }));
   const signs = [
@@ -134,6 +147,13 @@ function words() {
     [flight.clouds.size, "points: what lidars see"],
   ];
   find("signs").textContent = signs.filter(([is]) => is).map(([, words]) => words).join("; ");
+  find("limits").hidden = !flight.limits.length && !flight.failed;
+  document.querySelector("#limits ul").replaceChildren(...flight.limits.map(limit => {
+    const words = limit.stretches
+      ? `${limit.text}: broken ${limit.stretches === 1 ? "once" : `${limit.stretches} times`}, worst ${limit.worst} at ${limit.worstAtS.toFixed(1)} s by ${limit.vehicles.join(" and ")}`
+      : `${limit.text}: kept so far`;
+    return Object.assign(document.createElement("li"), { textContent: words, className: limit.stretches ? "bad" : "" });
+  }), ...(flight.failed ? [Object.assign(document.createElement("li"), { textContent: `not shown: ${flight.failed}`, className: "bad" })] : []));
   if (told === flight.eventCount) return;
   told = flight.eventCount;
   find("eventCount").textContent = `(${flight.eventCount})`;

@@ -1,21 +1,68 @@
 package skein.view
 
-/** Who may look: a browser's page of another site may not, not even by a name that it has led to this
-  * machine.
+import java.net.InetAddress
+import scala.util.Try
+
+/** Who may ask an HTTP server of ours: programs, and the pages that it serves itself. A browser's page of
+  * another site may not, not even under a name that it has led to this machine (DNS rebinding).
   *
+  * Headers are compared as texts. So a header that says something unheard of is as foreign as one that names
+  * another site, and is never taken for none.
+  *
+  * @param port that it listens on
+  * @param host that it listens on, an address of IPv6 in brackets
+  * @param isLoopback whether this machine alone reaches it. Others may ask by any address and by names
+  *   without a dot, which nobody can register, besides `host` and `names`
+  * @param names of this machine
   * @param origins pages of other sites that may look all the same, for example `https://app.foxglove.dev`
   */
-final case class Access(port: Int, origins: Set[String] = Set.empty):
-  private val hosts = Set("127.0.0.1", "localhost", "[::1]").map(name => s"$name:$port")
+final case class Access(
+    port: Int,
+    host: String = "127.0.0.1",
+    isLoopback: Boolean = true,
+    names: Set[String] = Set.empty,
+    origins: Set[String] = Set.empty
+):
+  import Access.*
+
+  private val own = Loopback ++ names + host
 
   /** Why a request is refused, if it is.
     *
-    * @param host as the request names this server
-    * @param origin of the page that asks; programs that are no browser send none
+    * @param headers all names in lower case, and values, as they came
     */
-  def refusal(host: String, origin: Option[String]): Option[String] =
-    if !hosts(host) then Some(s"expected one of ${hosts.toVector.sorted.mkString(", ")} as the host")
-    else
-      origin.filterNot(from => origins(from) || hosts.exists(own => from == s"http://$own")).map(_ =>
-        "pages of other sites may not look; start with --view-origin to let one"
-      )
+  def refusal(headers: Iterable[(String, String)]): Option[String] =
+    def said(name: String) = headers.collect { case (`name`, value) => value }.toVector
+    (said("host"), said("origin")) match
+      case (Vector(at), from) if isOwnHost(at) =>
+        from match
+          case Vector()                                          => None
+          case Vector(one) if isOwnPage(one, at) || origins(one) => None
+          case _ => Some("pages of other sites may not look; start with --view-origin to let one")
+      case _ =>
+        Some(s"expected one of ${own.toVector.sorted.map(name => s"$name:$port").mkString(", ")} as the host")
+
+  private def isOwnHost(said: String) =
+    val name =
+      if said.endsWith(s":$port") then Some(said.dropRight(s":$port".length))
+      else Option.when(port == HttpPort)(said)
+    name.exists(one => own(one) || !isLoopback && (isPlain(one) || isAddress(one)))
+
+  private def isOwnPage(origin: String, at: String) =
+    origin.startsWith(Scheme) && {
+      val from = origin.drop(Scheme.length)
+      from == at || isLoopback && isOwnHost(from)
+    }
+
+object Access:
+  private val Loopback = Set("127.0.0.1", "localhost", "[::1]")
+  private val Scheme   = "http://"
+
+  /** Which browsers leave out. */
+  private val HttpPort = 80
+
+  private def isPlain(name: String) =
+    name.nonEmpty && name.forall(letter => letter.isLetterOrDigit || letter == '-')
+
+  private def isAddress(name: String) =
+    Try(InetAddress.ofLiteral(name)).isSuccess && (name.count(_ == '.') == 3 || name.startsWith("["))

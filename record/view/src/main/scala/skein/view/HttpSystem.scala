@@ -18,10 +18,13 @@ object HttpSystem:
     .parseString("""
       |pekko.http.server {
       |  idle-timeout = 60s
+      |  linger-timeout = 1s
       |  pipelining-limit = 1
       |  server-header = ""
       |  parsing.max-content-length = 4k
       |  parsing.max-header-count = 64
+      |  # Headers come as they were sent, also those that nobody can parse: Access compares texts.
+      |  parsing.modeled-header-parsing = off
       |}
       |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
       |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off

@@ -1,17 +1,28 @@
 package skein.view
 
-import skein.record.{FlightMessage, FlightTopics, RecordingHeader, ImagingSensor, Topic}
+import skein.record.{
+  Ending,
+  FlightMessage,
+  FlightTopics,
+  ImagingSensor,
+  ReadingRow,
+  Record,
+  RecordingHeader,
+  Topic
+}
 import skein.scene.Scene
 import skein.units.{Instant, Span}
 
 /** Something besides the records that is shown of a flight, asked for now and then.
   *
-  * @param json as the topic's schema says
+  * @param json as the topic's schema says; none where nothing is new
+  * @param see shown every record first, on the same thread
   */
-final case class Gauge(topic: Topic, every: Span, json: () => String)
+final case class Gauge(topic: Topic, every: Span, json: () => Option[String], see: Record => Unit = _ => ())
 
 /** A flight while it flies. Its records come by `feed`; of a camera's images and of a lidar's clouds up to
-  * ten a second are shown.
+  * ten a second are shown. Its time begins with the first reading and stands still when it has ended, and
+  * nothing is shown after that.
   *
   * @param scene what stands in its world
   * @param sensors whose images and clouds come
@@ -24,7 +35,11 @@ final class LiveShow(
     override val controls: Map[FlightControl, () => Unit] = Map.empty,
     scene: Scene = Scene.Empty,
     sensors: Vector[ImagingSensor] = Vector.empty
-) extends Show(heading.flight.id, LiveShow.topics(heading, sensors) ++ gauges.map(_.topic), limits):
+) extends Show(
+      heading.flight.id,
+      LiveShow.topics(heading, sensors) ++ (LiveShow.clock +: gauges.map(_.topic)),
+      limits
+    ):
   private val topics = FlightTopics(
     heading.vehicles.map(_.name).toVector,
     heading.flight.startedAt,
@@ -34,6 +49,8 @@ final class LiveShow(
   private var number = 0L
   private var asked  = gauges.map(_ => Instant.ofNanos(0))
   private var looked = sensors.map(_ => Instant.ofNanos(0))
+  private var begun  = Option.empty[Instant]
+  private var ended  = Option.empty[Instant]
 
   topics.opening.foreach(publish)
   heading.records.foreach(show)
@@ -43,24 +60,33 @@ final class LiveShow(
   protected def greet(viewer: Viewer): Unit = ()
 
   def turn(now: Instant): Unit =
-    Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
-    looked = sensors.zip(looked).map: (sensor, last) =>
-      if now.since(last) < LiveShow.LookEvery then last
-      else feed.poll(sensor).fold(last)(record => { show(record); now })
-    asked = gauges.zip(asked).map: (gauge, last) =>
-      if now.since(last) < gauge.every then last
-      else
-        val json = gauge.json()
-        publish(FlightMessage.json(gauge.topic.name, "", now, now)(json))
-        now
-    notice("time", ServerBytes(Protocol.timeIs(now)))
+    if ended.isEmpty then
+      Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
+      looked = sensors.zip(looked).map: (sensor, last) =>
+        if now.since(last) < LiveShow.LookEvery then last
+        else feed.poll(sensor).fold(last)(record => { show(record); now })
+      asked = gauges.zip(asked).map: (gauge, last) =>
+        // At its end, too, so that it does not stand at what was before.
+        if now.since(last) < gauge.every && ended.isEmpty then last
+        else
+          gauge.json().foreach(json => publish(FlightMessage.json(gauge.topic.name, "", now, now)(json)))
+          now
+    notice("time", ServerBytes(Protocol.timeIs(ended.getOrElse(now))))
     if feed.lost > 0 then
       notice("feed", ServerText(Protocol.warning("feed", s"${feed.lost} records were too many to be shown")))
 
   def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit] =
     Left("a flight that flies cannot be played")
 
-  private def show(record: skein.record.Record): Unit =
+  private def show(record: Record): Unit =
+    record match
+      case reading: ReadingRow if begun.isEmpty =>
+        begun = Some(reading.state.sentAt)
+        val json = ujson.Obj("startedAtNs" -> reading.state.sentAt.toNanos.toString)
+        publish(FlightMessage.json(LiveShow.clock.name, "", reading.state.sentAt, reading.state.sentAt)(json.render()))
+      case ending: Ending => ended = Some(ending.at)
+      case _              => ()
+    gauges.foreach(_.see(record))
     topics.of(number, record).foreach(publish)
     number += 1
 
@@ -70,6 +96,13 @@ object LiveShow:
       _,
       ImagePreviews
     ))
+
+  /** When its time began: as text, since numbers of JSON are not exact to the nanosecond. */
+  private val clock = Topic(
+    "/skein/clock",
+    "skein.clock",
+    """{"title":"skein.clock","type":"object","properties":{"startedAtNs":{"type":"string"}}}"""
+  )
 
   private val LookEvery = Span.ofMillis(100)
 

@@ -1,10 +1,9 @@
 package skein.view
 
 import org.apache.pekko.http.scaladsl.model.*
-import org.apache.pekko.http.scaladsl.model.headers.RawHeader
 import scala.util.Using
 
-/** The page and its files. It loads nothing from elsewhere, and its Content-Security-Policy enforces that. */
+/** The page and its files. It loads nothing from elsewhere, which [[HttpPort]]'s headers enforce. */
 private[view] object Page:
   private val css  = MediaTypes.`text/css`.withCharset(HttpCharsets.`UTF-8`)
   private val code = MediaTypes.`application/javascript`.withCharset(HttpCharsets.`UTF-8`)
@@ -26,23 +25,10 @@ private[view] object Page:
   ).map { case (path, (name, kind)) => path -> (kind, read(name)) }.toMap
 
   def file(path: String): Option[HttpResponse] =
-    files.get(path).map((kind, bytes) => answer(StatusCodes.OK, HttpEntity(kind, bytes)))
+    files.get(path).map((kind, bytes) => HttpResponse(entity = HttpEntity(kind, bytes)))
 
   def answer(status: StatusCode, kind: ContentType.NonBinary, text: String): HttpResponse =
-    answer(status, HttpEntity(kind, text))
-
-  private def answer(status: StatusCode, entity: ResponseEntity) = HttpResponse(status, guards, entity)
-
-  private val guards = Vector(
-    "Content-Security-Policy" -> (
-      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; " +
-        "img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-    ),
-    "X-Content-Type-Options"       -> "nosniff",
-    "Referrer-Policy"              -> "no-referrer",
-    "Cross-Origin-Resource-Policy" -> "same-origin",
-    "Cache-Control"                -> "no-store"
-  ).map(RawHeader(_, _))
+    HttpResponse(status, entity = HttpEntity(kind, text))
 
   private def read(name: String): Array[Byte] =
     Using.resource(getClass.getResourceAsStream(name))(_.readAllBytes())

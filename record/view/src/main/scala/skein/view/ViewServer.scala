@@ -1,16 +1,16 @@
 package skein.view
 
-import java.util.concurrent.atomic.AtomicInteger
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.http.scaladsl.Http
 import org.apache.pekko.http.scaladsl.model.*
-import org.apache.pekko.http.scaladsl.model.headers.Origin
 import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, Message, TextMessage, WebSocketUpgrade}
-import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import scala.concurrent.duration.*
+import skein.link.Seats
 import skein.units.Clock
 
 /** Serves the page and Foxglove's protocol for some flights, on loopback. It has an actor system of its own,
@@ -23,7 +23,9 @@ import skein.units.Clock
 final class ViewServer private (
     binding: Http.ServerBinding,
     val counts: RefusalCounts,
-    turning: () => Unit
+    turning: () => Unit,
+    shows: Shows,
+    clock: Clock
 )(using
     system: ActorSystem
 ):
@@ -31,12 +33,16 @@ final class ViewServer private (
 
   def url: String = s"http://127.0.0.1:$port"
 
-  /** Closes every connection. */
+  /** Shows viewers the last there is, gives them a moment to take it, and closes every connection. */
   def close(): Future[Done] =
     import system.dispatcher
     turning()
+    val isWatched = shows.all.exists(_.watching > 0)
     binding
       .unbind()
+      .transformWith: _ =>
+        shows.all.foreach(_.attempt(clock.now()))
+        if isWatched then after(ViewServer.LastMoment, system.scheduler)(Future.unit) else Future.unit
       .transformWith(_ => system.terminate())
       .map(_ => Done)
 
@@ -62,35 +68,26 @@ object ViewServer:
     given system: ActorSystem =
       HttpSystem("skein-view", threads, "websocket.periodic-keep-alive-max-idle = 20s")
     import system.dispatcher
-    val counts = RefusalCounts()
-    val open   = AtomicInteger()
-    Http()
-      .newServerAt("127.0.0.1", port)
-      .connectionSource()
-      .toMat(Sink.foreach: connection =>
-        if open.incrementAndGet() > limits.connections then
-          open.decrementAndGet(): Unit
-          counts.refusedConnection()
-          connection.handleWith(Flow.fromSinkAndSourceCoupled(Sink.cancelled, Source.empty)): Unit
-        else
-          val access  = Access(connection.localAddress.getPort, origins)
-          val handled = Flow[HttpRequest]
-            .map(answer(_, access, token, shows.all, clock, counts))
-            .watchTermination()((_, ended) => ended.onComplete(_ => open.decrementAndGet()))
-          connection.handleWith(handled): Unit)(Keep.left)
-      .run()
+    val seats  = Seats(limits.connections, clock)
+    val counts = RefusalCounts(seats)
+    HttpPort
+      .bind("127.0.0.1", port, seats, Access(_, origins = origins), () => counts.refusedRequest())(
+        answer(_, _, token, shows.all, clock, counts)
+      )
       .map: binding =>
         val turns = system.scheduler.scheduleWithFixedDelay(TurnEvery, TurnEvery)(() =>
           shows.all.foreach(_.attempt(clock.now()))
         )
-        ViewServer(binding, counts, () => turns.cancel(): Unit)
+        ViewServer(binding, counts, () => turns.cancel(): Unit, shows, clock)
       .recoverWith { case error => system.terminate().transformWith(_ => Future.failed(error)) }
 
   private val TurnEvery = 25.millis
 
+  private val LastMoment = 300.millis
+
   private def answer(
       request: HttpRequest,
-      access: Access,
+      guest: HttpPort.Guest,
       token: Token,
       shows: Vector[Show],
       clock: Clock,
@@ -100,43 +97,38 @@ object ViewServer:
       counts.refusedRequest()
       request.discardEntityBytes()
       Page.answer(status, ContentTypes.`text/plain(UTF-8)`, why)
-    val host   = request.uri.authority.toString
-    val origin = request.header[Origin].map(_.origins.mkString(" "))
-    val path   = request.uri.path.toString
-    access.refusal(host, origin) match
-      case Some(why) => refused(StatusCodes.Forbidden, why)
-      case None      =>
-        (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
-          case (Some(upgrade: WebSocketUpgrade), _) =>
-            shows.find(show => path == s"/flights/${show.id}").orElse(shows.headOption.filter(_ =>
-              path == "/"
-            )) match
-              case Some(show) => watch(upgrade, show, clock, counts).getOrElse(
-                  refused(
-                    StatusCodes.BadRequest,
-                    s"expected one of the subprotocols ${Protocol.Names.mkString(", ")}"
-                  )
-                )
-              case None => refused(StatusCodes.NotFound, s"no flight at $path")
-          case (_, HttpMethods.GET) if path == "/flights" =>
-            Page.answer(
-              StatusCodes.OK,
-              ContentTypes.`application/json`,
-              ujson.Arr.from(shows.map(listed)).render()
+    val path = request.uri.path.toString
+    (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
+      case (Some(upgrade: WebSocketUpgrade), _) =>
+        shows.find(show => path == s"/flights/${show.id}").orElse(shows.headOption.filter(_ =>
+          path == "/"
+        )) match
+          case Some(show) => watch(upgrade, show, guest, clock, counts).getOrElse(
+              refused(
+                StatusCodes.BadRequest,
+                s"expected one of the subprotocols ${Protocol.Names.mkString(", ")}"
+              )
             )
-          case (_, HttpMethods.GET) =>
-            Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
-          case (_, HttpMethods.POST) =>
-            val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
-            (wanted(path, shows), token.is(said)) match
-              case (_, false) =>
-                refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
-              case (Vector(), _) => refused(StatusCodes.NotFound, s"nothing to be done at $path")
-              case (acts, true)  =>
-                request.discardEntityBytes()
-                acts.foreach(_())
-                Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "done")
-          case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
+          case None => refused(StatusCodes.NotFound, s"no flight at $path")
+      case (_, HttpMethods.GET) if path == "/flights" =>
+        Page.answer(
+          StatusCodes.OK,
+          ContentTypes.`application/json`,
+          ujson.Arr.from(shows.map(listed)).render()
+        )
+      case (_, HttpMethods.GET) =>
+        Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
+      case (_, HttpMethods.POST) =>
+        val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
+        (wanted(path, shows), token.is(said)) match
+          case (_, false) =>
+            refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
+          case (Vector(), _) => refused(StatusCodes.NotFound, s"nothing to be done at $path")
+          case (acts, true)  =>
+            request.discardEntityBytes()
+            acts.foreach(_())
+            Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "done")
+      case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
 
   private def listed(show: Show) =
     ujson.Obj(
@@ -154,14 +146,18 @@ object ViewServer:
         act <- show.controls.get(control)
       yield act
 
-  private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: RefusalCounts)(using
-      ActorSystem
-  ): Option[HttpResponse] =
+  private def watch(
+      upgrade: WebSocketUpgrade,
+      show: Show,
+      guest: HttpPort.Guest,
+      clock: Clock,
+      counts: RefusalCounts
+  )(using ActorSystem): Option[HttpResponse] =
     Protocol.Names
       .find(upgrade.requestedProtocols.contains)
-      .map(name =>
-        upgrade.handleMessages(whole(show.limits, counts).via(ViewerStage(show, clock, counts)), Some(name))
-      )
+      .map: name =>
+        val stage = ViewerStage(show, clock, counts, () => guest.spoke())
+        upgrade.handleMessages(guest.during(whole(show.limits, counts).via(stage)), Some(name))
 
   /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
   private def whole(limits: ViewerLimits, counts: RefusalCounts)(using

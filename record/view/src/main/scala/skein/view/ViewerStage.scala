@@ -10,8 +10,10 @@ import skein.units.Clock
   * '''Emits when''' downstream pulls and something waits for the viewer. '''Backpressures when''' never; what
   * waits is bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever way, or the
   * viewer has said too much that is none of the protocol. '''Cancels when''' downstream cancels.
+  *
+  * @param spoke called for each message that is obeyed
   */
-private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalCounts)
+private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalCounts, spoke: () => Unit)
     extends GraphStage[FlowShape[Message, Message]]:
   private val in  = Inlet[Message]("ViewerStage.in")
   private val out = Outlet[Message]("ViewerStage.out")
@@ -36,7 +38,7 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalC
           case TextMessage.Strict(text) if text.length <= most     => Protocol.read(text)
           case BinaryMessage.Strict(bytes) if bytes.length <= most => Protocol.read(bytes)
           case _                                                   => Left(s"a message has up to $most bytes")
-        message.flatMap(obey).left.foreach(refuse)
+        message.flatMap(obey).fold(refuse, _ => spoke())
         if refused > show.limits.refusals then completeStage() else pull(in)
 
       /** What came was no frame: that is the viewer's mistake, and no failure of ours. */

@@ -114,10 +114,55 @@ class ShowSuite extends munit.FunSuite:
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(1000)), ""), at(1)): Unit
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(33.0))
 
+  /** What the server says the time is, s, as often as it says so. */
+  private def clock(viewer: Viewer): Vector[Double] = Vector
+    .unfold(())(_ => viewer.take().map((_, ())))
+    .collect {
+      case ServerBytes(bytes) if bytes(0) == 2 =>
+        bytes.drop(1).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getLong * 1e-9
+    }
+
+  test("a flight's time begins with its first reading, and whoever comes later is told so"):
+    val feed  = Feed()
+    val show  = LiveShow(heading, feed)
+    val early = watching(show, "/skein/clock")
+    show.turn(at(3))
+    assertEquals(seen(show, early), Vector.empty)
+    feed.offer(Samples.reading(4))
+    feed.offer(Samples.reading(5))
+    show.turn(at(4))
+    val begun = Samples.reading(4).state.sentAt.toNanos.toString
+    for viewer <- Seq(early, watching(show, "/skein/clock")) do
+      assertEquals(seen(show, viewer).map(_.row("startedAtNs").str), Vector(begun))
+
+  test("when a flight has ended its time stands still, and nothing more of it is shown"):
+    val feed  = Feed()
+    var asked = 0
+    val gauge =
+      Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), () => { asked += 1; Some("{}") })
+    val show   = LiveShow(heading, feed, Vector(gauge))
+    val viewer = watching(show, "/skein/reading", "/skein/ending")
+    show.turn(at(10))
+    feed.offer(Ending(at(10.1), EndingKind.Completed, None))
+    show.turn(at(10.2))
+    feed.offer(Samples.reading(9))
+    show.turn(at(20))
+    show.turn(at(30))
+    assertEquals(asked, 2)
+    val came = Vector.unfold(())(_ => viewer.take().map((_, ())))
+    assert(came.exists { case ServerBytes(bytes) => bytes(0) == 2; case _ => false })
+    val late = watching(show, "/skein/reading", "/skein/ending")
+    show.turn(at(40))
+    assertEquals(clock(late).map(seconds => (seconds * 10).round), Vector(101L))
+    assertEquals(
+      seen(show, watching(show, "/skein/reading", "/skein/ending")).map(_.topic),
+      Vector("/skein/ending")
+    )
+
   test("a gauge is asked no more often than it wants"):
     var asked = 0
     val gauge =
-      Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), () => { asked += 1; "{}" })
+      Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), () => { asked += 1; Some("{}") })
     val show = LiveShow(heading, Feed(), Vector(gauge))
     for turn <- 0 to 40 do show.turn(at(10) + Span.ofMillis(25) * turn)
     assertEquals(asked, 3)
@@ -126,7 +171,7 @@ class ShowSuite extends munit.FunSuite:
     var asked   = 0
     def graph() =
       asked += 1
-      if asked == 1 then throw IllegalStateException("no graph yet") else "{}"
+      if asked == 1 then throw IllegalStateException("no graph yet") else Some("{}")
     val gauge  = Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), graph)
     val show   = LiveShow(heading, Feed(), Vector(gauge))
     val viewer = watching(show, "/skein/graph")

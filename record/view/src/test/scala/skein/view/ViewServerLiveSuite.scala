@@ -25,7 +25,9 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
-  private final class Served(limits: ViewerLimits):
+  /** @param clock by which connections are silent
+    */
+  private final class Served(limits: ViewerLimits, clock: Clock = Clock.system):
     val done: ConcurrentLinkedQueue[FlightControl] = ConcurrentLinkedQueue()
     val feed: Feed                                 = Feed()
     val show: LiveShow                             =
@@ -40,7 +42,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     val server: ViewServer = await(
       ViewServer.start(
         shows,
-        Clock.system,
+        clock,
         ExecutionContext.global,
         port = 0,
         token = Token("right"),
@@ -48,8 +50,13 @@ class ViewServerLiveSuite extends munit.FunSuite:
       )
     )
 
-  private def serving(limits: ViewerLimits = ViewerLimits()) =
-    FunFixture[Served](_ => Served(limits), served => await(served.server.close()): Unit)
+  private def serving(limits: ViewerLimits = ViewerLimits(), clock: Clock = Clock.system) =
+    FunFixture[Served](_ => Served(limits, clock), served => await(served.server.close()): Unit)
+
+  /** Stands until it is set. */
+  private final class SetClock extends Clock:
+    @volatile var seconds          = 0
+    def now(): skein.units.Instant = skein.units.Instant.ofNanos(seconds * 1_000_000_000L)
 
   private final class Connection(
       val answer: WebSocketUpgradeResponse,
@@ -160,15 +167,72 @@ class ViewServerLiveSuite extends munit.FunSuite:
     assertEquals(other.until(text)("op").str, "serverInfo")
     assertEquals(served.server.counts.refusedMessages >= 4, true)
 
-  serving(ViewerLimits(connections =
-    5
-  )).test("of two hundred connections all but the most that may are closed at once"): served =>
+  serving(
+    ViewerLimits(connections = 5),
+    SetClock()
+  ).test("of two hundred connections all but the most that may are closed at once"): served =>
     val port    = served.server.port
     val sockets = Vector.fill(200)(Socket("127.0.0.1", port))
     // They are accepted in their order; the end of a stream, or a reset, is what one sees that was closed.
     for socket <- sockets.drop(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
     sockets.foreach(_.close())
     assertEquals(served.server.counts.refusedConnections, 195L)
+
+  private val standing = SetClock()
+
+  serving(ViewerLimits(connections = 4), standing).test(
+    "connections that say nothing, half a request or one word make room for those who speak"
+  ): served =>
+    import java.nio.charset.StandardCharsets.US_ASCII
+    val port                      = served.server.port
+    def ended(socket: Socket)     = Try(socket.getInputStream.readAllBytes()).isSuccess || true
+    def say(text: String): Socket =
+      val socket = Socket("127.0.0.1", port)
+      socket.setSoTimeout(20_000)
+      socket.getOutputStream.write(text.getBytes(US_ASCII))
+      socket
+    val request = s"GET /flights HTTP/1.1\r\nHost: 127.0.0.1:$port\r\n"
+    val upgrade = s"${request.replace("/flights", "/")}Upgrade: websocket\r\nConnection: Upgrade\r\n" +
+      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+      s"Sec-WebSocket-Protocol: ${Protocol.Names.head}\r\n\r\n"
+    val silent  = say("")
+    val dripped = say(request)
+    // An answer has come, so it was heard.
+    val spoken = say(upgrade)
+    assertEquals(spoken.getInputStream.read(), 'H'.toInt)
+    val viewer = connect(port, Protocol.Names*)()
+    assertEquals(viewer.until(text)("op").str, "serverInfo")
+    standing.seconds = 6
+    viewer.send("""{"op":"subscribe","subscriptions":[]}""")
+    viewer.send("nonsense")
+    viewer.until(text.andThen { case said if said("op").str == "status" => () })
+    for gone <- Seq(silent, dripped, spoken) do
+      val next = say(request + "\r\n")
+      assertEquals(next.getInputStream.read(), 'H'.toInt)
+      assert(ended(gone))
+    viewer.send("nonsense")
+    viewer.until(text.andThen { case said if said("op").str == "status" => () })
+    assertEquals(served.server.counts.displacedConnections, 3L)
+
+  serving().test("a page of another site gets no flight, whatever it calls itself"): served =>
+    val port                                                              = served.server.port
+    def status(origin: String, host: String = s"127.0.0.1:$port"): String =
+      scala.util.Using.resource(Socket("127.0.0.1", port)): socket =>
+        socket.setSoTimeout(20_000)
+        socket.getOutputStream.write(
+          (s"GET / HTTP/1.1\r\nHost: $host\r\nOrigin: $origin\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" +
+            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+            s"Sec-WebSocket-Protocol: ${Protocol.Names.head}\r\n\r\n").getBytes("UTF-8")
+        )
+        scala.io.Source.fromInputStream(socket.getInputStream, "ISO-8859-1").getLines().next().split(' ')(1)
+    for from <- AccessSuite.foreign(port) do
+      assert(clue(Set("403", "400"))(status(from)), from)
+    assertEquals(status("http://elsewhere.example:99999"), "403")
+    for host <- Seq("elsewhere.example", s"elsewhere.example:$port", s"127.0.0.1:$port.elsewhere.example", "")
+    do
+      assert(Set("403", "400")(status(s"http://127.0.0.1:$port", host)), host)
+    assertEquals(status(s"http://127.0.0.1:$port"), "101")
+    assertEquals(served.show.watching, 1)
 
   serving().test("a flight is paused, continued and ended by whoever has the token, and by nobody else"):
     served =>

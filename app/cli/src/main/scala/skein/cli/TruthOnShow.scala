@@ -1,0 +1,51 @@
+package skein.cli
+
+import java.util.concurrent.atomic.AtomicLong
+import org.apache.pekko.actor.{ActorSystem, Cancellable}
+import scala.concurrent.duration.DurationInt
+import skein.record.{FlightRow, RecordingHeader, ReadingRow, VehicleRow}
+import skein.signal.Stamped
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.*
+import skein.vehicle.VehicleKind
+import skein.view.{Feed, LiveShow, Shows}
+
+/** The vehicles of a simulator where they truly are, for viewers: as readings that took no time. */
+private[cli] object TruthOnShow:
+  private val Every = 50.millis
+
+  /** Until it is cancelled. */
+  def start(settings: SimulatorSettings, server: SimulatorServer, shows: Shows, clock: Clock)(using
+      system: ActorSystem
+  ): Cancellable =
+    import system.dispatcher
+    val feed     = Feed()
+    val sequence = AtomicLong()
+    shows.add(LiveShow(heading(settings, server, clock.now()), feed, scene = settings.scene))
+    system.scheduler.scheduleWithFixedDelay(Every, Every)(() =>
+      server.truth().foreach: truth =>
+        val now    = clock.now()
+        val number = sequence.getAndIncrement()
+        for (name, kinematics) <- truth.vehicles do
+          feed.offer(ReadingRow(number, name, Stamped(kinematics, truth.at, now, now)))
+    )
+
+  private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = RecordingHeader(
+    FlightRow(
+      "simulator",
+      "none",
+      "none",
+      0,
+      Span.ofNanos(Every.toNanos),
+      Span.Zero,
+      "real",
+      server.address.toString,
+      "where vehicles truly are",
+      "",
+      now
+    ),
+    settings.world.vehicles.map(vehicle =>
+      VehicleRow(vehicle.name, "", MetresPerSecond(0), vehicle.startNed)
+    ),
+    settings.world.vehicles.filter(_.isCar).flatMap(car => VehicleRow.kind(car.name, VehicleKind.Car))
+  )

@@ -1,0 +1,62 @@
+package skein.figures
+
+import skein.measure.{FlightSummary, ScenarioFlights}
+import skein.plot.{Drawing, Mark}
+import skein.policy.Agent
+import skein.report.SyntheticFlight
+import skein.scenario.{Crossing, Limit, Result, Scenario, Track, Tracks}
+import skein.units.*
+
+/** Two vehicles that fly the same way, one above the other, below a ceiling. */
+class ScenarioFigureSuite extends munit.FunSuite:
+  import ScenarioFigureSuite.*
+
+  private lazy val summary =
+    FlightSummary.of(SyntheticFlight("stream", "vpn", seed = 1, 12))(using skein.scenario.Scenarios.ours)
+
+  private def flown(ceilingM: Double) =
+    def track(name: String, upM: Double) = Track.of(
+      name,
+      "crosser",
+      (0 to 100).toVector.map(step =>
+        (Instant.ofNanos(step * 100_000_000L), Vector3(step * 0.5, 0, -upM), Vector3(5, 0, 0))
+      )
+    )
+    val tracks = Tracks.of(Vector(track("One", 5), track("Two", 7))).get
+    ScenarioFlights(Vector(ScenarioFlights.Flown(summary, Result.of(Capped(ceilingM), tracks))))
+
+  private def texts(drawing: Drawing) = drawing.shapes.collect { case text: Mark.Text => text.content }
+
+  /** Of curves of so many points at least. */
+  private def strokes(drawing: Drawing) =
+    drawing.shapes.collect { case Mark.Path(points, Some(stroke), None, false) if points.size > 20 => stroke }
+
+  test("vehicles that fly the same way are told apart: by name in the legend, and the first line is wider"):
+    val figure = ScenarioFigure.trajectories(flown(100))
+    val names  = Capped(100).agents.map(_.name)
+    assert(names.forall(texts(figure).contains), texts(figure))
+    val lines = strokes(figure).filter(_.dash.isEmpty)
+    assertEquals(lines.map(_.colour.rgb).distinct.size, 2)
+    assert(lines(0).width > lines(1).width + 1, lines)
+
+  test("a ceiling that was broken is drawn with its place in the legend, one that is far away is not"):
+    def isRed(mark: Mark) = mark match
+      case Mark.Disc(_, 5, Some(stroke), None) => stroke.colour.rgb == 0xcc0000
+      case _                                   => false
+    val broken = ScenarioFigure.altitudes(flown(6))
+    assert(texts(broken).contains("altitude of at most 6 m") && texts(broken).contains("a limit broken"))
+    // One in the panel and one in the legend.
+    assertEquals(broken.shapes.count(isRed), 2)
+    assertEquals(ScenarioFigure.hasAltitudes(flown(6)), true)
+    val kept = ScenarioFigure.altitudes(flown(100))
+    assert(!texts(kept).exists(_.contains("at most")), texts(kept))
+    assertEquals((kept.shapes.count(isRed), ScenarioFigure.hasAltitudes(flown(100))), (0, false))
+
+  test("a geofence is drawn as far as it lies in the panel, and named where it does"):
+    assert(texts(ScenarioFigure.trajectories(flown(100))).contains("geofence"))
+
+object ScenarioFigureSuite:
+  final case class Capped(ceilingM: Double) extends Scenario:
+    def agents: Vector[Agent]          = Crossing(vehicles = 2, streams = 2).agents
+    override def limits: Vector[Limit] =
+      Vector(Limit.ceiling(Metres(ceilingM)), Limit.geofence(Metres(20), Metres(0), Metres(22)))

@@ -1,0 +1,93 @@
+package skein.view
+
+import java.util.concurrent.atomic.AtomicInteger
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.http.scaladsl.Http
+import org.apache.pekko.http.scaladsl.model.*
+import org.apache.pekko.http.scaladsl.model.headers.RawHeader
+import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
+import scala.concurrent.{ExecutionContext, Future}
+import skein.link.Seats
+
+/** A port of ours that speaks HTTP. It has a limited number of connections, of which those that say nothing
+  * make room for others, answers no page of another site, and tells browsers to give what it answers to pages
+  * of its own alone.
+  */
+object HttpPort:
+
+  /** @param host where it listens, as an address of IPv6 has no brackets
+    * @param port 0 for any that is free
+    * @param access by the port that it listens on
+    * @param refused told of each request that `access` refuses
+    * @param answer must not wait; an answer that is no error counts as a word of use
+    * @return fails where it cannot listen
+    */
+  def bind(host: String, port: Int, seats: Seats, access: Int => Access, refused: () => Unit = () => ())(
+      answer: (HttpRequest, Guest) => HttpResponse
+  )(using ActorSystem): Future[Http.ServerBinding] =
+    Http()
+      .newServerAt(host, port)
+      .connectionSource()
+      .to(Sink.foreach: connection =>
+        val switch = KillSwitches.shared("http-connection")
+        seats.enter(() => switch.shutdown()) match
+          case None =>
+            connection.handleWith(Flow.fromSinkAndSourceCoupled(Sink.cancelled, Source.empty)): Unit
+          case Some(seat) =>
+            val guest = Guest(seat, switch)
+            val who   = access(connection.localAddress.getPort)
+            connection.handleWith(guest.during(Flow[HttpRequest].map(served(
+              _,
+              guest,
+              who,
+              refused,
+              answer
+            )))): Unit)
+      .run()
+
+  /** One connection. */
+  final class Guest private[HttpPort] (seat: Seats.Seat, switch: SharedKillSwitch):
+    // A WebSocket outlives the requests of its connection.
+    private val running = AtomicInteger()
+
+    /** It has said something of use. */
+    def spoke(): Unit = seat.spoke()
+
+    /** The connection has its place at least as long as this flow runs, which ends when it loses that. */
+    def during[A, B](flow: Flow[A, B, ?]): Flow[A, B, ?] =
+      running.incrementAndGet(): Unit
+      flow
+        .via(switch.flow)
+        .watchTermination()((_, ended) =>
+          ended.onComplete(_ => if running.decrementAndGet() == 0 then seat.left())(using
+            ExecutionContext.parasitic
+          )
+        )
+
+  private def served(
+      request: HttpRequest,
+      guest: Guest,
+      access: Access,
+      refused: () => Unit,
+      answer: (HttpRequest, Guest) => HttpResponse
+  )(using ActorSystem): HttpResponse =
+    val response = access.refusal(request.headers.map(header => (header.lowercaseName, header.value))) match
+      case None      => answer(request, guest)
+      case Some(why) =>
+        refused()
+        request.discardEntityBytes()
+        HttpResponse(StatusCodes.Forbidden, entity = why)
+    if response.status.isSuccess then guest.spoke()
+    if response.status == StatusCodes.SwitchingProtocols then response else response.mapHeaders(guards ++ _)
+
+  private val guards = Vector(
+    "Content-Security-Policy" -> (
+      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; " +
+        "img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+    "X-Content-Type-Options"       -> "nosniff",
+    "Referrer-Policy"              -> "no-referrer",
+    "Cross-Origin-Resource-Policy" -> "same-origin",
+    "Cache-Control"                -> "no-store"
+  ).map(RawHeader(_, _))

@@ -1,0 +1,86 @@
+package skein.view
+
+class AccessSuite extends munit.FunSuite:
+  private val access = Access(8765)
+  private val here   = "host" -> "127.0.0.1:8765"
+
+  private val foreign = AccessSuite.foreign(8765)
+
+  test("an origin that is not exactly ours is refused, also one that nobody can parse"):
+    for from <- foreign do assert(access.refusal(Seq(here, "origin" -> from)).isDefined, from)
+
+  test("two origins are refused, even two of ours"):
+    val own = "origin" -> "http://127.0.0.1:8765"
+    assertEquals(access.refusal(Seq(here, own)), None)
+    assert(access.refusal(Seq(here, own, own)).isDefined)
+
+  test("programs, which say no origin, and the server's own pages may look, by each name of this machine"):
+    for name <- Seq("127.0.0.1:8765", "localhost:8765", "[::1]:8765") do
+      assertEquals(access.refusal(Seq("host" -> name)), None)
+      assertEquals(access.refusal(Seq(here, "origin" -> s"http://$name")), None)
+
+  test("a name that another site has led to this machine is refused, and so is none, and two"):
+    for name <- Seq(
+        "elsewhere.example:8765",
+        "127.0.0.1.elsewhere.example:8765",
+        "elsewhere:8765",
+        "127.0.0.1",
+        "127.0.0.1:80",
+        "127.0.0.1:8765:8765",
+        "10.0.0.1:8765",
+        ""
+      )
+    do assert(access.refusal(Seq("host" -> name)).isDefined, name)
+    assert(access.refusal(Nil).isDefined)
+    assert(access.refusal(Seq(here, here)).isDefined)
+
+  test("a site that the user names may look, and no site that resembles it"):
+    val open = access.copy(origins = Set("https://app.foxglove.dev"))
+    assertEquals(open.refusal(Seq(here, "origin" -> "https://app.foxglove.dev")), None)
+    for from <- foreign ++ Seq("https://app.foxglove.dev.elsewhere.example", "https://app.foxglove.dev:443")
+    do
+      assert(open.refusal(Seq(here, "origin" -> from)).isDefined, from)
+
+  test("at the web's own port, browsers leave the port out"):
+    val web = Access(80)
+    assertEquals(web.refusal(Seq("host" -> "localhost", "origin" -> "http://localhost")), None)
+    assert(web.refusal(Seq("host" -> "elsewhere.example")).isDefined)
+
+  test(
+    "a server that others reach answers to addresses and plain names, and to no name of a registered domain"
+  ):
+    val wide = Access(9100, "0.0.0.0", isLoopback = false, names = Set("lab-1.example.org"))
+    for name <- Seq("10.0.0.7", "[fe80::1]", "coordinator", "lab-1.example.org", "0.0.0.0") do
+      assertEquals(wide.refusal(Seq("host" -> s"$name:9100")), None, name)
+    for name <- Seq("elsewhere.example", "1.2.3", "10.0.0.7.elsewhere.example", "") do
+      assert(wide.refusal(Seq("host" -> s"$name:9100")).isDefined, name)
+    val from = Seq("host" -> "10.0.0.7:9100")
+    assertEquals(wide.refusal(from :+ "origin" -> "http://10.0.0.7:9100"), None)
+    assert(wide.refusal(from :+ "origin" -> "http://10.0.0.8:9100").isDefined)
+
+object AccessSuite:
+  /** What a browser, or who speaks like one, may say of another site, or of none. */
+  def foreign(port: Int): Seq[String] = Seq(
+    "http://elsewhere.example",
+    "http://a{b.elsewhere.example",
+    s"http://127.0.0.1:$port.elsewhere.example",
+    s"http://127.0.0.1:$port@elsewhere.example",
+    "http://elsewhere.example:99999",
+    "http://elsewhere.example/",
+    s"http://127.0.0.1:$port/",
+    s"http://127.0.0.1:$port http://elsewhere.example",
+    s"https://127.0.0.1:$port",
+    s"http://127.0.0.1:${port}0",
+    "http://127.0.0.1",
+    s"http://127.0.0.1:${port + 1}",
+    s"http://LOCALHOST:$port.",
+    s"http://[::1]:$port.elsewhere.example",
+    "http://[::1",
+    "http://el sewhere.example",
+    s"//127.0.0.1:$port",
+    s"http://127.0.0.2:$port",
+    s"http://:$port",
+    "file://",
+    "null",
+    ""
+  )
