@@ -9,14 +9,24 @@ import skein.hil.AutopilotKind
 import skein.link.{Address, ControlThreads, TcpTransport, TransportError}
 import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
-import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
+import skein.simulator.{
+  HilSettings,
+  MavlinkSettings,
+  Overload,
+  SettingsFile,
+  SimulatorServer,
+  SimulatorSettings
+}
 import skein.units.{Clock, Expect}
 import skein.view.Shows
 
 /** Options of `./skein serve`. */
 final case class ServeOptions(
-    @arg(doc = "where it listens; 0.0.0.0 opens it to other machines")
-    listen: String = "127.0.0.1:41451",
+    @arg(doc =
+      "where it listens; 0.0.0.0 opens it to other machines " +
+        "(default: 127.0.0.1, at ApiServerPort of the settings, or else 41451)"
+    )
+    listen: Option[String],
     @arg(doc = "an AirSim settings.json with the vehicles; without it, one named SimpleFlight")
     settings: Option[String],
     @arg(doc =
@@ -65,11 +75,12 @@ object ServeCommand
 
   protected def execute(options: ServeOptions): Either[String, Unit] =
     for
-      address  <- Address.parse(options.listen).left.map("--listen: " + _)
       overload <- overloadOf(options.workers)
       _        <- Expect.that(options.speed > 0 && options.speed <= MostSpeed):
         s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
-      world     <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
+      file <- options.settings.fold(Right(SettingsFile(WorldSettings.Default, Vector.empty)))(fileOf)
+      world = file.world
+      address   <- addressOf(options.listen, world)
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
       kind      <- plant.kind
@@ -79,8 +90,11 @@ object ServeCommand
         "--hil: not together with --mavlink, which is an autopilot itself"
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       flies = if autopilot.isDefined then "--hil" else "--mavlink"
-      _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value || !world.vehicles.exists(_.isCar)):
-        s"$flies: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
+      other = world.vehicles.find(vehicle => vehicle.isCar || vehicle.isCamera)
+      _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value || other.isEmpty):
+        s"$flies: expected multirotors alone, came ${other.fold("")(it =>
+            s"the ${if it.isCar then "car" else "camera"} ${it.name}"
+          )}"
       _ <- Expect.that(options.mavlinkInstance.isEmpty || options.mavlink.value):
         "--mavlink-instance: expected together with --mavlink"
       instance     = options.mavlinkInstance.getOrElse(0)
@@ -103,10 +117,17 @@ object ServeCommand
             hil = hil,
             kind = kind
           ),
-          Option.when(options.view.view.value)(shows)
+          Option.when(options.view.view.value)(shows),
+          file.notice.map(notice => s"${options.settings.getOrElse("")}: $notice")
         )
       )
     yield ()
+
+  /** Where it listens: as the command line says, else on this machine, at the settings' port. */
+  private[cli] def addressOf(listen: Option[String], world: WorldSettings): Either[String, Address] =
+    listen match
+      case Some(named) => Address.parse(named).left.map("--listen: " + _)
+      case None        => Right(Address("127.0.0.1", world.apiPort.getOrElse(SimulatorSettings.UsualPort)))
 
   private def overloadOf(text: String): Either[String, Overload] = text match
     case "vehicles+4" => Right(Overload.AirSim)
@@ -122,14 +143,19 @@ object ServeCommand
       .find(_.label == label)
       .toRight(s"--hil: expected ${AutopilotKind.values.map(_.label).mkString(", ")}, came '$label'")
 
-  private def worldOf(file: String): Either[String, WorldSettings] =
+  private def fileOf(name: String): Either[String, SettingsFile] =
     for
-      text      <- TextFile.read(file)
-      world     <- WorldSettings.parse(text).left.map(error => s"$file: ${error.message}")
-      supported <- SimulatorSettings.supported(world).left.map(error => s"$file: ${error.message}")
-    yield supported
+      text <- TextFile.read(name)
+      file <- SettingsFile.read(text).left.map(error => s"$name: ${error.message}")
+    yield file
 
-  private def serve(settings: SimulatorSettings, shows: Option[Shows]): Either[String, Unit] =
+  /** @param notice said when it has begun
+    */
+  private def serve(
+      settings: SimulatorSettings,
+      shows: Option[Shows],
+      notice: Option[String]
+  ): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")
     try
       val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
@@ -141,6 +167,7 @@ object ServeCommand
       val hil = settings.hil.fold(""): open =>
         s", for ${open.autopilot.label} at ${server.peerAddresses.mkString(", ")}"
       Console.out.println(s"serving $vehicles at ${server.address}$mavlink$hil; Ctrl-C ends it")
+      notice.foreach(line => Console.out.println(line))
       val ended = Promise[Either[String, Unit]]()
       server.failed.foreach(failure =>
         ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))

@@ -142,7 +142,8 @@ object SummaryTables:
     )
 
   /** What is to be known of single flights, a line each. */
-  def remarks(set: FlightSet): Vector[String] = cutShort(set) ++ paused(set) ++ unknown(set) ++ waiting(set)
+  def remarks(set: FlightSet): Vector[String] =
+    cutShort(set) ++ paused(set) ++ imageless(set) ++ unknown(set) ++ waiting(set)
 
   /** A line for each flight that ended before its time. */
   private def cutShort(set: FlightSet): Vector[String] =
@@ -152,6 +153,13 @@ object SummaryTables:
     yield
       val flown = s"${summary.flownS.fixed(1)} of ${summary.flight.duration.toSeconds.brief} s"
       s"${summary.flight.id} was cut short, after $flown: $reason"
+
+  /** A line for each camera of which no image came. */
+  private def imageless(set: FlightSet): Vector[String] =
+    for
+      summary <- set.all
+      camera  <- summary.imageless
+    yield s"${summary.flight.id}: $camera"
 
   /** A line for each scenario that is not known here. */
   private def unknown(set: FlightSet): Vector[String] =

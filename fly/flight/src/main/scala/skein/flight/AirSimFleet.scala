@@ -18,6 +18,7 @@ import skein.units.Decimals.fixed
   *   starts
   * @param calledOff why a flight, by its name, goes no further while its vehicles are brought to their starts
   * @param isWatched whether images and clouds are offered that are not recorded
+  * @param tell says something to a person
   */
 private[flight] final class AirSimFleet(
     transport: Transport,
@@ -25,7 +26,8 @@ private[flight] final class AirSimFleet(
     settings: FlySettings,
     startsAirborne: Boolean,
     calledOff: String => Option[String],
-    isWatched: Boolean
+    isWatched: Boolean,
+    tell: String => Unit
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -50,7 +52,7 @@ private[flight] final class AirSimFleet(
       )
       logs = vehicles.map(ImageRecorder(_, monitor, sensor => isWatched || settings.recordedImaging(sensor)))
       cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
-      films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
+      films   = vehicles.zip(logs).flatMap(film(plan, _, monitor, _))
       ports   = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
         val (vehicle, eyes) = looking
         val port            = Vehicles.port(
@@ -90,7 +92,12 @@ private[flight] final class AirSimFleet(
       )
 
   /** Its cameras that nobody decides by. */
-  private def film(vehicle: VehicleClient, recorder: Recorder, log: ImageRecorder): Vector[FilmedCamera] =
+  private def film(
+      plan: FlightPlan,
+      vehicle: VehicleClient,
+      recorder: Recorder,
+      log: ImageRecorder
+  ): Vector[FilmedCamera] =
     settings.filmed.filter(_.sensor.vehicle == vehicle.name).map: (sensor, every) =>
       log.ask(sensor.name)
       FilmedCamera(
@@ -99,7 +106,8 @@ private[flight] final class AirSimFleet(
         vehicle.eyes,
         clock,
         log.image,
-        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail))
+        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+        why => tell(s"${plan.id}: ${vehicle.name}'s camera $why")
       )
 
   private def watchContacts(

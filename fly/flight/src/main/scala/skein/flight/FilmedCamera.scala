@@ -8,7 +8,9 @@ import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
 import scala.concurrent.Future
 import skein.airsim.{Eyes, Image}
 import skein.flow.{Frames, Metronome}
+import skein.measure.FlightSummary
 import skein.record.EventKind
+import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
 
@@ -16,6 +18,7 @@ import skein.units.*
   * What is missed is counted, and told once a second.
   *
   * @param seen each image, newer than all before; must not wait for anything
+  * @param imageless told why, when it is closed and no image has come
   */
 private[skein] final class FilmedCamera(
     camera: String,
@@ -23,7 +26,8 @@ private[skein] final class FilmedCamera(
     eyes: Eyes,
     clock: Clock,
     seen: Stamped[Image] => Unit,
-    note: (EventKind, String) => Unit
+    note: (EventKind, String) => Unit,
+    imageless: String => Unit = _ => ()
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -32,12 +36,18 @@ private[skein] final class FilmedCamera(
   private val missed = AtomicReference(FilmedCamera.Missed(0, "", clock.now()))
   private val ended  = AtomicReference(Future.successful[Done](Done))
 
+  @volatile private var hasSeen = false
+  @volatile private var lastWhy = ""
+
   /** Films until it is closed. */
   def run(): Unit =
     val ticks = Source.fromGraph(Metronome(clock.now(), every, clock)).via(stop.flow)
     val end   = Frames
       .at(ticks, inFlight = 2, source.isNewer)(() => source.image())(skipped)
-      .toMat(Sink.foreach(seen))(Keep.right)
+      .toMat(Sink.foreach { image =>
+        hasSeen = true
+        seen(image)
+      })(Keep.right)
       .run()
     end.failed.foreach(error => note(EventKind.Aborted, s"$camera: $error"))
     ended.set(end.recover { case _ => Done })
@@ -45,15 +55,23 @@ private[skein] final class FilmedCamera(
   def close(): Future[Done] =
     stop.shutdown()
     tell(missed.getAndUpdate(_.copy(images = 0)))
+    if !hasSeen && lastWhy.nonEmpty then
+      val said = s"$camera${FlightSummary.NoImage}$lastWhy"
+      note(EventKind.Refused, said)
+      imageless(said)
     ended.get
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit =
     val (images, why) = what match
       case Frames.Skipped.Missed(frames) => (frames, "the camera is slower")
+      case Frames.Skipped.Failed(error: RpcError) => (1, error.message)
       case Frames.Skipped.Failed(error)  => (1, s"$error")
       case Frames.Skipped.Overtaken(_)   => (1, "an image was overtaken")
       case Frames.Skipped.Repeated(_)    => (1, "the same image again")
       case Frames.Skipped.Replaced(_)    => (1, "an image was replaced by a newer one")
+    what match
+      case Frames.Skipped.Failed(_) => lastWhy = why
+      case _                        => if lastWhy.isEmpty then lastWhy = why
     val now    = clock.now()
     val before = missed.getAndUpdate: soFar =>
       if now.since(soFar.since) >= FilmedCamera.TellEvery then FilmedCamera.Missed(0, why, now)

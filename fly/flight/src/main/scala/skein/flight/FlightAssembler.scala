@@ -59,7 +59,8 @@ final class FlightAssembler(
     settings,
     startsAirborne = simulator.isEmpty,
     calledOff,
-    isWatched
+    isWatched,
+    tell
   )
 
   /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */

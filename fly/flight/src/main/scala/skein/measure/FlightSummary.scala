@@ -22,6 +22,7 @@ import skein.units.Decimals.fixed
   * @param solver absent where the flight's own process decided
   * @param commandAgesMs of commands that carry out a decision: from when the vehicle's own physics was
   *   sampled to the command's sending
+  * @param imageless its cameras of which images were wanted and none came, and why: a line each
   */
 final case class FlightSummary(
     flight: FlightRow,
@@ -40,7 +41,8 @@ final case class FlightSummary(
     paused: Option[Span],
     seeing: Vector[SeeingSummary],
     solver: Option[SolverSummary],
-    commandAgesMs: Option[Distribution]
+    commandAgesMs: Option[Distribution],
+    imageless: Vector[String]
 ):
 
   /** Between the first pursuer and the first evader, where all fly against one opponent each; absent if they
@@ -110,6 +112,8 @@ final case class RoleSummary(
   def hasOpponent: Boolean = observedMs.keys.exists(_.isOfOpponent)
 
 object FlightSummary:
+  /** In an event of a camera of which no image came, between its name and the reason. */
+  val NoImage = ": no image came: "
 
   /** Those that stand in tables; what is of an opponent, where anybody has one. */
   def observations(flights: Seq[FlightSummary]): Vector[TimingObservation] =
@@ -137,8 +141,16 @@ object FlightSummary:
       paused(recording),
       scenario.toVector.flatMap(_.eyes).flatMap(SeeingSummary.of(recording, _, tracks)),
       SolverSummary.of(recording),
-      commandAgesMs(recording)
+      commandAgesMs(recording),
+      imageless(recording)
     )
+
+  /** Its cameras of which images were to be recorded and none came, and why. */
+  private def imageless(recording: Recording): Vector[String] =
+    for
+      event <- recording.events
+      if event.kind == EventKind.Refused && event.detail.contains(NoImage)
+    yield s"${event.vehicle.getOrElse("")}'s camera ${event.detail}"
 
   private def commandAgesMs(recording: Recording): Option[Distribution] =
     val decided = recording.decisions.map(made => (made.vehicle, made.sequence) -> made).toMap

@@ -9,8 +9,10 @@ import scala.concurrent.duration.*
 import skein.airsim.{AirSimClient, Multirotor, VehicleSettings, WorldSettings}
 import skein.link.*
 import skein.loop.{LoopKind, FlightOutcome}
+import skein.measure.FlightSummary
 import skein.record.{CameraImage, EventKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
+import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, ImageSource}
 import skein.signal.{Kinematics, LatencyProfile}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
@@ -55,6 +57,9 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     /** Questions for a camera that have come; the first is lost. */
     var cameraQuestions = 0
 
+    /** What a person was told. */
+    var told = Vector.empty[String]
+
     /** What the last flight's cameras saw. */
     var images = Vector.empty[CameraImage]
 
@@ -75,7 +80,14 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     ): Future[Either[String, Vector[Recording]]] =
       server.flatMap: server =>
         val assembler =
-          FlightAssembler(network, clock, settings, Some(server.address), calledOff = calledOff)
+          FlightAssembler(
+            network,
+            clock,
+            settings,
+            Some(server.address),
+            tell = line => told :+= line,
+            calledOff = calledOff
+          )
         settings.plans.foldLeft(Future.successful[Either[String, Vector[Recording]]](Right(Vector.empty))):
           (before, plan) =>
             before.flatMap:
@@ -278,4 +290,18 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     assertEquals(
       on(duel.take(1))(_.command(settings)).left.map(_.replaceFirst("^[^:]*: ", "")),
       Left("the simulator has no vehicle 'Pursuer'; it has 'Evader'")
+    )
+
+  test("a camera of which no image comes is told of, with the reason, and the summary has it"):
+    val filmed        = brief.copy(images = List(ImageSource.Camera("nose", 5)))
+    val (told, flown) = on(duel): bench =>
+      import bench.system.dispatcher
+      bench.command(filmed).map(orFail).map(flights => (bench.told, flights.head))
+    val lines = told.filter(_.contains("no image came"))
+    assertEquals(lines.size, 2, told.mkString("\n"))
+    assert(lines.forall(_.contains("No camera with name nose exist on vehicle")), lines)
+    val summary = FlightSummary.of(flown)(using Scenarios.ours)
+    assertEquals(summary.imageless.size, 2)
+    assert(
+      summary.imageless.head.contains("'s camera nose: no image came: simGetImages: refused by the peer: ")
     )

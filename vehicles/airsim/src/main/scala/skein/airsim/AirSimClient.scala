@@ -16,12 +16,15 @@ import upickle.default.{Reader, writeMsg}
 final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(5)):
   private given ExecutionContext = ExecutionContext.parasitic
 
+  /** Whether the simulator has refused a camera's function for its last argument; see [[Eyes]]. */
+  @volatile private[airsim] var camerasTakeLess = false
+
   private val once      = CallOptions(timeout)
   private val whichever = once.copy(idempotent = true)
 
   def ping(): Future[Either[RpcError, Boolean]] = get("ping")
 
-  /** AirSim's protocol version, 1. */
+  /** AirSim's protocol version: 1; of the built-in simulator and of Cosys-AirSim 3, 4. */
   def serverVersion(): Future[Either[RpcError, Int]] = get("getServerVersion")
 
   /** The oldest client version that the simulator serves, 1. */
@@ -39,9 +42,7 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
   def continueFor(span: Span): Future[Either[RpcError, Unit]] =
     tell("simContinueForTime", Seq(Float64(span.toSeconds)), once.copy(timeout = timeout + span))
 
-  /** Runs a number of frames and pauses. A frame is a picture in AirSim, a physics step of 3 ms in the
-    * built-in one.
-    */
+  /** Runs a number of frames and pauses. A frame is a picture in AirSim, 1/60 s in the built-in one. */
   def continueForFrames(frames: Int): Future[Either[RpcError, Unit]] =
     tell("simContinueForFrames", Seq(Int32(frames)), once)
 

@@ -30,7 +30,7 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
         pixels_as_float = shot.encoding == Encoding.Numbers,
         compress = shot.encoding == Encoding.Png
       )
-    ask("simGetImages", Seq(writeMsg(asked), Str(vehicle), Bool(false)))(Images.read(_, shots, originNed))
+    askCamera("simGetImages", Seq(writeMsg(asked), Str(vehicle)))(Images.read(_, shots, originNed))
 
   /** One image. */
   def image(shot: Shot): Future[Either[RpcError, Stamped[Image]]] =
@@ -43,10 +43,24 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
 
   /** A camera's horizontal field of view. */
   def fov(camera: String): Future[Either[RpcError, Radians]] =
-    ask("simGetCameraInfo", Seq(Str(camera), Str(vehicle), Bool(false)))(in =>
+    askCamera("simGetCameraInfo", Seq(Str(camera), Str(vehicle)))(in =>
       Right((Images.readFov(in), Instant.Epoch))
     )
       .map(_.map(_.value))
+
+  /** Functions of cameras end with `external` in AirSim and Colosseum, and have no such argument in
+    * Cosys-AirSim 3. Which it is the simulator tells by its first refusal, and the client remembers.
+    */
+  private def askCamera[A](method: String, params: Seq[Msg])(
+      read: MessageReader => Either[String, (A, Instant)]
+  ): Future[Either[RpcError, Stamped[A]]] =
+    if client.camerasTakeLess then ask(method, params)(read)
+    else
+      ask(method, params :+ Bool(false))(read).flatMap:
+        case Left(RpcError.Refused(_, text)) if text.contains(Eyes.WrongCount) =>
+          client.camerasTakeLess = true
+          ask(method, params)(read)
+        case other => Future.successful(other)
 
   private def ask[A](method: String, params: Seq[Msg])(
       read: MessageReader => Either[String, (A, Instant)]
@@ -55,3 +69,7 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
       case TimedReply(Right((value, validAt)), sentAt, receivedAt) =>
         Right(Stamped(value, validAt, sentAt, receivedAt))
       case TimedReply(Left(reason), _, _) => Left(RpcError.Malformed(method, reason)))
+
+private object Eyes:
+  /** rpclib's words for another number of arguments than the function has. */
+  val WrongCount = "invalid number of arguments"

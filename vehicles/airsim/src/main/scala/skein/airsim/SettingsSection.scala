@@ -1,5 +1,6 @@
 package skein.airsim
 
+import scala.collection.mutable
 import scala.util.control.NonFatal
 import skein.units.Vector3
 import ujson.{Num, Obj, Value}
@@ -9,58 +10,99 @@ enum SettingsError:
   case NotJson(reason: String)
   case Unexpected(path: String, expected: String, found: String)
 
+  /** One line, however long and whatever the file's keys and values are. */
   def message: String = this match
-    case NotJson(reason)                   => s"not JSON: $reason"
-    case Unexpected(path, expected, found) => s"$path: expected $expected, found $found"
+    case NotJson(reason)                   => s"not JSON: ${SettingsError.shown(reason)}"
+    case Unexpected(path, expected, found) =>
+      s"${SettingsError.shown(path)}: expected $expected, found ${SettingsError.shown(found)}"
+
+object SettingsError:
+  /** What a file says, as a part of one line: its first 120 letters, and none that would steer a terminal. */
+  def shown(text: String): String =
+    val line = text.take(MostShown).map(letter => if letter.isControl then '\ufffd' else letter)
+    if text.length > MostShown then s"$line…" else line
+
+  private val MostShown = 120
 
 /** An object of a `settings.json`, and where it stands. What it lacks is read as said; at the first value
-  * that does not fit, all reading ends.
+  * that does not fit, all reading ends. Which keys are read is remembered: [[unread]] tells the others, so
+  * that nothing in a file is passed over without a word.
   */
-final private[skein] class SettingsSection private (fields: Obj, path: String):
+final private[skein] class SettingsSection private (fields: Obj, path: String, read: SettingsSection.Read):
   import SettingsSection.*
 
-  def has(key: String): Boolean = fields.value.contains(key)
+  def has(key: String): Boolean = value(key).nonEmpty
 
   def fail(key: String, expected: String, found: String): Nothing =
     throw Misfit(SettingsError.Unexpected(at(key), expected, found))
 
   def number(key: String, unless: Double, least: Double = -1e9, most: Double = 1e9): Double =
-    fields.value.get(key) match
+    value(key) match
       case Some(Num(value)) if value >= least && value <= most => value
-      case Some(number: Num) => fail(key, s"a number from $least to $most", number.render())
+      case Some(number: Num) => fail(key, s"a number from ${plain(least)} to ${plain(most)}", number.render())
       case Some(other)       => fail(key, "a number", kindOf(other))
       case None              => unless
 
-  def text(key: String, unless: String): String = fields.value.get(key) match
+  def whole(key: String, unless: Int, least: Int, most: Int): Int =
+    val found = number(key, unless, least, most)
+    if found.isWhole then found.toInt else fail(key, "a whole number", found.toString)
+
+  def text(key: String, unless: String): String = value(key) match
     case Some(ujson.Str(value)) => value
     case Some(other)            => fail(key, "a string", kindOf(other))
     case None                   => unless
 
-  def flag(key: String, unless: Boolean): Boolean = fields.value.get(key) match
+  def flag(key: String, unless: Boolean): Boolean = value(key) match
     case Some(ujson.Bool(value)) => value
     case Some(other)             => fail(key, "true or false", kindOf(other))
     case None                    => unless
 
   def section(key: String): SettingsSection =
-    fields.value.get(key).fold(SettingsSection(Obj(), at(key)))(of(key, _))
+    value(key).fold(SettingsSection(Obj(), at(key), read))(of(key, _))
 
   /** By their names, in the file's order. */
   def sections(key: String): Vector[(String, SettingsSection)] = section(key).parts
 
-  private def parts = fields.value.toVector.map((name, value) => name -> of(name, value))
+  private def parts = fields.value.keysIterator.toVector.map(name => name -> section(name))
 
-  def list(key: String): Vector[SettingsSection] = fields.value.get(key) match
-    case Some(values: ujson.Arr) => values.value.toVector.map(of(key, _))
+  def list(key: String): Vector[SettingsSection] = value(key) match
+    case Some(values: ujson.Arr) => values.value.toVector.zipWithIndex.map((one, i) => of(s"$key[$i]", one))
     case Some(other)             => fail(key, "an array", kindOf(other))
     case None                    => Vector.empty
 
   /** NED, m or m/s. */
   def vector: Vector3 = Vector3(number("X", 0), number("Y", 0), number("Z", 0))
 
+  /** Takes all of it as read: what is switched off has no effect in AirSim either. */
+  def switchedOff(): Unit = read.all += path
+
+  /** Takes nothing of it as read, whatever was. */
+  def passedOver(): Unit = read.none += path
+
+  /** The paths of what was not read, in the file's order: a section of which nothing was read as a whole. */
+  def unread: Vector[String] =
+    if read.all(path) then Vector.empty
+    else if read.none(path) then Vector(path)
+    else
+      fields.value.toVector.flatMap: (key, value) =>
+        if !read.keys(at(key)) then Vector(at(key))
+        else
+          value match
+            case inner: Obj        => SettingsSection(inner, at(key), read).unread
+            case values: ujson.Arr =>
+              values.value.toVector.zipWithIndex.collect { case (inner: Obj, i) =>
+                SettingsSection(inner, at(s"$key[$i]"), read).unread
+              }.flatten
+            case _ => Vector.empty
+
+  private def value(key: String): Option[Value] =
+    read.keys += at(key)
+    fields.value.get(key)
+
   private def at(key: String) = s"$path.$key".stripPrefix(".")
 
   private def of(key: String, value: Value): SettingsSection = value match
-    case inner: Obj => SettingsSection(inner, at(key))
+    case inner: Obj => SettingsSection(inner, at(key), read)
     case other      => fail(key, "an object", kindOf(other))
 
 private[skein] object SettingsSection:
@@ -69,11 +111,23 @@ private[skein] object SettingsSection:
   def read[A](text: String)(read: SettingsSection => A): Either[SettingsError, A] =
     try
       ujson.read(text) match
-        case root: Obj => Right(read(SettingsSection(root, "")))
+        case root: Obj => Right(read(SettingsSection(root, "", Read())))
         case other     => Left(SettingsError.Unexpected("the whole", "an object", kindOf(other)))
     catch
       case e: Misfit   => Left(e.error)
       case NonFatal(e) => Left(notJson(text, e))
+
+  /** Paths: of keys that were read, of sections of which everything counts as read, and of those of which
+    * nothing does.
+    */
+  final private class Read:
+    val keys = mutable.Set.empty[String]
+    val all  = mutable.Set.empty[String]
+    val none = mutable.Set.empty[String]
+
+  /** Without `.0`. */
+  private def plain(number: Double): String =
+    if number.isWhole && number.abs < 1e15 then number.toLong.toString else number.toString
 
   final private class Misfit(val error: SettingsError)
       extends RuntimeException(error.message, null, false, false)

@@ -24,20 +24,27 @@ final case class VehicleSettings(
 ):
   def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
 
+  /** Whether it is no vehicle but a camera that stays where it is put. */
+  def isCamera: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision)
+
 /** What is read of an AirSim `settings.json`: vehicles with their sensors, origin, wind and clock speed.
   * Everything else in it is passed over. `SimMode` says of what type vehicles are that name none; unlike
-  * AirSim's, a world may have vehicles of both.
+  * AirSim's, a world may have vehicles of several types. Vehicles with `AutoCreate` false are none of it.
   *
   * @param vehicles in the file's order
   * @param origin of the world's NED frame
   * @param text the file as it came
+  * @param addedSensors what a vehicle carries that comes later (`simAddVehicle`): `DefaultSensors`
+  * @param apiPort `ApiServerPort`
   */
 final case class WorldSettings(
     vehicles: Vector[VehicleSettings],
     origin: GeoLocation = WorldSettings.DefaultOrigin,
     windNed: Vector3 = Vector3.Zero,
     clockSpeed: Double = 1.0,
-    text: String = "{}"
+    text: String = "{}",
+    addedSensors: Map[String, SensorKind] = SensorKind.Default,
+    apiPort: Option[Int] = None
 ):
   require(vehicles.nonEmpty, "a world needs a vehicle")
 
@@ -54,6 +61,9 @@ object WorldSettings:
 
   /** The same where `SimMode` is `Car`. */
   val PhysXCar = "PhysXCar"
+
+  /** The same where `SimMode` is `ComputerVision`. */
+  val ComputerVision = "ComputerVision"
 
   private val CarMode = "Car"
 
@@ -107,13 +117,20 @@ object WorldSettings:
     )
   )
 
-  private def read(root: SettingsSection, text: String): WorldSettings =
-    val unless   = sensors(root.sections("DefaultSensors"), SensorKind.Default)
-    val usual    = if root.text("SimMode", "") == CarMode then PhysXCar else SimpleFlight
-    val vehicles = root.sections("Vehicles").map((name, fields) => vehicle(name, fields, usual, unless))
-    val origin   = root.section("OriginGeopoint")
+  private[skein] def read(root: SettingsSection, text: String): WorldSettings =
+    val unless = sensors(root.sections("DefaultSensors"), SensorKind.Default)
+    val usual  = root.text("SimMode", "") match
+      case CarMode        => PhysXCar
+      case ComputerVision => ComputerVision
+      case _              => SimpleFlight
+    val listed   = root.sections("Vehicles")
+    val vehicles = created(listed).map((name, fields) => vehicle(name, fields, usual, unless))
+    if listed.nonEmpty && vehicles.isEmpty then
+      root.fail("Vehicles", "at least one without AutoCreate false", "none")
+    val origin = root.section("OriginGeopoint")
     WorldSettings(
-      if vehicles.isEmpty then Vector(VehicleSettings(usual, vehicleType = usual)) else vehicles,
+      if listed.isEmpty then Vector(VehicleSettings(usual, vehicleType = usual, sensors = unless))
+      else vehicles,
       GeoLocation(
         origin.number("Latitude", DefaultOrigin.latitudeDeg),
         origin.number("Longitude", DefaultOrigin.longitudeDeg),
@@ -121,8 +138,17 @@ object WorldSettings:
       ),
       root.section("Wind").vector,
       clockSpeed(root),
-      text
+      text,
+      unless,
+      Option.when(root.has("ApiServerPort"))(root.whole("ApiServerPort", 0, 1, 65535))
     )
+
+  /** Of the vehicles that a file lists those that there are from the start. */
+  private[skein] def created(listed: Vector[(String, SettingsSection)]): Vector[(String, SettingsSection)] =
+    listed.filter: (_, fields) =>
+      val created = fields.flag("AutoCreate", unless = true)
+      if !created then fields.switchedOff()
+      created
 
   private def clockSpeed(root: SettingsSection): Double =
     val speed = root.number("ClockSpeed", 1.0)
@@ -153,14 +179,17 @@ object WorldSettings:
     )
 
   /** Those that are enabled, and of the kinds that none is listed of, those of `unless`. Kinds that are not
-    * known, which forks have, are passed over.
+    * known, which forks have, count as not read.
     */
   private def sensors(
       all: Vector[(String, SettingsSection)],
       unless: Map[String, SensorKind]
   ): Map[String, SensorKind] =
     val listed =
-      for (name, sensor) <- all
-      yield (name, SensorKind.of(sensor.number("SensorType", 0)), sensor.flag("Enabled", unless = false))
+      for (name, sensor) <- all yield
+        val kind    = SensorKind.of(sensor.number("SensorType", 0))
+        val enabled = sensor.flag("Enabled", unless = false)
+        if !enabled then sensor.switchedOff() else if kind.isEmpty then sensor.passedOver()
+        (name, kind, enabled)
     unless.filterNot((_, kind) => listed.exists(_._2.contains(kind))) ++
       listed.collect { case (name, Some(kind), true) => name -> kind }

@@ -52,6 +52,20 @@ class WorldSettingsSuite extends munit.FunSuite:
       )
     )
 
+  test("vehicles with AutoCreate false are none; ComputerVision is a type that SimMode names, too"):
+    val text = """{"SimMode": "ComputerVision", "ApiServerPort": 42, "Vehicles":
+      {"A": {"AutoCreate": true}, "B": {"VehicleType": "PX4Multirotor", "AutoCreate": false}}}"""
+    val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
+    assertEquals(world.vehicles.map(vehicle => (vehicle.name, vehicle.isCamera)), Vector(("A", true)))
+    assertEquals(world.apiPort, Some(42))
+
+  test("without vehicles the default one carries DefaultSensors"):
+    val world = WorldSettings.parse("""{"DefaultSensors": {"G": {"SensorType": 3, "Enabled": true}}}""")
+    assertEquals(
+      world.map(_.vehicles.head.sensors),
+      Right(SensorKind.Default - "gps" + ("G" -> SensorKind.Gps))
+    )
+
   test("what is rendered is read back"):
     val vehicles = Vector(VehicleSettings("A", Vector3(1, 2, -3)), VehicleSettings("B"))
     assertEquals(WorldSettings.parse(WorldSettings.render(vehicles)).map(_.vehicles), Right(vehicles))

@@ -87,7 +87,7 @@ final case class Autopilot(
   def isCommanded(motion: VehicleMotion): Boolean =
     heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
 
-  private def transfer = MissionTransfer(mission, upload)
+  private def transfer = MissionTransfer(mission, upload, home)
 
   private def transferred(told: MissionTransfer.Told): Heard =
     Heard(copy(mission = told.next.mission, upload = told.next.upload), told.answers, told.news)
@@ -98,8 +98,8 @@ final case class Autopilot(
     def ack(result: Int) =
       CommandAck(order.command, result, targetSystem = from.system, targetComponent = from.component)
     obey(order, motion) match
-      case Left(Refusal(result, why)) =>
-        Heard(this, Vector(ack(result)), Vector(text(Severity.Critical, why)))
+      case Left(Refusal(result, why, more)) =>
+        Heard(this, Vector(ack(result)), (why +: more).map(text(Severity.Critical, _)))
       case Right(heard) => heard.copy(answers = ack(Result.Accepted) +: heard.answers)
 
   private def obey(order: Order, motion: VehicleMotion): Either[Refusal, Heard] = order.command match
@@ -197,7 +197,8 @@ final case class Autopilot(
         if isAfar || !isGlobe || math.abs(yaw) > OffboardSetpoint.Most then
           Left(Refusal(
             Result.Denied,
-            s"reposition: expected a place within ${OffboardSetpoint.Most.toInt} m and a yaw"
+            s"reposition: expected a place within ${OffboardSetpoint.Most.toInt} m and a yaw",
+            OffboardSetpoint.whereHomeIs(home)
           ))
         else
           enter(FlightMode.Hold, motion).map(heard =>
@@ -379,7 +380,9 @@ object Autopilot:
     def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0
     def isOne(index: Int): Boolean = numbers(index) == 1
 
-  private final case class Refusal(result: Int, why: String)
+  /** @param more lines
+    */
+  private final case class Refusal(result: Int, why: String, more: Vector[String] = Vector.empty)
 
   /** A line for a person, in one piece. */
   private[autopilot] def text(severity: Int, line: String): Message = Statustext(severity, line.take(50))

@@ -2,6 +2,7 @@ package skein.autopilot
 
 import skein.mavlink.*
 import skein.units.*
+import skein.units.Decimals.fixed
 
 /** A mission that can be flown.
   *
@@ -38,8 +39,13 @@ object Mission:
     val OutOfOrder       = 13
     val Cancelled        = 15
 
-  /** Why an item cannot be flown: the acknowledgement's kind and a text. */
-  def mistake(item: MissionItemInt): Option[(Int, String)] =
+  /** From home to an item, m: beyond it a mission is one for another home. Far more than a mission takes, and
+    * far less than to another town.
+    */
+  val FarthestM = 20_000.0
+
+  /** Why an item cannot be flown: the acknowledgement's kind, and lines of at most 50 letters. */
+  def mistake(item: MissionItemInt, home: GeoLocation): Option[(Int, Vector[String])] =
     import CommonDialect.Command.*
     import CommonDialect.Frame
     val places  = Set(Waypoint, LoiterUnlimited, LoiterTime, Land, Takeoff)
@@ -47,17 +53,26 @@ object Mission:
     val isPlace = places(item.command)
     val frames  = Set(Frame.Global, Frame.GlobalInt, Frame.RelativeAltitude, Frame.RelativeAltitudeI)
     if !isPlace && !others(item.command) then
-      Some((Ack.Unsupported, s"mission item ${item.seq}: command ${item.command} unsupported"))
+      Some((Ack.Unsupported, Vector(s"mission item ${item.seq}: command ${item.command} unsupported")))
     else if isPlace && !frames(item.frame) then
-      Some((Ack.UnsupportedFrame, s"mission item ${item.seq}: frame ${item.frame} unsupported"))
+      Some((Ack.UnsupportedFrame, Vector(s"mission item ${item.seq}: frame ${item.frame} unsupported")))
     else if isPlace && !(item.z.isFinite && item.z.abs < 1e5) then
-      Some((Ack.Invalid, s"mission item ${item.seq}: altitude is no number"))
+      Some((Ack.Invalid, Vector(s"mission item ${item.seq}: altitude is no number")))
     else if isPlace && !(item.x.abs <= 900_000_000 && item.y.abs <= 1_800_000_000) then
-      Some((Ack.Invalid, s"mission item ${item.seq}: no place on the globe"))
+      Some((Ack.Invalid, Vector(s"mission item ${item.seq}: no place on the globe")))
+    else if isPlace && !isHere(item) then
+      val away = OffboardSetpoint.awayM(item.x * 1e-7, item.y * 1e-7, home)
+      Option.when(away > FarthestM)((
+        Ack.Invalid,
+        s"mission item ${item.seq}: ${(away / 1000).fixed(0)} km from home, at most ${(FarthestM / 1000).toInt}" +:
+          OffboardSetpoint.whereHomeIs(home)
+      ))
     else None
+
+  private def isHere(item: MissionItemInt) = item.x == 0 && item.y == 0
 
   /** Where an item is, in the vehicle's own frame; a place of 0, 0 is where it is already. */
   def place(item: MissionItemInt, home: GeoLocation, hereNed: Vector3): Vector3 =
     val altitude = OffboardSetpoint.heightOf(item.frame, item.z, home).getOrElse(home.altitude)
     val at       = GeoLocation(item.x * 1e-7, item.y * 1e-7, altitude).nedFrom(home)
-    if item.x == 0 && item.y == 0 then hereNed.copy(z = at.z) else at
+    if isHere(item) then hereNed.copy(z = at.z) else at

@@ -9,8 +9,13 @@ import skein.units.*
   *
   * @param mission that it has
   * @param upload of another one, which takes its place when all items have come
+  * @param home of the vehicle: items are near it
   */
-private[autopilot] final case class MissionTransfer(mission: Mission, upload: Option[Upload]):
+private[autopilot] final case class MissionTransfer(
+    mission: Mission,
+    upload: Option[Upload],
+    home: GeoLocation
+):
   import MissionTransfer.Told
   import Autopilot.text
 
@@ -26,7 +31,7 @@ private[autopilot] final case class MissionTransfer(mission: Mission, upload: Op
       case MissionCount(_, _, count, kind)            => Some(begin(count, kind, from, sinceBoot))
       case item: MissionItemInt                       => Some(receive(item, from, sinceBoot))
       case MissionClearAll(_, _, kind)                =>
-        val cleared = if kind == Mission.Kind then MissionTransfer(Mission(), None) else this
+        val cleared = if kind == Mission.Kind then MissionTransfer(Mission(), None, home) else this
         Some(Told(cleared, Vector(ack(from, Mission.Ack.Accepted, kind))))
       case _ => None
 
@@ -61,7 +66,7 @@ private[autopilot] final case class MissionTransfer(mission: Mission, upload: Op
     else if count > Mission.Most then
       val why = text(Severity.Critical, s"mission: at most ${Mission.Most} items")
       Told(this, answer(Mission.Ack.NoSpace), Vector(why))
-    else if count == 0 then Told(MissionTransfer(Mission(), None), answer(Mission.Ack.Accepted))
+    else if count == 0 then Told(MissionTransfer(Mission(), None, home), answer(Mission.Ack.Accepted))
     else
       val begun = Upload(from.system, from.component, count, Vector.empty, sinceBoot, tries = 1)
       Told(copy(upload = Some(begun)), Vector(begun.question))
@@ -71,18 +76,18 @@ private[autopilot] final case class MissionTransfer(mission: Mission, upload: Op
       case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
         if item.seq != going.items.size then Told(this, Vector(going.question))
         else
-          Mission.mistake(item) match
+          Mission.mistake(item, home) match
             case Some((result, why)) =>
               Told(
                 copy(upload = None),
                 Vector(going.ack(result)),
-                Vector(text(Severity.Critical, why))
+                why.map(text(Severity.Critical, _))
               )
             case None =>
               val more = going.copy(items = going.items :+ item, askedAt = sinceBoot, tries = 1)
               if more.items.size < more.count then Told(copy(upload = Some(more)), Vector(more.question))
               else
-                Told(MissionTransfer(Mission(more.items), None), Vector(more.ack(Mission.Ack.Accepted)))
+                Told(MissionTransfer(Mission(more.items), None, home), Vector(more.ack(Mission.Ack.Accepted)))
       case _ => Told(this, Vector(ack(from, Mission.Ack.OutOfOrder)))
 
 private[autopilot] object MissionTransfer:

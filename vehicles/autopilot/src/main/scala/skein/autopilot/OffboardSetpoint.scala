@@ -2,6 +2,7 @@ package skein.autopilot
 
 import skein.mavlink.*
 import skein.units.*
+import skein.units.Decimals.fixed
 import skein.vehicle.{GoTo, Setpoint}
 
 /** What somebody outside wants the vehicle to do now, in offboard. */
@@ -57,15 +58,23 @@ object OffboardSetpoint:
         case None =>
           Some(Left(s"SET_POSITION_TARGET_GLOBAL_INT: coordinate frame ${one.coordinateFrame} unsupported"))
         case Some(altitude) =>
-          val at = GeoLocation(one.latInt * 1e-7, one.lonInt * 1e-7, altitude).nedFrom(home)
-          Some(moveOf(
-            Vector(at.x, at.y, at.z),
-            Vector(one.vx, one.vy, one.vz),
-            one.typeMask,
-            inBody = false,
-            one.yaw,
-            one.yawRate
-          ))
+          val (latitude, longitude) = (one.latInt * 1e-7, one.lonInt * 1e-7)
+          val at                    = GeoLocation(latitude, longitude, altitude).nedFrom(home)
+          val hasPlace              = (one.typeMask & (CommonDialect.Ignore.X | CommonDialect.Ignore.Y)) == 0
+          val away                  = awayM(latitude, longitude, home)
+          Some(
+            if hasPlace && away > Most then
+              Left(s"setpoint: ${(away / 1000).fixed(0)} km from home (OriginGeopoint)")
+            else
+              moveOf(
+                Vector(at.x, at.y, at.z),
+                Vector(one.vx, one.vy, one.vz),
+                one.typeMask,
+                inBody = false,
+                one.yaw,
+                one.yawRate
+              )
+          )
     case one: SetAttitudeTarget =>
       val q       = one.q.map(_.toDouble)
       val byRates = (one.typeMask & IgnoreAttitude) != 0
@@ -91,6 +100,20 @@ object OffboardSetpoint:
     else if frame == RelativeAltitude || frame == RelativeAltitudeI then
       Some(Metres(home.altitude.value + altitudeM))
     else None
+
+  /** Over the ground from home to a place, m: of a sphere. */
+  private[autopilot] def awayM(latitudeDeg: Double, longitudeDeg: Double, home: GeoLocation): Double =
+    val (from, to) = (math.toRadians(home.latitudeDeg), math.toRadians(latitudeDeg))
+    val north      = StrictMath.sin((to - from) / 2)
+    val east       = StrictMath.sin(math.toRadians(longitudeDeg - home.longitudeDeg) / 2)
+    val chord      = north * north + StrictMath.cos(from) * StrictMath.cos(to) * east * east
+    2 * GeoLocation.EarthRadiusM * StrictMath.asin(math.sqrt(chord.min(1)))
+
+  /** What who names a place that is far off is told: the vehicle's home, and what sets it. */
+  private[autopilot] def whereHomeIs(home: GeoLocation): Vector[String] = Vector(
+    s"home is ${home.latitudeDeg.fixed(6)}, ${home.longitudeDeg.fixed(6)}",
+    "OriginGeopoint in settings.json sets home"
+  )
 
   private val IgnoreAttitude = 128
 

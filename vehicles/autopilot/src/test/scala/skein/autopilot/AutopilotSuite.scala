@@ -183,6 +183,26 @@ class AutopilotSuite extends munit.FunSuite:
       Vector(MissionAck(245, 190, 4))
     )
 
+  test("what is far from home is refused, with home and the key that sets it"):
+    val zurich  = (latitude = 473_977_420, longitude = 85_455_940)
+    val item    = this.item(0, 16, 20, 5).copy(x = zurich.latitude, y = zurich.longitude)
+    val mission =
+      inAir.told(MissionCount(1, 1, 1), at(6, flying = true)).next.told(item, at(6, flying = true))
+    val home = Vector("home is 47.641468, -122.140165", "OriginGeopoint in settings.json sets home")
+    assertEquals(mission.answers, Vector(MissionAck(245, 190, 5)))
+    assertEquals(texts(mission.news), "mission item 0: 8430 km from home, at most 20" +: home)
+    assertEquals(mission.next.mission.items, Vector.empty)
+    assert(texts(mission.news).forall(_.length < 50))
+    val goto = CommandInt(1, 1, 5, 192, 0, 0, -1, 0, 0, 0, zurich.latitude, zurich.longitude, 500)
+    val told = texts(inAir.told(goto, at(6, flying = true)).news)
+    assertEquals(told.drop(1), home)
+    val near = this.item(0, 16, 19_000, 5)
+    val took = inAir.told(MissionCount(1, 1, 1), at(6, flying = true)).next.told(near, at(6, flying = true))
+    assertEquals(took.answers, Vector(MissionAck(245, 190, 0)))
+    val here = near.copy(x = 0, y = 0)
+    val held = inAir.told(MissionCount(1, 1, 1), at(6, flying = true)).next.told(here, at(6, flying = true))
+    assertEquals(held.answers, Vector(MissionAck(245, 190, 0)))
+
   test("it answers TIMESYNC by its own clock, and tells no time that it was not asked for"):
     assertEquals(fresh.told(Timesync(0, 77), at(2)).answers, Vector(Timesync(2_000_000_000L, 77)))
     assertEquals(fresh.told(Timesync(5, 77), at(2)).answers, Vector.empty)

@@ -31,6 +31,25 @@ private[mujoco] final class MujocoActuators(
   val hovering: Array[Double] =
     Array.tabulate(count)(i => resting(i) + allocation.control(i, weightMps2, 0, 0, 0))
 
+  /** How fast it can begin to turn about an axis while it hovers, rad/s²: the lesser of both ways, all its
+    * actuators used as far as their ranges go.
+    *
+    * @param axis 1 front, 2 right, 3 down
+    */
+  def turning(axis: Int): Double =
+    def way(sign: Int) = (0 until count).map: i =>
+      val share = allocation.control(
+        i,
+        0,
+        if axis == 1 then sign else 0,
+        if axis == 2 then sign else 0,
+        if axis == 3 then sign else 0
+      )
+      val limit = if share > 0 then highest(i) else lowest(i)
+      if share == 0 then 0.0 else sign * effects(i)(axis) * (limit - hovering(i))
+    .sum
+    way(1).min(way(-1))
+
   /** What full control is, where it is not limited, too. */
   def full(actuator: Int): Double =
     if highest(actuator).isInfinite then resting(actuator) + 1 else highest(actuator)

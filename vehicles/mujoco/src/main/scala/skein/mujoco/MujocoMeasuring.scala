@@ -1,6 +1,8 @@
 package skein.mujoco
 
+import skein.units.Decimals.brief
 import skein.units.Expect
+import skein.vehicle.ControllerGains
 
 /** What a model's body is, as it was measured.
   *
@@ -70,6 +72,12 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
         expect(hovering(i) >= lowest(i) && hovering(i) <= highest(i))(
           s"a control range with ${hovering(i)}, by which it hovers, came ${lowest(i)} to ${highest(i)}"
         ).left.map(named(i))
+      _ <- Expect.each(Needed): (axis, name, needed) =>
+        val came = actuators.turning(axis)
+        expect(came >= needed)(
+          s"moments that turn it about its $name axis by ${needed.brief} rad/s² or more while it hovers, " +
+            s"came ${came.brief} rad/s²: ${(needed / came).brief} times as much is needed"
+        )
     yield MujocoBody(
       stepS,
       place,
@@ -133,6 +141,23 @@ private object MujocoMeasuring:
 
   /** `mjJNT_FREE` */
   private val FreeJoint = 0
+
+  private val gains = ControllerGains()
+
+  /** About which axis, its name, and how strongly the actuators have to turn the vehicle at least, rad/s².
+    *
+    * AirSim's controller turns a vehicle at up to `maxRate` ω. About the front and the right axis it begins
+    * to brake 1/`angleP` before the angle that it wants, since its rate goal is ω·`angleP`·error. An
+    * acceleration a stops the turn within ω²/2a. With less than a = ω²·`angleP`/2 (7.8 rad/s²) the vehicle
+    * turns farther than the controller wants, it corrects too late, and swings; far below it falls. About the
+    * down axis nothing keeps it in the air, and headings are a circle: the turn has to end within half of it,
+    * a = ω²/2π (1.0 rad/s²), or the nearer way is never the right one.
+    */
+  private val Needed = Vector(
+    (1, "front", gains.maxRate * gains.maxRate * gains.angleP / 2),
+    (2, "right", gains.maxRate * gains.maxRate * gains.angleP / 2),
+    (3, "down", gains.maxRate * gains.maxRate / (2 * math.Pi))
+  )
 
   private val HighM           = 1000.0
   private val SettlingS       = 2.0

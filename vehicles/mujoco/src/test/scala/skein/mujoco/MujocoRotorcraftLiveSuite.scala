@@ -122,6 +122,31 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       Thread.sleep(100)
     assert(NativeMemory.freed >= before + 9, s"${NativeMemory.freed - before} are freed")
 
+  flying("a body whose moments are too weak is refused by the axis, one a little stronger than needed flies"):
+    for (axis, weak) <- Seq("front" -> 1, "right" -> 2, "down" -> 3) do
+      val refused =
+        MujocoModel.read(write(crazyflie(Seq.tabulate(3)(i => if i + 1 == weak then 0.05 else 12))))
+      assert(refused.left.exists(_.contains(s"turn it about its $axis axis by")), s"$axis: $refused")
+    val published = MujocoModel.read(write(crazyflie(Seq(0.4175, 0.4175, 0.309))))
+    assert(
+      clue(published).left.exists(_.endsWith(
+        "expected moments that turn it about its front axis by 7.8 rad/s² or more while it hovers, " +
+          "came 0.42 rad/s²: 19 times as much is needed"
+      ))
+    )
+    val rotorcraft = MujocoRotorcraft(read(write(crazyflie(Seq(8, 8, 1.1)))))
+    val state      = QuadrotorState()
+    rotorcraft.hover(state, Vector3(0, 0, -5), 0, Environment.Calm)
+    var lowest = -5.0
+    for turn <- 0 until 4; _ <- 0 until (5 / rotorcraft.stepS).toInt do
+      rotorcraft.step(
+        state,
+        Setpoint.velocityZ(3 * math.cos(turn * 2), 3 * math.sin(turn * 2), -5),
+        Environment.Calm
+      )
+      lowest = lowest.max(state.z)
+    assert(lowest < -3.5, s"came down to $lowest m")
+
   flying("what cannot be flown is refused with its reason"):
     assert(MujocoModel.read(Path.of("nowhere.xml")).left.exists(_.contains("there is no nowhere.xml")))
     val last = "<general site=\"rear right\" gear=\"0 0 4.179 0 0 0.0556\"/>"
@@ -163,5 +188,20 @@ private object MujocoRotorcraftLiveSuite:
     val file = Files.createTempFile("model", ".xml")
     file.toFile.deleteOnExit()
     Files.writeString(file, xml)
+
+  /** Crazyflie 2's body, turned about front, right and down by these accelerations at most, rad/s². */
+  def crazyflie(turning: Seq[Double]): String =
+    val moments = turning.zip(Seq(2.3951e-5, 2.3951e-5, 3.2347e-5)).map((rate, inertia) =>
+      java.math.BigDecimal(rate * inertia).toPlainString
+    )
+    val motors = moments.zip(Seq("-1 0 0", "0 -1 0", "0 0 -1")).map((moment, axis) =>
+      s"""<motor ctrlrange="-$moment $moment" gear="0 0 0 $axis" site="a"/>"""
+    )
+    s"""<mujoco><option timestep="0.002" integrator="RK4"/><compiler inertiafromgeom="false" autolimits="true"/>
+       |<worldbody><body pos="0 0 0.1"><freejoint/>
+       |<inertial pos="0 0 0" mass="0.027" diaginertia="2.3951e-5 2.3951e-5 3.2347e-5"/>
+       |<geom type="box" size=".05 .05 .01"/><site name="a"/></body></worldbody>
+       |<actuator><motor ctrlrange="0 0.6" gear="0 0 1 0 0 0" site="a"/>${motors.mkString}</actuator>
+       |</mujoco>""".stripMargin
 
   def read(file: Path): MujocoModel = MujocoModel.read(file).fold(sys.error, identity)

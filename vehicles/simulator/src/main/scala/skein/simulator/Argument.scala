@@ -24,8 +24,11 @@ private[simulator] trait Argument[A]:
   def read(value: Msg): A
 
 /** An argument that cannot be taken; its message is the text of the answer. */
-final private[simulator] class BadArgument(text: String)
+private[simulator] sealed class BadArgument(text: String)
     extends RuntimeException(text, null, /* enableSuppression = */ false, /* writableStackTrace = */ false)
+
+/** It is not finite, or not as a 32-bit number. */
+final private[simulator] class NotFinite extends BadArgument("parameters must be finite numbers")
 
 private[simulator] object Argument:
   /** An integer from 0 to 2³² − 1. */
@@ -58,6 +61,12 @@ private[simulator] object Argument:
   given Argument[Vector3r]    = record(Vector3r.Zero)
   given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
   given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
+
+  /** None: it is one, and its numbers are not finite. */
+  given [A](using argument: Argument[A]): Argument[Option[A]] = value =>
+    try Some(argument.read(value))
+    catch case _: NotFinite => None
+
   given Argument[YawMode]     = record(YawMode.Still)
   given Argument[RcData]      = record(RcData.Absent)
   given Argument[CarControls] = record(CarControls())
@@ -117,7 +126,7 @@ private[simulator] object Argument:
     case _               => badCast
 
   private def finite(number: Double): Double =
-    if number.isFinite then number else throw BadArgument("parameters must be finite numbers")
+    if number.isFinite then number else throw NotFinite()
 
   private def unsigned(number: Long): Double =
     if number >= 0 then number.toDouble else (number >>> 1).toDouble * 2

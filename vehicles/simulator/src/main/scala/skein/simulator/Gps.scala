@@ -4,15 +4,16 @@ import skein.airsim.wire.*
 import skein.units.*
 
 /** AirSim's default GPS (`GpsSimple`): silent for its first second, its dilutions of precision falling from
-  * 100 to 0.1 with a time constant of 0.9 s, so that it has a fix in three dimensions after some 3.2 s. It
-  * tells the truth as it is now; AirSim's is 0.2 s late and tells it every 20 ms.
+  * 100 to 0.1 with a time constant of 0.9 s, so that it has a fix in three dimensions after some 3.2 s. A
+  * reset lets the dilutions begin anew, and does not silence it. It tells the truth as it is now; AirSim's is
+  * 0.2 s late and tells it every 20 ms.
   */
 private[simulator] object Gps:
   def read(vehicle: SimulatedVehicle, at: Instant): GpsData =
-    val up = vehicle.upFor(at)
-    if up < Startup then Silent
+    if !vehicle.hasGps(at) then Silent
     else
-      val dilution = Final + (Initial - Final) * StrictMath.exp(-up.toSeconds / TimeConstantS)
+      val up       = vehicle.upFor(at).toSeconds
+      val dilution = Final + (Initial - Final) * StrictMath.exp(-up / TimeConstantS)
       val report   = GnssReport(
         GeoPoint(vehicle.locationAt(at)),
         dilution.toFloat,
@@ -23,7 +24,7 @@ private[simulator] object Gps:
       )
       GpsData(at, report, is_valid = true)
 
-  private val Startup       = Span.ofSeconds(1)
+  val Startup: Span         = Span.ofSeconds(1)
   private val Initial       = 100.0
   private val Final         = 0.1
   private val TimeConstantS = 0.9

@@ -41,7 +41,8 @@ private[simulator] object MoveMethods:
         val travel = Travel(drivetrain, yaw, lookahead, adaptive)
         fly(simulation, name)(PathMove.order(Seq(Vector3(x, y, z)), speed, timeout, travel))
     ,
-    many[(Double, Double, Float, Float, Float, Int, YawMode, Float, Float, String)]("moveToGPS"):
+    // In single precision, as AirSim takes them: a goal is up to 0.4 m beside the one that is meant.
+    many[(Float, Float, Float, Float, Float, Int, YawMode, Float, Float, String)]("moveToGPS"):
       case (
             simulation,
             (latitude, longitude, altitude, speed, timeout, drivetrain, yaw, lookahead, adaptive, name)

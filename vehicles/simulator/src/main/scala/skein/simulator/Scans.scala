@@ -9,8 +9,12 @@ import skein.units.*
   * what it is asked for is the newest. Where everything was at that instant is noted; the rays are only cast
   * if somebody asks.
   */
-final private[simulator] class Scans(lidars: Vector[Scans.Carried]):
-  private val notes = mutable.Map.empty[Scans.Carried, Scan]
+final private[simulator] class Scans:
+  private var lidars = Vector.empty[Scans.Carried]
+  private val notes  = mutable.Map.empty[Scans.Carried, Scan]
+
+  /** One more, on a vehicle. */
+  def carry(lidar: Scans.Carried): Unit = lidars :+= lidar
 
   /** Notes every scan that is due by `until`. */
   def note(until: Instant, of: (Scans.Carried, Instant, Long) => Scan): Unit =

@@ -1,7 +1,6 @@
 package skein.simulator
 
 import skein.airsim.VehicleSettings
-import skein.airsim.WorldSettings
 import skein.airsim.wire.*
 import skein.scene.Placement
 import skein.units.*
@@ -17,39 +16,19 @@ private[simulator] object SceneMethods:
       case (simulation, (name, kind, pose, _)) => addVehicle(simulation, name, kind, pose)
     ,
     many[(KinematicsState, Boolean, String)]("simSetKinematics"):
-      case (simulation, (state, _, name)) =>
-        simulated(simulation, name): (_, vehicle) =>
-          if !isFlyable(state) then
-            CallOutcome.Threw(
-              "kinematics within 1000 km, 10 km/s, 1000 rad/s, 1000 km/s² and 1000000 rad/s² are wanted"
-            )
-          else
-            done(vehicle.setKinematics(state, simulation.world.now))
+      case (simulation, (state, _, name)) => setKinematics(simulation, state, name)
     ,
     one[String]("simListSceneObjects"): (simulation, regex) =>
       val pattern = NamePattern(regex)
       answer(simulation.objects.names.filter(pattern.matches))
     ,
-    one[String]("simGetObjectPose"): (simulation, name) =>
-      answer(
-        if name == SceneObjects.Ground then Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0))
-        else
-          simulation.objects.thing(name).map(simulation.world.scene.objects).map(simulation.objects.pose)
-            .orElse(simulation.objects.vehicle(name).map(simulation.objects.pose)).getOrElse(Nowhere)
-      ),
-    many[(String, Pose, Boolean)]("simSetObjectPose"):
+    one[String]("simGetObjectPose")((simulation, name) => answer(simulation.objects.poseOf(name))),
+    many[(String, Option[Pose], Boolean)]("simSetObjectPose"):
       case (simulation, (name, pose, _)) =>
-        val vehicle = simulation.objects.vehicle(name)
-        for vehicle <- vehicle do
-          val position = pose.position.toVector - vehicle.settings.startNed
-          vehicle.place(position, pose.orientation.toQuaternion, simulation.world.now)
-        val thing = simulation.objects.thing(name)
-        for index <- thing do
-          simulation.world.scene = simulation.world.scene.moved(
-            index,
-            Placement(pose.position.toVector, pose.orientation.toQuaternion.normalized)
-          )
-        answer(vehicle.nonEmpty || thing.nonEmpty)
+        // What is not there is told so whatever the pose is: `simGetObjectPose` gives NaN for it.
+        if simulation.objects.vehicle(name).isEmpty && simulation.objects.thing(name).isEmpty then
+          answer(false)
+        else pose.fold(throw NotFinite())(moveTo(simulation, name, _))
     ,
     one[String]("simGetObjectScale")((simulation, name) =>
       answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
@@ -102,13 +81,10 @@ private[simulator] object SceneMethods:
   /** Vehicles at most; clients can add until then. */
   val MostVehicles = 256
 
-  private val LongestName = 100
+  private[simulator] val LongestName = 100
 
   /** Extent that is answered, from the origin and upwards, m; the world itself has no edge. */
   private val ExtentM = 10_000.0
-
-  private val Nowhere =
-    Pose(Vector3r(Float.NaN, Float.NaN, Float.NaN), Quaternionr(Float.NaN, Float.NaN, Float.NaN, Float.NaN))
 
   private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): CallOutcome =
     val start = pose.position.toVector
@@ -118,17 +94,36 @@ private[simulator] object SceneMethods:
       CallOutcome.Threw(s"the built-in simulator flies at most $MostVehicles vehicles")
     else if start.norm > FarthestM then CallOutcome.Threw(s"a start within ${FarthestM / 1000} km is wanted")
     else
-      val added = VehicleSettings(name, start, vehicleType = kind)
-      val known = (added.isCar || kind.equalsIgnoreCase(WorldSettings.SimpleFlight)) &&
-        !simulation.objects.exists(name)
+      val sensors = simulation.settings.world.addedSensors
+      val added   = VehicleSettings(name, start, vehicleType = kind, sensors = sensors)
+      val known   = SettingsFile.flies(added) && !simulation.objects.exists(name)
       if known then
         val q   = pose.orientation.toQuaternion.normalized
         val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
         simulation.addVehicle(added.copy(yaw = Radians(yaw)))
       answer(known)
 
+  def setKinematics(simulation: Simulated, state: KinematicsState, name: String): CallOutcome =
+    simulated(simulation, name): (_, vehicle) =>
+      if !isFlyable(state) then
+        CallOutcome.Threw(
+          "kinematics within 1000 km, 10 km/s, 1000 rad/s, 1000 km/s² and 1000000 rad/s² are wanted"
+        )
+      else done(vehicle.setKinematics(state, simulation.world.now))
+
+  private def moveTo(simulation: Simulated, name: String, pose: Pose): CallOutcome =
+    for vehicle <- simulation.objects.vehicle(name) do
+      val position = pose.position.toVector - vehicle.settings.startNed
+      vehicle.place(position, pose.orientation.toQuaternion, simulation.world.now)
+    for index <- simulation.objects.thing(name) do
+      simulation.world.scene = simulation.world.scene.moved(
+        index,
+        Placement(pose.position.toVector, pose.orientation.toQuaternion.normalized)
+      )
+    answer(true)
+
   /** Beyond it, and faster, numbers would soon be none. */
-  private val FarthestM = 1e6
+  private[simulator] val FarthestM = 1e6
 
   private def isFlyable(state: KinematicsState): Boolean =
     state.position.toVector.norm <= FarthestM &&

@@ -56,19 +56,23 @@ final private[simulator] class SceneObjects(world: World):
   /** Everything as it looks now. */
   def moment: Moment = Moment(world.scene, world.bodies(world.now))
 
-  /** Everything as it is now, each vehicle the box around it: what hides a line of sight. */
+  /** Everything as it is now, each vehicle the box around it, a camera nothing: what hides a line of sight.
+    */
   def boxes: Moment = Moment(
     world.scene,
     world.vehicles.indices.map: index =>
       val vehicle = world.vehicles(index)
-      SceneObject(
-        vehicle.settings.name,
-        Shape.Box(vehicle.halfLengths),
-        world.placeOf(index, world.now).outside(Placement(vehicle.middleFrd, Quaternion.Identity)),
-        0,
-        None
-      )
+      val name    = vehicle.settings.name
+      val place   = world.placeOf(index, world.now).outside(Placement(vehicle.middleFrd, Quaternion.Identity))
+      if vehicle.settings.isCamera then SceneObject(name, Vector.empty, place)
+      else SceneObject(name, Shape.Box(vehicle.halfLengths), place, 0, None)
   )
+
+  /** In the world; NaN of what is not there, as AirSim has it. */
+  def poseOf(name: String): Pose =
+    if name == Ground then Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0))
+    else
+      thing(name).map(world.scene.objects).map(pose).orElse(vehicle(name).map(pose)).getOrElse(Nowhere)
 
   def pose(thing: SceneObject): Pose =
     Pose(Vector3r(thing.place.position), Quaternionr(thing.place.orientation))
@@ -80,6 +84,9 @@ private[simulator] object SceneObjects:
   val Ground: String = Scene.Ground
 
   private val LargestId = 255
+
+  private val Nowhere =
+    Pose(Vector3r(Float.NaN, Float.NaN, Float.NaN), Quaternionr(Float.NaN, Float.NaN, Float.NaN, Float.NaN))
 
   /** AirSim's: 5 and the sum of the letters of the name in lower case, modulo 256
     * (`InitializeObjectStencilID`).

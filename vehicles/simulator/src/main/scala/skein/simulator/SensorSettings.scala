@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.airsim.{SensorKind, SettingsError, SettingsSection}
+import skein.airsim.{SensorKind, SettingsError, SettingsSection, WorldSettings}
 import skein.scene.{Lidar, Placement}
 
 /** What vehicles carry by a `settings.json`: cameras, lidars and distance sensors. Keys and defaults are
@@ -8,6 +8,9 @@ import skein.scene.{Lidar, Placement}
   * (a scan of the instant at which it is asked for).
   *
   * @param captures of `CameraDefaults`, by image type
+  * @param lidars by vehicle; what the file lists of `DefaultSensors` under [[SensorSettings.Others]], which
+  *   is what a vehicle carries that the file does not list: the one that is there if it lists none, and those
+  *   that clients add
   */
 final private[simulator] case class SensorSettings(
     captures: Map[Int, SensorSettings.Capture],
@@ -22,12 +25,20 @@ final private[simulator] case class SensorSettings(
 
   /** The empty name means the first. */
   def lidar(vehicle: String, name: String): Option[(String, Lidar)] =
-    lidars.getOrElse(vehicle, Vector.empty).find((own, _) => name.isEmpty || own == name)
+    lidarsOf(vehicle).find((own, _) => name.isEmpty || own == name)
+
+  def lidarsOf(vehicle: String): Vector[(String, Lidar)] = of(lidars, vehicle)
 
   def ranger(vehicle: String, name: String): Option[SensorSettings.Ranger] =
-    rangers.getOrElse(vehicle, Vector.empty).find((own, _) => name.isEmpty || own == name).map(_._2)
+    of(rangers, vehicle).find((own, _) => name.isEmpty || own == name).map(_._2)
+
+  private def of[A](all: Map[String, Vector[A]], vehicle: String): Vector[A] =
+    all.get(vehicle).orElse(all.get(SensorSettings.Others)).getOrElse(Vector.empty)
 
 private[simulator] object SensorSettings:
+  /** In the place of a vehicle's name, which is never empty. */
+  val Others = ""
+
   final case class Capture(width: Int = 256, height: Int = 144, fovDeg: Float = 90)
 
   /** A camera of the settings.
@@ -47,18 +58,21 @@ private[simulator] object SensorSettings:
   /** Reads it from the file's text, which is JSON. */
   def read(text: String): Either[SettingsError, SensorSettings] = SettingsSection.read(text)(of)
 
-  private def of(root: SettingsSection): SensorSettings =
-    val vehicles                                                 = root.sections("Vehicles")
-    val unless                                                   = root.sections("DefaultSensors")
-    def sensors[A](kind: SensorKind)(read: SettingsSection => A) = vehicles.map: (name, vehicle) =>
-      // As for other kinds, what a vehicle lists of a kind stands for what the defaults list of it.
+  private[simulator] def of(root: SettingsSection): SensorSettings =
+    val vehicles = WorldSettings.created(root.sections("Vehicles"))
+    val unless   = root.sections("DefaultSensors")
+    def sensors[A](kind: SensorKind)(read: SettingsSection => A) =
       def listed(all: Vector[(String, SettingsSection)]) =
         all.filter((_, sensor) => sensor.number("SensorType", 0) == kind.number.toDouble)
-      val own = listed(vehicle.sections("Sensors"))
-      name -> (if own.nonEmpty then own else listed(unless))
+      def enabled(all: Vector[(String, SettingsSection)]) = all
         .filter((_, sensor) => sensor.flag("Enabled", unless = false))
         .map((sensorName, sensor) => sensorName -> read(sensor))
-    .toMap
+      val others = enabled(listed(unless))
+      vehicles.map: (name, vehicle) =>
+        // As for other kinds, what a vehicle lists of a kind stands for what the defaults list of it.
+        val own = listed(vehicle.sections("Sensors"))
+        name -> (if own.nonEmpty then enabled(own) else others)
+      .toMap + (Others -> others)
     SensorSettings(
       captures(root.section("CameraDefaults"), Capture()),
       vehicles.map((name, vehicle) =>
@@ -76,21 +90,21 @@ private[simulator] object SensorSettings:
 
   private def captures(section: SettingsSection, unless: Capture): Map[Int, Capture] =
     section.list("CaptureSettings").map: capture =>
-      val width  = capture.number("Width", unless.width, 1, 8192).toInt
-      val height = capture.number("Height", unless.height, 1, 8192).toInt
+      val width  = capture.whole("Width", unless.width, 1, 8192)
+      val height = capture.whole("Height", unless.height, 1, 8192)
       if width.toLong * height > MostPixels then
         capture.fail("Height", s"at most $MostPixels pixels", s"$width × $height")
-      capture.number("ImageType", 0, -1, 99).toInt ->
+      capture.whole("ImageType", 0, -1, 99) ->
         Capture(width, height, capture.number("FOV_Degrees", unless.fovDeg, 1, 179).toFloat)
     .toMap
 
   private def lidar(section: SettingsSection): Lidar =
     val unless = Lidar()
     Lidar(
-      channels = section.number("NumberOfChannels", unless.channels, 1, 1024).toInt,
+      channels = section.whole("NumberOfChannels", unless.channels, 1, 1024),
       rangeM = section.number("Range", unless.rangeM, 0.01, 100_000),
-      pointsPerSecond = section.number("PointsPerSecond", unless.pointsPerSecond, 1, 100_000_000).toInt,
-      rotationsPerSecond = section.number("RotationsPerSecond", unless.rotationsPerSecond, 1, 1000).toInt,
+      pointsPerSecond = section.whole("PointsPerSecond", unless.pointsPerSecond, 1, 100_000_000),
+      rotationsPerSecond = section.whole("RotationsPerSecond", unless.rotationsPerSecond, 1, 1000),
       horizontalFovDeg = (
         section.number("HorizontalFOVStart", unless.horizontalFovDeg._1, -360, 360),
         section.number("HorizontalFOVEnd", unless.horizontalFovDeg._2, -360, 360)

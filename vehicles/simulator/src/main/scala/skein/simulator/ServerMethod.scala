@@ -34,6 +34,22 @@ final private[simulator] class ServerMethod(
 ):
   def arity: Int = arguments.size
 
+  /** Whether its arguments can be read from these. */
+  def takes(params: IndexedSeq[Msg]): Boolean =
+    arity == params.size &&
+      (try
+        arguments.iterator.zip(params).foreach(_.read(_))
+        true
+      catch case _: BadArgument => false)
+
+  /** The same function with another last argument, which is read and not regarded, or with none.
+    *
+    * @param last what the function gets in its place
+    */
+  def closing(last: Any, read: Option[Argument[?]] = None): ServerMethod =
+    def own(values: Tuple): Tuple = Tuple.fromArray(values.toArray.take(arity - 1).map(x => x: Any) :+ last)
+    ServerMethod(name, arguments.init ++ read, (simulation, values) => run(simulation, own(values)))
+
   /** Never throws: a function that fails answers with its exception, as AirSim's do. */
   def apply(simulation: Simulated, params: IndexedSeq[Msg]): CallOutcome =
     try run(simulation, Tuple.fromArray(arguments.iterator.zip(params).map(_.read(_)).toArray[Any]))
@@ -84,13 +100,14 @@ private[simulator] object ServerMethod:
   )(run: (Int, SimulatedMultirotor) => CallOutcome): CallOutcome =
     vehicle(simulation, name):
       case (index, multirotor: SimulatedMultirotor) => run(index, multirotor)
-      case (_, other) => CallOutcome.Threw(s"expected a multirotor, '${other.settings.name}' is a car")
+      case (_, other)                               =>
+        CallOutcome.Threw(s"expected a multirotor, '${other.settings.name}' is a ${other.kind}")
 
   /** A car; a multirotor has no such function. */
   def car(simulation: Simulated, name: String)(run: (Int, SimulatedCar) => CallOutcome): CallOutcome =
     vehicle(simulation, name):
       case (index, car: SimulatedCar) => run(index, car)
-      case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a multirotor")
+      case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a ${other.kind}")
 
   private def find(simulation: Simulated, name: String, what: String, reason: String)(
       run: (Int, SimulatedVehicle) => CallOutcome

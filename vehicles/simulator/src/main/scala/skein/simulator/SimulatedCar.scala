@@ -19,6 +19,8 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
 
   reset(Instant.Epoch)
 
+  def kind: String = "car"
+
   /** As they were set last. */
   def controls: WireControls = told
 
@@ -51,9 +53,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
     acceleration = Vector3.Zero
     yawing = 0
     controlled = false
-    touched = None
-    sampledAt = at
-    resetAt = at
+    begin(at)
 
   /** Nothing blows it away. */
   def setWind(windNed: Vector3): Unit = ()

@@ -39,20 +39,20 @@ final private[simulator] class SimulatedMultirotor(
 
   reset(Instant.Epoch)
 
+  def kind: String = "multirotor"
+
   /** Back to the start, without api control; armed if the settings say so. */
   def reset(at: Instant): Unit =
     rotorcraft.land(state, settings.yaw.value)
     jumped += 1
     state.grounded = environment.groundDownM == 0
-    sampledAt = at
     armed = settings.armed
     controlled = false
     remote = RcData.Absent
     goalExpired = false
     goalSetAt = at
     goal = remoteGoal
-    touched = None
-    resetAt = at
+    begin(at)
     flown = false
 
   def setWind(windNed: Vector3): Unit = environment = environment.copy(windNed = windNed)

@@ -17,9 +17,13 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   protected var sampledAt: Instant     = Instant.Epoch
   protected var resetAt: Instant       = Instant.Epoch
+  private var gpsFrom: Instant         = Instant.Epoch
   protected var controlled: Boolean    = false
   protected var touched: Option[Touch] = None
   protected val obstacles: Obstacles   = Obstacles(settings.startNed)
+
+  /** A word for what it is. */
+  def kind: String
 
   def apiControl: Boolean = controlled
 
@@ -89,5 +93,22 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   /** Time since its start or its last reset. */
   def upFor(at: Instant): Span = at.since(resetAt)
+
+  /** Whether its GPS tells anything: from a second after the start on, also after a reset, which does not
+    * take that second again unless it comes before it is over.
+    */
+  def hasGps(at: Instant): Boolean = at >= gpsFrom
+
+  /** It is there from now on, at its start. */
+  def start(at: Instant): Unit =
+    gpsFrom = at + Gps.Startup
+    reset(at)
+
+  /** What every kind of vehicle notes of a reset. */
+  protected def begin(at: Instant): Unit =
+    if !hasGps(at) then gpsFrom = at + Gps.Startup
+    sampledAt = at
+    resetAt = at
+    touched = None
 
   protected def sinceSample(at: Instant): Double = at.since(sampledAt).toSeconds

@@ -171,10 +171,15 @@ final class Simulation(
 
   private def run(call: SimulatorCall, at: Instant): Unit =
     def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))
-    named.get(call.method) match
-      case None => fail(Rpclib.unknown(call.method, call.params.size))
-      case Some(method) if method.arity != call.params.size =>
-        fail(Rpclib.arity(call.method, passed = call.params.size, wanted = method.arity))
+    val forms                    = named.getOrElse(call.method, Vector.empty)
+    val those                    = forms.filter(_.arity == call.params.size)
+    // Of forms with as many arguments their types decide.
+    val form =
+      if those.size < 2 then those.headOption else those.find(_.takes(call.params)).orElse(those.headOption)
+    form match
+      case None if forms.isEmpty => fail(Rpclib.unknown(call.method, call.params.size))
+      case None                  =>
+        fail(Rpclib.arity(call.method, passed = call.params.size, wanted = forms.head.arity))
       case Some(method) =>
         method(this, call.params) match
           case CallOutcome.Answered(result) => answers += SimulatorAnswer(call.token, Right(result))
@@ -237,9 +242,11 @@ object Simulation:
   private[simulator] val methods: Seq[ServerMethod] =
     SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++
       GainMethods.all ++ SceneMethods.all ++
-      CameraMethods.all ++ AppearanceMethods.all
+      CameraMethods.all ++ AppearanceMethods.all ++ CosysMethods.all
 
-  private val named: Map[String, ServerMethod] = methods.map(method => method.name -> method).toMap
+  /** By their names, AirSim's form before Cosys-AirSim's. */
+  private[simulator] val named: Map[String, Seq[ServerMethod]] =
+    (methods ++ CosysMethods.forms(methods)).groupBy(_.name)
 
   /** The functions it has. */
   val methodNames: Set[String] = named.keySet

@@ -9,13 +9,14 @@ private[simulator] object SimulatorMethods:
 
   val all: Seq[ServerMethod] = Seq(
     none("ping")(_ => answer(true)),
-    none("getServerVersion")(_ => answer(1)),
+    // Cosys-AirSim 3's client wants this one, AirSim's anything from 1 on.
+    none("getServerVersion")(_ => answer(4)),
     none("getMinRequiredClientVersion")(_ => answer(1)),
     one[Boolean]("simPause")((simulation, on) => done(simulation.setPaused(on))),
     none("simIsPaused")(simulation => answer(simulation.isPaused)),
     one[Double]("simContinueForTime")((_, seconds) => steps(Span.ofSeconds(math.min(seconds, LongestStepS)))),
-    one[Argument.Unsigned32]("simContinueForFrames")((simulation, frames) =>
-      steps(simulation.world.step * math.min(frames, LongestStepS.toLong * 1000))
+    one[Argument.Unsigned32]("simContinueForFrames")((_, frames) =>
+      steps(Span.ofSeconds(math.min(frames.toDouble / FramesPerS, LongestStepS)))
     ),
     none("reset")(simulation => done(simulation.world.reset())),
     // AirSim keeps them sorted by name.
@@ -23,6 +24,9 @@ private[simulator] object SimulatorMethods:
     none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
     one[Vector3r]("simSetWind")((simulation, wind) => done(simulation.world.setWind(wind.toVector)))
   )
+
+  /** Of a renderer that keeps up with AirSim's usual screen. */
+  private val FramesPerS = 60.0
 
   /** A day: far beyond use, and far below what would overflow a clock. */
   private val LongestStepS = 86400.0

@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.airsim.{SettingsError, WorldSettings}
+import skein.airsim.WorldSettings
 import skein.hil.AutopilotInterface
 import skein.link.Address
 import skein.port.Moves
@@ -33,7 +33,7 @@ enum Overload:
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
-    address: Address = Address("127.0.0.1", 41451),
+    address: Address = Address("127.0.0.1", SimulatorSettings.UsualPort),
     overload: Overload = Overload.AirSim,
     speed: Double = 1.0,
     limits: ServerLimits = SimulatorSettings.Limits,
@@ -46,8 +46,7 @@ final case class SimulatorSettings(
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
-  /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]]
-    * says so.
+  /** What the vehicles carry; nothing, where the file's text cannot be read: [[SettingsFile]] says so.
     */
   private[simulator] def equipment: SensorSettings =
     SensorSettings.read(world.text).getOrElse(SensorSettings.None)
@@ -64,6 +63,9 @@ final case class SimulatorSettings(
       case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
 
 object SimulatorSettings:
+  /** AirSim's. */
+  val UsualPort = 41451
+
   /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all
     * clients: images.
     */
@@ -71,17 +73,3 @@ object SimulatorSettings:
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),
     heldBytesInCommon = 256 << 20
   )
-
-  /** Checks that the built-in simulator has these vehicles. */
-  def supported(world: WorldSettings): Either[SettingsError, WorldSettings] =
-    world.vehicles
-      .find(vehicle => !vehicle.isCar && !vehicle.vehicleType.equalsIgnoreCase(WorldSettings.SimpleFlight))
-      .map(vehicle =>
-        SettingsError.Unexpected(
-          s"Vehicles.${vehicle.name}.VehicleType",
-          s"${WorldSettings.SimpleFlight} or ${WorldSettings.PhysXCar}",
-          vehicle.vehicleType
-        )
-      )
-      .toLeft(world)
-      .flatMap(_ => SensorSettings.read(world.text).map(_ => world))

@@ -23,6 +23,13 @@ private[simulator] object VehicleMethods:
     many[(Boolean, String)]("armDisarm"):
       case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
     ,
+    // AirSim's vehicles have no evaluation of safety either, and say so.
+    many[(Argument.Unsigned32, Float, Int, Float, Vector3r, Float, Float, Float, String)]("setSafety"):
+      case (simulation, (_, _, _, _, _, _, _, _, name)) =>
+        multirotor(simulation, name)((_, _) =>
+          CallOutcome.Threw("The setSafety call requires safety_eval_ptr_ to be set first")
+        )
+    ,
     many[(RcData, String)]("moveByRC"):
       case (simulation, (sticks, name)) =>
         multirotor(simulation, name)((_, vehicle) => done(vehicle.steer(sticks)))
@@ -114,7 +121,7 @@ private[simulator] object VehicleMethods:
       Pose(Vector3r(ranger.place.position), Quaternionr(ranger.place.orientation))
     )
 
-  private def missing(kind: String, sensor: String): CallOutcome =
+  def missing(kind: String, sensor: String): CallOutcome =
     CallOutcome.Threw(s"No $kind with name $sensor exist on vehicle")
 
   private def state(vehicle: SimulatedMultirotor, at: Instant) = MultirotorState(

@@ -38,14 +38,10 @@ final class World(
 
   private var lockstep = Option.empty[Lockstep]
 
-  private val scans = Scans(
-    for
-      (vehicle, index) <- settings.vehicles.zipWithIndex
-      (name, lidar)    <- equipment.lidars.getOrElse(vehicle.name, Vector.empty)
-    yield Scans.Carried(index, name, lidar)
-  )
+  private val scans = Scans()
+  settings.vehicles.zipWithIndex.foreach((vehicle, index) => equip(index, vehicle.name))
 
-  present.foreach(_.reset(start))
+  present.foreach(_.start(start))
   setWind(wind)
 
   /** Those of the settings, then those added. */
@@ -57,19 +53,25 @@ final class World(
     */
   private[simulator] def multirotor(vehicle: Int): SimulatedMultirotor = vehicles(vehicle) match
     case multirotor: SimulatedMultirotor => multirotor
-    case other => throw IllegalArgumentException(s"expected a multirotor, ${other.settings.name} is a car")
+    case other                           =>
+      throw IllegalArgumentException(s"expected a multirotor, ${other.settings.name} is a ${other.kind}")
+
+  private def equip(index: Int, name: String): Unit =
+    for (own, lidar) <- equipment.lidarsOf(name) do scans.carry(Scans.Carried(index, own, lidar))
 
   private def made(vehicle: VehicleSettings): SimulatedVehicle =
     if vehicle.isCar then SimulatedCar(vehicle, settings.origin)
+    else if vehicle.isCamera then SimulatedCamera(vehicle, settings.origin)
     else SimulatedMultirotor(vehicle, kind.make(), settings.origin)
 
   /** One more vehicle, at rest at its start. */
   private[simulator] def add(vehicle: VehicleSettings): Unit =
     val added = made(vehicle)
-    added.reset(clock)
+    added.start(clock)
     added.setWind(wind)
     moves += None
     present = present :+ added
+    equip(present.size - 1, vehicle.name)
 
   /** The simulator's clock. */
   def now: Instant = clock

@@ -50,7 +50,7 @@ class AirSimClientLiveSuite extends munit.FunSuite:
 
   flown.test("versions, vehicles and settings come through"): (_, client) =>
     assert(done(client.ping()))
-    assertEquals((done(client.serverVersion()), done(client.minRequiredClientVersion())), (1, 1))
+    assertEquals((done(client.serverVersion()), done(client.minRequiredClientVersion())), (4, 1))
     assertEquals(done(client.vehicles()), Seq("Evader", "Pursuer"))
     assertEquals(done(client.settings()).vehicles, vehicles)
 

@@ -193,7 +193,7 @@ class ImageSuite extends munit.FunSuite:
     def error(text: String) = SensorSettings.read(text).fold(_.message, equipment => fail(s"$equipment"))
     assert(error(
       """{"CameraDefaults": {"CaptureSettings": [{"Width": 0}]}}"""
-    ).contains("CameraDefaults.CaptureSettings.Width: expected a number from 1.0 to 8192.0, found 0"))
+    ).contains("CameraDefaults.CaptureSettings[0].Width: expected a number from 1 to 8192, found 0"))
     val frame =
       """{"Vehicles": {"A": {"Sensors": {"L": {"SensorType": 6, "Enabled": true, "DataFrame": "x"}}}}}"""
     assert(error(

@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.airsim.wire.*
-import skein.airsim.{SensorKind, VehicleSettings, WorldSettings}
+import skein.airsim.{SensorKind, VehicleSettings}
 import skein.units.*
 import upack.{Obj, Str}
 
@@ -27,13 +27,9 @@ class NamesSuite extends munit.FunSuite:
     assertEquals(north(bench, ""), north(bench, "Pursuer"))
 
   test("a vehicle type is known in any case"):
-    for kind <- Seq("simpleflight", "SIMPLEFLIGHT", "SimpleFlight") do
-      val world = WorldSettings(Vector(VehicleSettings("A", vehicleType = kind)))
-      assertEquals(SimulatorSettings.supported(world), Right(world))
-    assert(SimulatorSettings.supported(WorldSettings(Vector(VehicleSettings(
-      "A",
-      vehicleType = "PX4"
-    )))).isLeft)
+    for kind <- Seq("simpleflight", "SIMPLEFLIGHT", "SimpleFlight", "computervision") do
+      assert(SettingsFile.read(s"""{"Vehicles": {"A": {"VehicleType": "$kind"}}}""").isRight, kind)
+    assert(SettingsFile.read("""{"Vehicles": {"A": {"VehicleType": "PX4"}}}""").isLeft)
 
   private val sensors = Seq(
     ("getImuData", "imu", "IMU"),
@@ -73,17 +69,27 @@ class NamesSuite extends munit.FunSuite:
     rotors.foreach(rotor => assertEqualsDouble(math.abs(rotor.torque_scaler), 0.5947 * 0.05556, 1e-5))
     rotors.foreach(rotor => assertEqualsDouble(rotor.speed, math.sqrt(0.5947) * 669.857, 0.05))
 
-  test(
-    "the GPS is silent for a second after the start and after a " +
-      "reset; then its dilutions fall from 100 to 0.1"
-  ):
+  private def gps(bench: Bench) = bench.now[GpsData]("getGpsData", Str(""), Str(""))
+
+  test("a reset within the GPS's first second silences it for another one; later resets do not"):
     val bench = Bench()
-    def gps   = bench.now[GpsData]("getGpsData", Str(""), Str(""))
-    for _ <- 1 to 2 do
+    bench.pass(0.9)
+    bench.tell("reset")
+    bench.pass(0.9)
+    assert(!gps(bench).is_valid)
+    bench.pass(0.2)
+    assert(gps(bench).is_valid)
+    bench.tell("reset")
+    assert(gps(bench).is_valid)
+
+  test("the GPS is silent for a second after the start; then and after a reset its dilutions fall to 0.1"):
+    val bench = Bench()
+    def gps   = this.gps(bench)
+    for isFirst <- Seq(true, false) do
       bench.pass(0.99)
       val silent = gps
-      assert(!silent.is_valid)
-      assertEquals(silent.gnss.geo_point, GeoPoint(0, 0, 0))
+      assertEquals(silent.is_valid, !isFirst)
+      if isFirst then assertEquals(silent.gnss.geo_point, GeoPoint(0, 0, 0))
       assertEquals(silent.gnss.fix_type, 0)
       bench.pass(0.02)
       val first = gps

@@ -13,6 +13,8 @@ private[simulator] object SampleCalls:
   def answered(name: String): Either[String, Msg] =
     val bench =
       if name.contains("Car") then Bench.of(VehicleSettings("Evader", vehicleType = "PhysXCar"))
+      else if name.contains("ComputerVision") then
+        Bench.of(VehicleSettings("Evader", vehicleType = "ComputerVision"))
       else Bench(Seq("Evader")).hovering(-5)
     val token = bench.call(name, params(name)*)
     while bench.answeredAt(token).isEmpty && bench.elapsedS < 70 do bench.pass(1)
@@ -53,7 +55,8 @@ private[simulator] object SampleCalls:
       case _ if name.startsWith("moveBy")         => Seq(0.0, 0.0, 0.0, 0.6, 1, v)
       case _ if name.endsWith("ControllerGains")  => Seq(three, three, three, v)
       case "getImuData" | "getGpsData" | "getBarometerData" | "getMagnetometerData" | "getLidarData" |
-          "getDistanceSensorData" =>
+          "getDistanceSensorData" | "getEchoData" | "getGPULidarData" | "getUWBData" | "getUWBSensorData" |
+          "getWifiData" | "getWifiSensorData" =>
         Seq("", v)
       case "simSetVehiclePose" => Seq(pose, true, v)
       case "setCarControls"    => Seq(writeMsg(CarControls(throttle = 1)), v)
@@ -61,8 +64,27 @@ private[simulator] object SampleCalls:
       case "simSetKinematics"  =>
         val zero = Vector3r.Zero
         Seq(writeMsg(KinematicsState(zero, Quaternionr(1, 0, 0, 0), zero, zero, zero, zero)), true, v)
-      case "simAddVehicle"       => Seq("Another", "SimpleFlight", pose, "")
-      case "simListSceneObjects" => Seq(".*")
+      case "simSetPhysicsRawKinematics" =>
+        val zero = Vector3r.Zero
+        Seq(writeMsg(KinematicsState(zero, Quaternionr(1, 0, 0, 0), zero, zero, zero, zero)), v)
+      case "setSafety"                        => Seq(1, 1.0, 0, 1.0, vector, 10.0, -20.0, 0.0, v)
+      case "simListInstanceSegmentationPoses" => Seq(true, false)
+      case "simListSceneObjectsTags"          => Seq(".*")
+      case "simSetExtForce"                   => Seq(vector)
+      case "simSetLidarPose" | "simSetDistanceSensorPose" | "simSetEchoPose" | "simSetGPULidarPose" =>
+        Seq("One", pose, v)
+      case "simSetWorldLightIntensity"              => Seq("Sun", 2.0)
+      case "simSetWorldLightVisibility"             => Seq("Sun", true)
+      case "simSetVehicleLightIntensity"            => Seq(v, "Lamp", 2.0)
+      case "simSetVehicleLightVisibility"           => Seq(v, "Lamp", true)
+      case "simListAnnotationPoses"                 => Seq("Layer", true, false)
+      case "simSetAnnotationObjectID"               => Seq("Layer", "Evader", 3, false)
+      case "simSetAnnotationObjectColor"            => Seq("Layer", "Evader", 1, 2, 3, false)
+      case "simSetAnnotationObjectValue"            => Seq("Layer", "Evader", 0.5, false)
+      case "simSetAnnotationObjectTextureByPath"    => Seq("Layer", "Evader", "wood", false)
+      case "simEnableAnnotationObjectTextureByPath" => Seq("Layer", "Evader", false)
+      case "simAddVehicle"                          => Seq("Another", "SimpleFlight", pose, "")
+      case "simListSceneObjects"                    => Seq(".*")
       case "simGetObjectPose" | "simGetObjectScale" | "simDestroyObject" | "simGetSegmentationObjectID" =>
         Seq("Evader")
       case "simSetObjectPose"                      => Seq("Evader", pose, true)

@@ -19,6 +19,10 @@ final private[skein] case class CarControls(
 ) derives ReadWriter
 
 /** Speed along the heading in m/s, negative backwards; the engine's turns a minute. */
+/** Of a camera that is no vehicle; Cosys-AirSim's. */
+final private[skein] case class ComputerVisionState(kinematics_estimated: KinematicsState, timestamp: Instant)
+    derives ReadWriter
+
 final private[skein] case class CarState(
     speed: Float,
     gear: Int,

@@ -1,0 +1,15 @@
+package skein.cli
+
+import skein.airsim.WorldSettings
+import skein.link.Address
+
+/** Where `serve` listens. */
+class ServeAddressSuite extends munit.FunSuite:
+  private val world = WorldSettings.Default
+
+  test("at the port of the settings on this machine alone, unless the command line says otherwise"):
+    val set = world.copy(apiPort = Some(42099))
+    assertEquals(ServeCommand.addressOf(None, world), Right(Address("127.0.0.1", 41451)))
+    assertEquals(ServeCommand.addressOf(None, set), Right(Address("127.0.0.1", 42099)))
+    assertEquals(ServeCommand.addressOf(Some("127.0.0.1:5000"), set), Right(Address("127.0.0.1", 5000)))
+    assert(ServeCommand.addressOf(Some("nowhere"), set).left.exists(_.startsWith("--listen: ")))

@@ -1,0 +1,82 @@
+package skein.simulator
+
+import skein.airsim.{SettingsError, SettingsSection, VehicleSettings, WorldSettings}
+
+/** What the built-in simulator makes of an AirSim `settings.json`. Each key is obeyed, or the file is refused
+  * for it, or it is told as one without effect.
+  *
+  * @param ignored the paths of what has no effect here, in the file's order
+  */
+final case class SettingsFile(world: WorldSettings, ignored: Vector[String]):
+
+  /** One line about what has no effect, of at most [[SettingsFile.MostTold]] paths. */
+  def notice: Option[String] = Option.when(ignored.nonEmpty):
+    val told = ignored.take(SettingsFile.MostTold).map(SettingsError.shown).mkString(", ")
+    val more = ignored.size - SettingsFile.MostTold
+    s"without effect here: $told${if more > 0 then s" and $more more" else ""}"
+
+object SettingsFile:
+  val MostTold = 20
+
+  /** Reads a file's text. */
+  def read(text: String): Either[SettingsError, SettingsFile] = SettingsSection.read(text): root =>
+    val world = WorldSettings.read(root, text)
+    val local = localOnly(root)
+    checkMode(root)
+    checkWorld(root, world)
+    val _ = SensorSettings.of(root)
+    SettingsFile(world, root.unread ++ local)
+
+  /** Told where a file names an address of a network: it is not obeyed in that. The file may be anybody's,
+    * and who serves says on the command line whether other machines may connect.
+    */
+  private def localOnly(root: SettingsSection): Option[String] =
+    Option.when(!Loopback(root.text("LocalHostIp", "")))(
+      "LocalHostIp (only this machine can connect, unless --listen says otherwise)"
+    )
+
+  private def checkMode(root: SettingsSection): Unit =
+    root.number("SettingsVersion", 1.2, 1, 2): Unit
+    oneOf(root, "SimMode", Modes)
+    oneOf(root, "PhysicsEngineName", Engines)
+    if !root.flag("RpcEnabled", unless = true) then root.fail("RpcEnabled", "true", "false")
+
+  private def oneOf(root: SettingsSection, key: String, known: Vector[String]): Unit =
+    val value = root.text(key, "")
+    if value.nonEmpty && !known.contains(value) then root.fail(key, known.mkString(" or "), s"'$value'")
+
+  /** Bounds within which physics stays finite, and the formulas of the air hold. */
+  private def checkWorld(root: SettingsSection, world: WorldSettings): Unit =
+    root.number("ClockSpeed", 1, 0.001, 1000): Unit
+    val wind = root.section("Wind")
+    for axis <- Seq("X", "Y", "Z") do wind.number(axis, 0, -MostWindMps, MostWindMps): Unit
+    val origin = root.section("OriginGeopoint")
+    origin.number("Latitude", 0, -90, 90): Unit
+    origin.number("Longitude", 0, -180, 180): Unit
+    origin.number("Altitude", 0, -1000, 10_000): Unit
+    if world.vehicles.size > SceneMethods.MostVehicles then
+      root.fail("Vehicles", s"at most ${SceneMethods.MostVehicles}", world.vehicles.size.toString)
+    val listed = root.section("Vehicles")
+    for vehicle <- world.vehicles do
+      val fields = listed.section(vehicle.name)
+      if vehicle.name.isEmpty || vehicle.name.length > SceneMethods.LongestName then
+        listed.fail(
+          vehicle.name,
+          s"a name of 1 to ${SceneMethods.LongestName} characters",
+          s"${vehicle.name.length}"
+        )
+      for axis <- Seq("X", "Y", "Z") do
+        fields.number(axis, 0, -SceneMethods.FarthestM, SceneMethods.FarthestM): Unit
+      if !flies(vehicle) then
+        fields.fail("VehicleType", Types.mkString(", "), s"'${vehicle.vehicleType}'")
+
+  /** Whether the built-in simulator has vehicles of this type. */
+  private[simulator] def flies(vehicle: VehicleSettings): Boolean =
+    Types.exists(_.equalsIgnoreCase(vehicle.vehicleType))
+
+  private val Types = Vector(WorldSettings.SimpleFlight, WorldSettings.PhysXCar, WorldSettings.ComputerVision)
+
+  private val Modes       = Vector("Multirotor", "Car", "ComputerVision")
+  private val Engines     = Vector("FastPhysicsEngine", "PhysX")
+  private val Loopback    = Set("", "127.0.0.1", "localhost")
+  private val MostWindMps = 1000.0
