@@ -55,13 +55,20 @@ object LatencyCommand
       failures   = answers.collect { case Failure(reason) => reason.getMessage }
       roundTrips = answers.collect { case Success(roundTrip) => roundTrip.toMillis }
       samples <- Distribution.of(roundTrips).toRight(s"no ping was answered: ${failures.mkString("; ")}")
-      drawing <- LatencyFigure(Seq(profile.name -> samples)).toRight("nothing to draw")
+      measured = measuredLink(simulator, profile)
+      drawing <- LatencyFigure(Seq(measured -> samples)).toRight("nothing to draw")
       files   <- OutFolder.write(folder, OutFolder.picture("latency", drawing, s"Round trips to $simulator"))
     yield
       val shown = Shown(options.json.value)
       val table = quantileTable(profile, samples)
       shown.tables(Seq(Section("Round trips", table = Some(table))), text(table, samples, failures))
       shown.say(s"\npictures: ${files.mkString(", ")}")
+
+  /** The link that was measured: an emulated one by its name, since the picture shows its profile, else the
+    * one that leads to the simulator.
+    */
+  private[cli] def measuredLink(simulator: Address, profile: LatencyProfile): String =
+    if profile == LatencyProfile.none then simulator.toString else profile.name
 
   private def measure(
       simulator: Address,
