@@ -33,7 +33,7 @@ object Named:
 
   private val units = Vector(
     Named("flight/src/main/scala/skein/measure/Distribution.scala", "quantile(0.99)", "quantile(0.95)"),
-    Named(Rows, "toController(opponent.state.validAt)", "toController(own.state.validAt)"),
+    Named(Rows, "ageOf(opponent.state, now)", "ageOf(own.state, now)"),
     Named(Alignment, "fromSimulator - toSimulator", "toSimulator - fromSimulator"),
     Named(Alignment, "(lower - slack).max(one.lower)", "lower.max(one.lower)"),
     Named(Alignment, "(upper + slack).min(one.upper)", "upper.min(one.upper)"),
@@ -50,7 +50,7 @@ object Named:
       "held.get(key).forall(isNewer(value, _))",
       "true"
     ),
-    Named(Rows, "toController(opponent.state.validAt)", "toController(own.state.validAt)"),
+    Named(Rows, "ageOf(opponent.state, now)", "ageOf(own.state, now)"),
     Named(
       "record/src/main/scala/skein/record/MemoryRecorder.scala",
       "else if !closed then",
