@@ -4,7 +4,7 @@ import skein.measure.{Distribution, ScenarioFlights}
 import skein.record.EventKind
 import skein.scenario.{Measured, Scenario}
 import skein.settings.NamedScene
-import skein.units.Decimals.{fixed, signed}
+import skein.units.Decimals.fixed
 
 /** Tables of a scenario's flights. */
 object ScenarioTables:

@@ -4,6 +4,7 @@ import java.nio.ByteBuffer
 import java.nio.charset.StandardCharsets.US_ASCII
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import scala.annotation.tailrec
 import scala.concurrent.Future
@@ -17,11 +18,12 @@ import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Flights beside a simulator whose clock lies, and beside another client of it. */
-class LyingSimulatorSimulation extends munit.FunSuite:
+class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
   private def settings(loop: LoopKind) = FlySettings(
@@ -188,12 +190,10 @@ class LyingSimulatorSimulation extends munit.FunSuite:
     assert(fly(LoopKind.Paused, acts = _.resume()).count(EventKind.StepDrift) > 0)
 
   /** Sets the time stamps of what the simulator sends. */
-  private final class Lying(transport: Transport, lied: Instant => Instant)(using system: ActorSystem)
-      extends Transport:
-    import system.dispatcher
+  private final class Lying(transport: Transport, lied: Instant => Instant) extends Transport:
     def connect(to: Address) = transport.connect(to)
     def listen(at: Address)  = transport.listen(at).map: incoming =>
-      incoming.copy(flow = incoming.flow.map(stamped))
+      incoming.copy(flow = Flow[ByteString].map(stamped).via(incoming.flow))
 
     private def stamped(bytes: ByteString): ByteString =
       @tailrec def next(done: ByteString, rest: ByteString): ByteString =
