@@ -94,6 +94,7 @@ final class FlyCommand(using Scenarios)
           for
             _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(twins)), out)
             _ <- OpenFiles.enoughFor(plans.size)
+            _ <- FlyCommand.vehiclesThere(settings, simulator)
             _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file), images = Nil))
             shows    = Shows()
             requests = OutsideRequests()
@@ -210,6 +211,18 @@ private[cli] object FlyCommand:
 
   /** Loops that this process has compiled: its next command need not. */
   @volatile private var warm = Set.empty[AnyLoop]
+
+  /** Before anything warms up: whether the simulator answers, and has the scenario's vehicles. One that
+    * speaks MAVLink is asked when its vehicles are brought to their starts, which needs their clocks.
+    */
+  def vehiclesThere(settings: FlySettings, simulator: Option[Address]): Either[String, Unit] =
+    simulator.filter(_ => settings.wire == Wire.AirSim) match
+      case None     => Right(())
+      case Some(at) =>
+        given system: ActorSystem = ActorSystem("skein-names")
+        try Edge.await(AirSimFleet.missing(settings.fleet, at, TcpTransport(), Clock.system))
+        finally
+          val _ = Edge.await(system.terminate())
 
   /** How many flights in virtual time are left to somebody who ends them: these are recorded when they have
     * ended.

@@ -26,7 +26,7 @@ object HtmlReport:
       body(
         h1(heading(set)),
         p(cls := "lead", abstractOf(set)),
-        cutShort(set),
+        remarks(set),
         sections.map(part),
         section(h2("Run parameters"), table(parameters(set)))
       )
@@ -80,8 +80,8 @@ object HtmlReport:
       )
     )
 
-  private def cutShort(set: FlightSet): Seq[TypedTag[String]] =
-    SummaryTables.remarks(set).map(line => p(cls := "note", strong(line)))
+  private def remarks(set: FlightSet): Seq[TypedTag[String]] =
+    (SummaryTables.remarks(set) ++ TimingVerdict.sentence(set)).map(line => p(cls := "note", strong(line)))
 
   private def parameters(set: FlightSet): TextTable =
     TextTable(

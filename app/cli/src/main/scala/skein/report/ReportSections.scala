@@ -34,13 +34,14 @@ object ReportSections:
       )
     )
 
-  /** All of a report, for the terminal: the tables, how far each loop was off the truth, and what was cut
-    * short, paused or is not known here.
+  /** All of a report, for the terminal: the tables, how far each loop was off the truth, what is to be known
+    * of single flights, and whether the timing was good enough.
     */
   def text(set: FlightSet)(using Scenarios): String =
     val said = Vector(
       Verdict.sentences(set.deviations),
-      SummaryTables.remarks(set)
+      SummaryTables.remarks(set),
+      TimingVerdict.sentence(set).toVector
     ).filter(_.nonEmpty).map(_.mkString("\n"))
     (Section.text(of(set)) +: said).mkString("\n\n")
 

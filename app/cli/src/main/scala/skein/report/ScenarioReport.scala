@@ -36,7 +36,8 @@ trait ScenarioReport:
     Section(s"Spread: ${flown.scenario.name}", table = Some(ScenarioTables.spread(flown)))
   )
 
-  def figures(set: FlightSet): Vector[Figure] = set.scenarios.flatMap(Figure.ofScenario)
+  def figures(set: FlightSet): Vector[Figure] =
+    set.scenarios.filter(_.flights.nonEmpty).flatMap(Figure.ofScenario)
 
 object ScenarioReport:
 

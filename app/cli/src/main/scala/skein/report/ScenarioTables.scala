@@ -4,7 +4,7 @@ import skein.measure.{Distribution, ScenarioFlights}
 import skein.record.EventKind
 import skein.scenario.{Measured, Scenario}
 import skein.settings.NamedScene
-import skein.units.Decimals.{fixed, signed}
+import skein.units.Decimals.fixed
 
 /** Tables of a scenario's flights. */
 object ScenarioTables:
@@ -13,23 +13,21 @@ object ScenarioTables:
     * where they are in the paused truth at the same time.
     */
   def flights(flown: ScenarioFlights): TextTable =
-    val names = flown.scenario.measures.map(_.title)
-    TextTable(
-      Vector("<loop", "<link", "flown s") ++ withPaused(names, "vs paused") ++ contactsTitle(flown) :+
-        "off truth m",
-      flown.flights.map: flight =>
-        val cells = flight.result.measured.map(text)
-        Vector(
-          flight.summary.name,
-          flight.summary.flight.link,
-          flight.summary.flownS.fixed(1)
-        ) ++ withPaused(
-          cells,
-          flown.deviation(flight).fold("")(share => s"${(share * 100).signed(1)} %")
-        ) ++ contactsTitle(
-          flown
-        ).map(_ => contacts(flight).toString) :+ flown.offTruthM(flight).fold("")(_.fixed(2))
-    )
+    val names  = flown.scenario.measures.map(_.title)
+    val header = Vector("<loop", "<link", "flown s") ++ withPaused(names, "vs paused") ++
+      contactsTitle(flown) :+ "off truth m"
+    val flights = flown.flights.map: flight =>
+      val cells = flight.result.measured.map(text)
+      Vector(
+        flight.summary.name,
+        flight.summary.flight.link,
+        flight.summary.flownS.fixed(1)
+      ) ++ withPaused(cells, SummaryTables.againstTruth(flight.summary, flown.deviation(flight))) ++
+        contactsTitle(flown).map(_ => contacts(flight).toString) :+
+        flown.offTruthM(flight).fold("")(_.fixed(2))
+    val without =
+      flown.withoutResult.map(one => Vector(one.name, one.flight.link).padTo(header.size, ""))
+    TextTable(header, flights ++ without)
 
   /** Where there is something to touch. */
   private def contactsTitle(flown: ScenarioFlights): Option[String] =

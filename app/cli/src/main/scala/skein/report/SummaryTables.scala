@@ -29,8 +29,8 @@ object SummaryTables:
               curve.closest._2.fixed(2),
               curve.closest._1.fixed(1)
             ) ++ last :+
-              set.deviation(summary).fold("")(share => s"${(share * 100).signed(1)} %")
-          case None => Vector("0", "", "", "", "", "", "")
+              againstTruth(summary, set.deviation(summary))
+          case None => Vector(if summary.noResult.isDefined then "" else "0", "", "", "", "", "", "")
         val hasTenSeconds = summary.distance.exists(_.lastTenSeconds.isDefined)
         val paper         = summary.published.filter(_ => hasTenSeconds).flatMap(_.distance) match
           case Some(published) =>
@@ -42,6 +42,10 @@ object SummaryTables:
           case None => Vector("", "", "")
         Vector(summary.name, summary.flight.link) ++ ours ++ paper
     )
+
+  /** How a flight compares with the truth, or that it does not. */
+  private[report] def againstTruth(flight: FlightSummary, share: Option[Double]): String =
+    if flight.starved.isDefined then "starved" else share.fold("")(share => s"${(share * 100).signed(1)} %")
 
   /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true
     * ages; by the role that was decided for. Without a flight of the paper's there is nothing beside them.
@@ -143,12 +147,27 @@ object SummaryTables:
 
   /** What is to be known of single flights, a line each. */
   def remarks(set: FlightSet): Vector[String] =
-    cutShort(set) ++ paused(set) ++ imageless(set) ++ unknown(set) ++ waiting(set)
+    withoutResult(set) ++ cutShort(set) ++ starved(set) ++ paused(set) ++ imageless(set) ++
+      unknown(set) ++ waiting(set)
+
+  /** A line for each flight that has none. */
+  private def withoutResult(set: FlightSet): Vector[String] =
+    for
+      summary <- set.all
+      none    <- summary.noResult
+    yield s"${summary.flight.id} has no result: ${none.why}"
+
+  /** A line for each flight that a busy machine flew badly. */
+  private def starved(set: FlightSet): Vector[String] =
+    for
+      summary <- set.all
+      why     <- summary.starved
+    yield s"${summary.flight.id} was starved, and is not compared with other flights: $why"
 
   /** A line for each flight that ended before its time. */
   private def cutShort(set: FlightSet): Vector[String] =
     for
-      summary <- set.all
+      summary <- set.all if summary.noResult.isEmpty
       reason  <- summary.cutShort
     yield
       val flown = s"${summary.flownS.fixed(1)} of ${summary.flight.duration.toSeconds.brief} s"

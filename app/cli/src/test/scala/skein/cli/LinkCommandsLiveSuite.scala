@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import skein.link.{Address, TcpTransport}
+import skein.scenario.Scenarios
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.TemporaryFolders
 import skein.units.Clock
@@ -35,6 +36,25 @@ class LinkCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
     assert(printed.linesIterator.exists(_.matches(".*ms  █+ \\d+")), printed)
     assert(Files.readString(directory.resolve("latency.svg")).contains("</svg>"))
     assert(Files.size(directory.resolve("latency.png")) > 1000)
+
+  folder.test("without an emulated link the picture names the network that was measured"): directory =>
+    val (status, _, told) = run(
+      LatencyCommand,
+      Seq("--simulator", s"${server.address}", "--samples", "5", "--period", "20ms", "--out", s"$directory")*
+    )
+    assertEquals(status, 0, told)
+    val picture = Files.readString(directory.resolve("latency.svg"))
+    assert(picture.contains(s"to ${server.address}") && !picture.contains("no network"))
+
+  folder.test("a flight names the vehicles that the simulator lacks before anything warms up"): directory =>
+    val scenario          = Seq("--scenario", "formation", "--loop", "stream", "--link", "none")
+    val (status, _, told) = run(
+      FlyCommand(using Scenarios.ours),
+      scenario ++ Seq("--simulator", s"${server.address}", "--out", s"$directory/flights")*
+    )
+    assertEquals(status, 1)
+    assert(told.contains("the simulator has no vehicle '") && told.contains("; it has '"), told)
+    assert(!told.contains("warmed up"), told)
 
   test("where there is no simulator the error says what to look at"):
     val (status, _, told) = run(LatencyCommand, "--simulator", "127.0.0.1:1", "--samples", "1")

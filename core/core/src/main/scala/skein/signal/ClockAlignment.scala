@@ -1,6 +1,7 @@
 package skein.signal
 
 import skein.units.*
+import skein.units.Decimals.fixed
 
 /** Estimates the offset between the controller's clock and the simulator's.
   *
@@ -53,6 +54,13 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
+  /** From a reading's sampling to `now`, by the controller's clock. Absent where the present offset does not
+    * hold for the reading: it was sampled before the simulator's clock was set anew, and would seem to come
+    * from the future.
+    */
+  def ageOf(reading: Stamped[?], now: Instant): Option[Span] =
+    Some(now.since(toController(reading.validAt))).filter(_ >= Span.Zero)
+
   /** Whether one reading was sampled later than another: because it was asked for after the other had
     * arrived, or else because it is of a later run of the simulator, or else by the simulator's clock. The
     * two readings alone do not suffice: after a restart with an earlier clock, a late answer of the former
@@ -67,6 +75,15 @@ final case class ClockAlignment private (
 
   /** Whether a reading was sampled by a run of the simulator before the present one. */
   def isOfFormerRun(reading: Stamped[?]): Boolean = runOf(reading) < former.size
+
+  /** What a reading contradicts, if estimation begins anew by it ([[updated]]). */
+  def contradiction(reading: Stamped[?]): Option[String] =
+    val next = updated(reading)
+    Option.when(next.restarts > restarts):
+      if next.standsStill then "the simulator's clock does not advance"
+      else
+        val lost = (next.lower - upper).max(lower - next.upper).toMillis
+        s"the offset of the clocks has changed by ${lost.fixed(1)} ms or more"
 
   /** A reading of a former run changes nothing. */
   def updated(reading: Stamped[?]): ClockAlignment =

@@ -1,10 +1,11 @@
 package skein.flight
 
 import org.apache.pekko.actor.ActorSystem
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.Future
 import skein.airsim.*
 import skein.link.*
 import skein.loop.{AnyLoop, LoopKind, LoopTimings}
+import skein.policy.Fleet
 import skein.record.*
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
 import skein.settings.{FlightPlan, FlySettings}
@@ -63,12 +64,19 @@ private[flight] final class AirSimFleet(
         val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
         Equipped.by(settings.scenario, port, vehicle, seen.toMap, log.scan)
       _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
+      beside = opened.closing(
+        AirSimClient(
+          RpcClient(transport, address, clock, RpcSettings(controlConnections = 1)),
+          LoopTimings.AskTimeout
+        )
+      )(_.close())
+      custody = Custody(vehicles.map(_.over(beside)), address, monitor.isLanding)
     yield ConnectedFleet(
       ports,
       Some(AirSimTime(client)),
       address.toString,
       () => client.ping(),
-      () => AirSimFleet.startedAgain(vehicles, address),
+      custody.ask,
       cameras.flatten,
       films
     )
@@ -155,34 +163,36 @@ private[flight] final class AirSimFleet(
           recorder.offer(Event(clock.now(), kind, None, detail))
         )
     )
-    AirSimClient(rpc, timeout = LoopTimings.AskTimeout)
+    AirSimClient(rpc, timeout = AirSimFleet.timeout(plan.loop))
 
 /** How long AirSim is waited for, and what of its client a recording keeps. */
 object AirSimFleet:
+  /** Of every question of a loop. While the simulator stands still nothing ages, so `paused` waits. */
+  private def timeout(loop: AnyLoop): Span = if loop == LoopKind.Paused then Span.ofSeconds(3) else LoopTimings.AskTimeout
+
+  /** Asks a simulator for its vehicles, over a connection of its own.
+    *
+    * @return or that it does not answer, or which of a fleet's vehicles it has not
+    */
+  def missing(fleet: Fleet, at: Address, transport: Transport, clock: Clock)(using
+      system: ActorSystem
+  ): Future[Either[String, Unit]] =
+    import system.dispatcher
+    val client = AirSimClient(RpcClient(transport, at, clock, RpcSettings(controlConnections = 1)))
+    client
+      .vehicles()
+      .map:
+        case Left(error)  => Left(AirSimError.ofFirst(error, at))
+        case Right(there) => fleet.agents.map(_.name).filterNot(there.contains) match
+            case Vector() => Right(())
+            case names    => Left(AirSimError.unknown(names, there))
+      .flatMap(answer => client.close().map(_ => answer))
+
   /** Of the client that flies a loop. */
   def rpcSettings(loop: AnyLoop): RpcSettings = loop match
     // Each command must reach the simulator before the step that follows it: one ordered connection.
     case LoopKind.Paused => RpcSettings(controlConnections = 1)
     case _               => RpcSettings()
-
-  /** Whether a simulator has been started again since it let these vehicles be flown: then nobody has api
-    * control of them. Its clock need not tell, since AirSim's begins with the time of day.
-    *
-    * @return `Left` where it did not answer, else why a flight cannot go on
-    */
-  private def startedAgain(vehicles: Vector[VehicleClient], simulator: Address)(using
-      ExecutionContext
-  ): Future[Either[String, Option[String]]] =
-    Future
-      .traverse(vehicles)(vehicle => vehicle.isApiControlEnabled().map(_.map((vehicle.name, _))))
-      .map: answers =>
-        answers.collectFirst { case Right((name, false)) => name } match
-          case Some(name) =>
-            Right(Some(
-              s"the simulator at $simulator no longer gives $name to this flight: " +
-                "it was started again, or another took api control away"
-            ))
-          case None => answers.collectFirst { case Left(error) => error.message }.toLeft(None)
 
   private val anyPort = Address("127.0.0.1", 0)
 

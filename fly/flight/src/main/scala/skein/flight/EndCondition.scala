@@ -67,7 +67,6 @@ private object EndCondition:
         seen.map: state =>
           val age =
             if isPaused then Span.Zero
-            else
-              alignment.fold(state.ageByArrival(now))(known => now.since(known.toController(state.validAt)))
+            else alignment.flatMap(_.ageOf(state, now)).getOrElse(state.ageByArrival(now))
           Seen(state.value, age, isPredicted = false)
       )

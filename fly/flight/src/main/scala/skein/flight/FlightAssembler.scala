@@ -53,6 +53,9 @@ final class FlightAssembler(
   private[flight] def keeps(record: Record): Boolean =
     ImagingSensor.of(record).forall(settings.recordedImaging)
 
+  /** Whether others may command the vehicles, too. */
+  private val isShared = simulator.isDefined && settings.wire == Wire.AirSim
+
   private val airSim = AirSimFleet(
     transport,
     clock,
@@ -104,7 +107,7 @@ final class FlightAssembler(
       for
         server <- serve()
         _       = server.foreach(opened.closing(_)(_.close()))
-        monitor = FlightMonitor(recorder)
+        monitor = FlightMonitor(recorder, isStepped = plan.loop == LoopKind.Paused, isShared)
         solver  <- solverOf(plan, opened, monitor)
         reached <- settings.wire match
           case Wire.AirSim  => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
@@ -132,6 +135,7 @@ final class FlightAssembler(
           SimulatorWatchdog.within(settings.period, LoopTimings.AskTimeout),
           reached.where,
           reached.isOther,
+          isShared,
           () => team.underDecision,
           line => tell(s"${plan.id}: $line")
         )

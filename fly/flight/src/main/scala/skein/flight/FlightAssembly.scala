@@ -42,7 +42,7 @@ final class FlightAssembly private[skein] (
       monitor.offer(Event(clock.now(), EventKind.Continued, None, who))
       hold.release(): Unit
 
-  /** How far it is, in the controller's time. */
+  /** How far it is: in the controller's time, and where time passes in steps, in the simulator's. */
   def progress: FlightProgress =
     val now = clock.now()
     FlightProgress(
@@ -50,16 +50,24 @@ final class FlightAssembly private[skein] (
       now.since(startedAt),
       monitor.lastSeen(now),
       watchdog.silentFor,
-      flight.outcome.isCompleted
+      flight.outcome.isCompleted,
+      Option.when(isPaused)(monitor.simulated)
     )
+
+  private def isPaused = plan.loop == LoopKind.Paused
+
+  /** While time stands still, nobody is late. */
+  private def starved: Option[String] = if isPaused then None else watchdog.starved
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
   val landed: Future[FlightResult] =
     for
-      outcome <- flight.outcome
+      flown   <- flight.outcome
+      outcome <- if flown == FlightOutcome.Completed then watchdog.last() else Future.successful(flown)
       closed  <- shutDown().transform(Success(_))
       notClosed = closed.failed.toOption.map(error => FlightOutcome.Failed(s"it could not be closed: $error"))
       ended     = notClosed.filter(_ => outcome == FlightOutcome.Completed).getOrElse(outcome)
+      _         = starved.foreach(why => monitor.offer(Event(clock.now(), EventKind.Starved, None, why)))
       _         = monitor.offer(FlightAssembly.ending(ended, clock.now()))
       written <- monitor.close()
     yield FlightResult(plan, ended, written, solver.fold(Vector.empty)(_.roundTrips))

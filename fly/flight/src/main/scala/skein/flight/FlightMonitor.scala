@@ -1,21 +1,36 @@
 package skein.flight
 
-import java.util.concurrent.atomic.AtomicLong
+import java.util.concurrent.atomic.{AtomicLong, AtomicReference}
 import scala.concurrent.Future
+import skein.policy.Action
 import skein.record.*
+import skein.signal.{Kinematics, Stamped, TimeAxis}
 import skein.units.*
 
-/** Records as `recorder` does, and remembers what is newest for whoever watches the flight. */
-final class FlightMonitor(recorder: Recorder) extends Recorder:
+/** Records as `recorder` does, and remembers what is newest for whoever watches the flight.
+  *
+  * @param isStepped whether the simulator stands still between steps, so that its clock is not compared with
+  *   the controller's
+  * @param isShared whether other clients may move the vehicles, so that it is watched whether they can have
+  *   flown where they are
+  */
+final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShared: Boolean = false)
+    extends Recorder:
   @volatile private var newest: Option[DecisionRow] = None
   private val heard                                 = AtomicLong(Long.MinValue)
   @volatile private var lastBroken                  = Option.empty[Event]
   @volatile private var isOfTeams                   = false
+  private val clocks                                = AtomicReference(TimeAxis.begun)
+  private val places                                = AtomicReference(Map.empty[String, Stamped[Kinematics]])
+  private val landing                               = AtomicReference(Set.empty[String])
+  private val firstAt                               = AtomicLong(Long.MaxValue)
+  private val lastAt                                = AtomicLong(Long.MinValue)
+  private val displaced                             = AtomicReference(Option.empty[String])
 
   def offer(record: Record): Unit =
     record match
-      case decision: DecisionRow => newest = Some(decision)
-      case reading: ReadingRow   => val _ = heard.accumulateAndGet(reading.state.receivedAt.toNanos, math.max)
+      case decision: DecisionRow                                => decided(decision)
+      case reading: ReadingRow                                  => read(reading)
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
       case _: Sighting                                          => isOfTeams = true
       case _                                                    => ()
@@ -23,6 +38,43 @@ final class FlightMonitor(recorder: Recorder) extends Recorder:
 
   def failure: Future[RecordError]                  = recorder.failure
   def close(): Future[Either[RecordError, Written]] = recorder.close()
+
+  private def decided(decision: DecisionRow): Unit =
+    newest = Some(decision)
+    val lands = decision.action.contains(Action.Land)
+    if lands != isLanding(decision.vehicle) then
+      landing.updateAndGet(all => if lands then all + decision.vehicle else all - decision.vehicle): Unit
+
+  private def read(reading: ReadingRow): Unit =
+    import reading.{state, vehicle}
+    heard.accumulateAndGet(state.receivedAt.toNanos, math.max): Unit
+    firstAt.accumulateAndGet(state.validAt.toNanos, math.min): Unit
+    lastAt.accumulateAndGet(state.validAt.toNanos, math.max): Unit
+    if !isStepped then clocks.updateAndGet(_.updated(vehicle, state)): Unit
+    if isShared && clocks.get.fault.isEmpty then
+      val before = places.getAndUpdate(all =>
+        if all.get(vehicle).exists(_.validAt > state.validAt) then all else all.updated(vehicle, state)
+      )
+      for
+        last <- before.get(vehicle)
+        why  <- Displacement.between(vehicle, last, state)
+      do displaced.compareAndSet(None, Some(why)): Unit
+
+  /** Why the flight can have no result, as far as its readings tell. */
+  def unsound: Option[Unsound] =
+    clocks.get.fault.map(Unsound(EventKind.ClockBroken, _)).orElse(
+      displaced.get.map(Unsound(EventKind.VehicleTaken, _))
+    )
+
+  /** That the simulator's clock does not keep pace now. */
+  def wandering: Option[String] = clocks.get.wandering
+
+  /** Whether a vehicle was told to land last. */
+  def isLanding(vehicle: String): Boolean = landing.get.contains(vehicle)
+
+  /** Time that has passed on the simulator's clock since the first reading. */
+  def simulated: Span =
+    if lastAt.get < firstAt.get then Span.Zero else Span.ofNanos(lastAt.get - firstAt.get)
 
   /** When the newest reading came, by the controller's clock. */
   def heardAt: Option[Instant] = Some(heard.get).filter(_ != Long.MinValue).map(Instant.ofNanos)
@@ -43,6 +95,12 @@ final class FlightMonitor(recorder: Recorder) extends Recorder:
       val apart    =
         decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)
       LastSeen(Option.unless(isOfTeams)(Metres(apart)), now.since(heard) + underWay)
+
+/** Why a flight can have no result.
+  *
+  * @param kind of the event that tells it
+  */
+final case class Unsound(kind: EventKind, why: String)
 
 /** What is known of a flight, in two numbers. */
 final case class LastSeen(distance: Option[Metres], age: Span)

@@ -6,6 +6,7 @@ import org.apache.pekko.stream.Materializer
 import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
+import skein.link.FavouredThread
 import skein.loop.RunningGraph
 import skein.record.{DuckDbRecorder, RecordingHeader, ObservedRecorder, Record, RowSink}
 import skein.settings.FlightPlan
@@ -91,7 +92,9 @@ object LiveFlights:
     val opened  = beside(plan, heading) match
       case Left(reason) => Future.successful(Left(reason))
       case Right(sinks) =>
-        DuckDbRecorder.open(plan.file(folder), heading, beside = sinks).map(_.left.map(_.message))
+        DuckDbRecorder
+          .open(plan.file(folder), heading, beside = sinks, threads = FavouredThread.factory("skein-record"))
+          .map(_.left.map(_.message))
     opened
       .flatMap:
         case Left(reason)    => Future.successful(Left(reason))

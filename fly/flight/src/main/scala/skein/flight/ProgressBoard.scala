@@ -8,15 +8,22 @@ import skein.units.Decimals.fixed
 /** How far a flight is.
   *
   * @param silentFor how long nothing was heard of the simulator, where it is silent
+  * @param flown by the controller's clock
   * @param hasEnded whether it flies no more, while others still do
+  * @param stepped flown by the simulator's clock, where that passes in steps: what the flight's duration is
+  *   counted in then
   */
 final case class FlightProgress(
     id: String,
     flown: Span,
     seen: Option[LastSeen],
     silentFor: Option[Span] = None,
-    hasEnded: Boolean = false
+    hasEnded: Boolean = false,
+    stepped: Option[Span] = None
 ):
+  /** Of the flight's duration. */
+  def done: Span = stepped.getOrElse(flown)
+
   def text: String =
     val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
     val shown   = seen.map: seen =>
@@ -41,7 +48,7 @@ object ProgressBoard:
 
     def show(progress: Seq[FlightProgress]): Unit =
       for one <- progress do
-        val _ = bars(one.id).stepTo(one.flown.toSeconds.round).setExtraMessage(one.text)
+        val _ = bars(one.id).stepTo(one.done.toSeconds.round).setExtraMessage(one.text)
 
     def close(): Unit = bars.values.foreach(_.close())
 
@@ -63,7 +70,7 @@ object ProgressBoard:
         shownAt = furthest
         val flights = progress.map(one => s"${one.id} ${one.text.trim}").mkString("; ")
         // Of flights that start one after another, the last still flies when the first has ended.
-        val flown = furthest.min(duration).toSeconds
+        val flown = progress.map(_.done).max.min(duration).toSeconds
         out.println(s"${flown.fixed(0)} s of ${duration.toSeconds.fixed(0)} s: $flights")
 
     def close(): Unit = ()

@@ -91,7 +91,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
     Seen(view.kinematics(vehicle), age(view, now, reading), isPredicted = view.estimates.isDefined)
 
   private def age(view: TeamView, now: Instant, reading: Stamped[?]): Span =
-    view.alignment.fold(reading.ageByArrival(now))(known => now.since(known.toController(reading.validAt)))
+    view.alignment.flatMap(_.ageOf(reading, now)).getOrElse(reading.ageByArrival(now))
 
   /** What the vehicle knows of its team. */
   def request(memory: Memory, view: TeamView, now: Instant): TeamObservation =

@@ -9,16 +9,18 @@ import scala.concurrent.duration.DurationInt
 import scala.util.{Failure, Success}
 import skein.port.{SteppedTime, VehicleError}
 import skein.record.EventKind
-import skein.signal.Stamped
+import skein.signal.{Stamped, TimeAxis}
 import skein.units.*
 
 /** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for
   * and commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
   *
-  * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is
-  * verified against the simulator's clock. However it ends, the simulator is let run again and the vehicles
-  * are told to hover; both are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step
-  * begins: nothing moves.
+  * While time stands still nothing gets old, so this loop waits: what is not answered in time is asked again
+  * for up to [[PausedLoop.Patience]], and a step whose answer is lost is made again only if the simulator's
+  * clock shows that it was not made. Then the flight ends, since a truth with gaps is none. The length of
+  * each step is verified against the simulator's clock; one that took no time, or several periods, ends the
+  * flight. However it ends, the simulator is let run again and the vehicles are told to hover; both are tried
+  * up to [[UntilCertain.Attempts]] times. While the team is held, no step begins: nothing moves.
   */
 object PausedLoop:
 
@@ -30,6 +32,11 @@ object PausedLoop:
       .unfoldAsync(flight.start)(flight.next)
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
+
+  /** How long a step is tried for by the controller's clock, before an error ends the flight: as long as a
+    * simulator may be silent.
+    */
+  val Patience: Span = Span.ofSeconds(9)
 
   /** When all of one step was read: one instant, unless the simulator was started again meanwhile and runs.
     */
@@ -85,7 +92,7 @@ private final class PausedFlight(
     else if team.hold.isHeld then
       for
         // So that a simulator that falls silent is noticed.
-        _    <- orFail(team.readAll())
+        _    <- patiently(team.readAll())
         next <- after(PausedFlight.LookEvery)(next(step))
       yield next
     else fly(step)
@@ -109,9 +116,9 @@ private final class PausedFlight(
 
   private def fly(step: PausedStep): Future[Option[(PausedStep, Done)]] =
     for
-      _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
-      readings <- orFail(team.readAll())
-      sensed   <- orFail(team.senseAll())
+      _        <- if step.number == 0 then patiently(stepper.pause()) else Future.unit
+      readings <- patiently(team.readAll())
+      sensed   <- patiently(team.senseAll())
       now  = PausedLoop.newest(readings.map(_.state))
       seen = readings.foldLeft(step.view)((seen, reading) =>
         seen.withReading(reading.copy(state = PausedLoop.timeless(reading.state)))
@@ -125,7 +132,7 @@ private final class PausedFlight(
       _ = send(decided.map(_._2))
       // A move has reached the simulator when the one that it replaces has ended.
       _ <- Future.traverse(replaced)(orFail)
-      _ <- orFail(stepper.continueFor(team.settings.period))
+      _ <- advance(now, clock.now())
     yield
       val moved = decided.foldLeft(view):
         case (seen, (_, decision)) => seen.withMove(decision.move(now))
@@ -138,15 +145,63 @@ private final class PausedFlight(
       team.log.sent(decision, clock.now())
       team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
+  /** Runs the simulator for a period from `from` on, which is when it stands still.
+    *
+    * @param since when that was begun, by the controller's clock
+    */
+  private def advance(from: Instant, since: Instant): Future[Unit] =
+    stepper.continueFor(team.settings.period).flatMap:
+      case Right(())                             => Future.unit
+      case Left(error) if isInVain(error, since) => failed(error)
+      case Left(error)                           =>
+        team.log.note(EventKind.TimedOut, None, s"a step: ${error.message}")
+        for
+          at   <- standing(None)
+          done <- if at.since(from) >= team.settings.period / 2 then Future.unit else advance(from, since)
+        yield done
+
+  /** At what time the simulator stands still, as two looks in a row show it. */
+  private def standing(before: Option[Instant]): Future[Instant] =
+    for
+      _     <- after(PausedFlight.LookEvery)(Future.unit)
+      at    <- patiently(team.readAll()).map(readings => PausedLoop.newest(readings.map(_.state)))
+      still <- if before.contains(at) then Future.successful(at) else standing(Some(at))
+    yield still
+
+  /** Asks again until the answer is there, or it is in vain. */
+  private def patiently[A](
+      call: => Future[Either[VehicleError, A]],
+      since: Instant = clock.now()
+  ): Future[A] =
+    call.flatMap:
+      case Right(value)                          => Future.successful(value)
+      case Left(error) if isInVain(error, since) => failed(error)
+      case Left(_)                               => after(PausedFlight.LookEvery)(patiently(call, since))
+
+  /** Whether asking again cannot help, or was tried for long enough. */
+  private def isInVain(error: VehicleError, since: Instant): Boolean = error match
+    case VehicleError.Refused(_) | VehicleError.Malformed(_) | VehicleError.Unsupported(_) |
+        VehicleError.Cancelled(_) => true
+    case _ => stopped() || clock.now().since(since) > PausedLoop.Patience
+
+  private def failed(error: VehicleError) = Future.failed(LoopFailed(error.message))
+
+  /** Fails where the simulator's clock cannot be flown by. */
   private def verifyStep(step: PausedStep, readings: Vector[Reading]): Unit =
+    val (before, read) = (step.view.readings.flatten.map(_.state), readings.map(_.state))
     PausedLoop
-      .drift(
-        step.number,
-        step.view.readings.flatten.map(_.state),
-        readings.map(_.state),
+      .drift(step.number, before, read, team.settings.period)
+      .foreach(team.log.note(EventKind.StepDrift, None, _))
+    for
+      why <- TimeAxis.steppedFault(
+        Option.when(before.nonEmpty)(PausedLoop.newest(before)),
+        read.map(_.validAt).min,
+        PausedLoop.newest(read),
         team.settings.period
       )
-      .foreach(team.log.note(EventKind.StepDrift, None, _))
+    do
+      team.log.note(EventKind.ClockBroken, None, why)
+      throw LoopFailed(why)
 
   private def orFail[A](call: Future[Either[VehicleError, A]]): Future[A] =
     call.transform:

@@ -66,14 +66,17 @@ private final class Rows(fleet: Fleet):
         sinceOwnMove = view.moves(self).map(move => now.since(move.sentAt)),
         sinceOpponentMove = view.moves(other).map(move => now.since(move.sentAt))
       ),
-      trueAge = view.alignment.map(alignment =>
-        TrueAge(
-          own = now.since(alignment.toController(own.state.validAt)),
-          opponent = now.since(alignment.toController(opponent.state.validAt)),
+      trueAge =
+        for
+          alignment <- view.alignment
+          ownAge    <- alignment.ageOf(own.state, now)
+          otherAge  <- alignment.ageOf(opponent.state, now)
+        yield TrueAge(
+          own = ownAge,
+          opponent = otherAge,
           clockOffset = alignment.offset,
           uncertainty = alignment.uncertainty
-        )
-      ),
+        ),
       predicted = view.estimates.map(estimates =>
         Predicted(
           estimates(self).predictedFor,

@@ -29,8 +29,14 @@ private final class TeamSensing(
   // Known as answers come, before anything is made of them.
   private val clocks = AtomicReference(clocksBefore)
 
-  /** Asks a vehicle where it is; the answer, or the error, is recorded. From any thread. */
-  def read(vehicle: Int): Future[Either[VehicleError, Reading]] =
+  /** Asks a vehicle where it is; the answer, or the error, is recorded, and that the clocks contradict each
+    * other. From any thread.
+    */
+  def read(vehicle: Int): Future[Either[VehicleError, Reading]] = read(vehicle, isRunning = true)
+
+  /** @param isRunning whether the simulator's clock runs by itself
+    */
+  private def read(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
     val sequence = asked.getAndIncrement(vehicle)
     val meter    = meters(vehicle)
     meter.called()
@@ -38,7 +44,11 @@ private final class TeamSensing(
       .read()
       .map:
         case Right(state) =>
-          val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+          val before =
+            clocks.getAndUpdate(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+          if isRunning && before.exists(known => clocks.get.exists(_.restarts > known.restarts)) then
+            for anew <- before.flatMap(_.contradiction(state)) do
+              log.note(EventKind.ClockRestarted, Some(vehicle), s"reading $sequence: $anew")
           val reading = Reading(vehicle, sequence, state)
           meter.answered()
           meter.pass(ageOf(Some(state.validAt)))
@@ -128,12 +138,14 @@ private final class TeamSensing(
           case Right(readings) => sensor.read().map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
+  /** Asks all vehicles of a simulator that stands still, one after the other, in the scenario's order; ends
+    * at the first error.
+    */
   def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
     ports.indices.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
       (soFar, vehicle) =>
         soFar.flatMap:
-          case Right(readings) => read(vehicle).map(_.map(readings :+ _))
+          case Right(readings) => read(vehicle, isRunning = false).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
   /** Once a period from an instant on: how many ticks were due since the last. */
@@ -142,7 +154,10 @@ private final class TeamSensing(
 
   /** How old a moment of the vehicles' clock is now; absent as long as nothing is known of that clock. */
   def ageOf(validAt: Option[Instant]): Option[Span] =
-    clocks.get.zip(validAt).map((known, valid) => clock.now().since(known.toController(valid)))
+    clocks.get
+      .zip(validAt)
+      .map((known, valid) => clock.now().since(known.toController(valid)))
+      .filter(_ >= Span.Zero)
 
   /** How old the oldest reading of a view is now. */
   def ageOf(view: TeamView): Option[Span] =

@@ -8,6 +8,7 @@ import skein.units.Decimals.fixed
 
 /** What one recording comes to.
   *
+  * @param tracks none where the flight has no result: there is no clock, or no vehicle, to measure by
   * @param roles evaders first, as in the paper
   * @param roundTripsMs of the link's own samples where there are any, else of the readings
   * @param scenario absent where it is not known here
@@ -20,6 +21,8 @@ import skein.units.Decimals.fixed
   *   the flight
   * @param seeing of each eye of its scenario, also of one that found nothing
   * @param solver absent where the flight's own process decided
+  * @param noResult why the flight has no result, if it has none
+  * @param starved how late control ran on a machine that was too busy, if it was
   * @param commandAgesMs of commands that carry out a decision: from when the vehicle's own physics was
   *   sampled to the command's sending
   * @param imageless its cameras of which images were wanted and none came, and why: a line each
@@ -42,6 +45,8 @@ final case class FlightSummary(
     seeing: Vector[SeeingSummary],
     solver: Option[SolverSummary],
     commandAgesMs: Option[Distribution],
+    noResult: Option[NoResult],
+    starved: Option[String],
     imageless: Vector[String]
 ):
 
@@ -62,14 +67,19 @@ final case class FlightSummary(
       flown <- Tracks.of(tracks)
     yield Result.of(known, flown)
 
-  /** The loop, the policy where it is not the paper's, whether a solver decided, and whether the flight was
-    * cut short or paused.
+  /** The loop, the policy where it is not the paper's, whether a solver decided, and what stands in the way
+    * of comparing it: that it has no result, was cut short or paused, or that the machine was too busy.
     */
-  def name: String =
-    flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") + cutShort.fold(
-      ""
-    )(_ => ", cut short") +
-      paused.fold("")(_ => ", paused")
+  def name: String = flownAs + starved.filter(_ => noResult.isEmpty).fold("")(_ => ", starved")
+
+  /** The same on whatever machine. */
+  private[measure] def flownAs: String =
+    val ended = noResult.map(none => s", no result: ${none.what}").orElse(cutShort.map(_ => ", cut short"))
+    flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") +
+      ended.getOrElse("") + paused.fold("")(_ => ", paused")
+
+  /** Whether it can be held against other flights. */
+  def isComparable: Boolean = cutShort.isEmpty && paused.isEmpty && noResult.isEmpty && starved.isEmpty
 
   /** What the recording calls its scenario, without what it tells of it. */
   def scenarioName: String = flight.scenario.takeWhile(_ != ',')
@@ -81,17 +91,17 @@ final case class FlightSummary(
   /** The measure that stands for the flight when it is compared with others: its scenario's first. */
   def headlineOf: Option[Measure] = scenario.flatMap(_.measures.headOption)
 
-  /** What it comes to. Nothing, where the flight was cut short or paused. */
+  /** What it comes to. Nothing, where it cannot be compared ([[isComparable]]). */
   def headline: Option[Double] =
-    result.filter(_ => cutShort.isEmpty && paused.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
+    result.filter(_ => isComparable).flatMap(_.measured.headOption).flatMap(_.value)
 
   /** The paper's flight of this loop over this link, if this is of the paper's game, as long and with as long
-    * a period. No flight that was cut short or paused stands beside it.
+    * a period. No flight that cannot be compared stands beside it.
     */
   def published: Option[Published.Flight] =
     val isAlike = scenario.exists(_.isPapersGame) && flight.period == Published.Period &&
       flight.duration == Published.Duration && policy.isEmpty && solver.isEmpty
-    if isAlike && cutShort.isEmpty && paused.isEmpty then
+    if isAlike && isComparable then
       flight.loopKind.flatMap(Published.flight(_, flight.link))
     else None
 
@@ -122,13 +132,14 @@ object FlightSummary:
     )
 
   def of(recording: Recording)(using Scenarios): FlightSummary =
-    val tracks   = RecordedTracks.of(recording)
+    val noResult = NoResult.of(recording)
+    val tracks   = if noResult.isEmpty then RecordedTracks.of(recording) else Vector.empty
     val scenario = RecordedScenario.of(recording).toOption
     FlightSummary(
       recording.flight,
       tracks,
       scenario,
-      roles(recording, scenario),
+      roles(recording, scenario, hasAges = noResult.isEmpty),
       roundTripsMs(recording),
       recording.readings.size,
       recording.decisions.size,
@@ -141,7 +152,9 @@ object FlightSummary:
       paused(recording),
       scenario.toVector.flatMap(_.eyes).flatMap(SeeingSummary.of(recording, _, tracks)),
       SolverSummary.of(recording),
-      commandAgesMs(recording),
+      commandAgesMs(recording).filter(_ => noResult.isEmpty),
+      noResult,
+      recording.events.find(_.kind == EventKind.Starved).map(_.detail),
       imageless(recording)
     )
 
@@ -159,8 +172,13 @@ object FlightSummary:
         command  <- recording.commands
         sequence <- command.decision
         decision <- decided.get((command.vehicle, sequence))
-        age      <- decision.trueAge
+        age      <- decision.trueAge if isAge(age.own)
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
+
+  /** Readings from the future are none: recordings of earlier versions have such ages where the simulator's
+    * clock was set anew.
+    */
+  private def isAge(age: Span) = age >= Span.Zero
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isAgainstOne)
 
@@ -190,7 +208,9 @@ object FlightSummary:
   /** What may be missing at both ends of a flight between its time and its readings. */
   private val Margin = Span.ofSeconds(2)
 
-  private def roles(recording: Recording, scenario: Option[Scenario]): Vector[RoleSummary] =
+  /** @param hasAges whether there is a clock that true ages could be of
+    */
+  private def roles(recording: Recording, scenario: Option[Scenario], hasAges: Boolean): Vector[RoleSummary] =
     val isOther                 = recording.heading.parameters.exists(_.name == "policy")
     def isAgainst(role: String) = isOther || scenario.forall(
       _.agents.exists(agent => agent.policy.isAgainstOne && agent.role.toString.equalsIgnoreCase(role))
@@ -203,14 +223,17 @@ object FlightSummary:
       .toVector
       .sortBy(_._1)
       .map: (role, decisions) =>
+        val trueAges = decisions.flatMap(_.trueAge).filter(_ => hasAges)
         RoleSummary(
           role,
           TimingObservation.values
             .filter(!_.isOfOpponent || isAgainst(role))
             .flatMap(observation => Distribution.of(decisions.flatMap(observation.ms)).map(observation -> _))
             .toMap,
-          Distribution.of(decisions.flatMap(_.trueAge).map(_.own.toMillis)),
-          Distribution.of(decisions.flatMap(_.trueAge).filter(_ => isAgainst(role)).map(_.opponent.toMillis))
+          Distribution.of(trueAges.map(_.own).filter(isAge).map(_.toMillis)),
+          Distribution.of(
+            trueAges.filter(_ => isAgainst(role)).map(_.opponent).filter(isAge).map(_.toMillis)
+          )
         )
 
   private def roundTripsMs(recording: Recording): Option[Distribution] =

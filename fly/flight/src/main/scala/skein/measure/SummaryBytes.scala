@@ -81,6 +81,7 @@ object SummaryBytes:
     private given observed: Codec[Map[TimingObservation, Distribution]] = byKind
 
     private given Codec[FlightRow]        = Codec.derived
+    private given Codec[NoResult]         = Codec.derived
     private given Codec[RoleSummary]      = Codec.derived
     private given Codec[PlanningSummary]  = Codec.derived
     private given Codec[PredictionErrors] = Codec.derived

@@ -85,4 +85,4 @@ object Twin:
     flights.filterNot(isVirtual).flatMap(live => virtual.get(key(live)).map(Twin(live, _)))
 
   private def isVirtual(summary: FlightSummary) = summary.flight.isVirtual
-  private def key(summary: FlightSummary)       = (summary.name, summary.flight.link)
+  private def key(summary: FlightSummary)       = (summary.flownAs, summary.flight.link)

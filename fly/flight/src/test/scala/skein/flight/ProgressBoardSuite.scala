@@ -14,3 +14,19 @@ class ProgressBoardSuite extends munit.FunSuite:
     ))
     board.close()
     assertEquals(bytes.toString(UTF_8), "20 s of 20 s: a ended; b \n")
+
+  test("where time passes in steps, the flight's time is told, every 10 s of the clock's"):
+    val bytes = ByteArrayOutputStream()
+    val board = ProgressBoard(Vector("paused"), Span.ofSeconds(15), PrintStream(bytes, true, UTF_8))
+    for s <- Seq(10, 14, 20, 30) do
+      board.show(Vector(FlightProgress(
+        "paused",
+        Span.ofSeconds(s),
+        None,
+        stepped = Some(Span.ofSeconds(s * 0.2))
+      )))
+    board.close()
+    assertEquals(
+      bytes.toString(UTF_8),
+      "2 s of 15 s: paused \n4 s of 15 s: paused \n6 s of 15 s: paused \n"
+    )

@@ -13,8 +13,8 @@ import skein.vtime.VirtualTime
 class PausedLoopSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("lost: no answer within 500 ms"))
 
-  /** A vehicle whose reading number `failing` fails, and whose first hovers do. */
-  private final class Fragile(port: VehiclePort, isPaused: () => Boolean, failing: Int, failedHovers: Int)
+  /** A vehicle whose readings `failing` fail, and whose first hovers do. */
+  private final class Fragile(port: VehiclePort, isPaused: () => Boolean, failing: Range, failedHovers: Int)
       extends VehiclePort:
     private var reads, hovers = 0
     var readWhileItRan        = false
@@ -24,7 +24,7 @@ class PausedLoopSuite extends munit.FunSuite:
     def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
       reads += 1
       readWhileItRan ||= !isPaused()
-      if reads == failing then Future.successful(lost) else port.read()
+      if failing.contains(reads) then Future.successful(lost) else port.read()
 
     def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
       hovering = false
@@ -38,14 +38,16 @@ class PausedLoopSuite extends munit.FunSuite:
         hovering = true
         port.hover()
 
-  /** A simulator whose step number `failing` fails, and which answers only after so many times that it is let
-    * run.
+  /** A simulator whose steps `failing` fail, and which answers only after so many times that it is let run.
+    *
+    * @param isMade whether a step is made that fails: its answer alone is lost
     */
   private final class FragileStepper(
       stepper: SteppedTime,
-      failing: Int,
+      failing: Range,
       failedResumes: Int,
-      stepsBy: Option[Span]
+      stepsBy: Int => Option[Span],
+      isMade: Boolean
   ) extends SteppedTime:
     private var steps, resumes = 0
     var pauses                 = 0
@@ -65,7 +67,10 @@ class PausedLoopSuite extends munit.FunSuite:
 
     def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
       steps += 1
-      if steps == failing then Future.successful(lost) else stepper.continueFor(stepsBy.getOrElse(span))
+      def made() = stepper.continueFor(stepsBy(steps).getOrElse(span))
+      if !failing.contains(steps) then made()
+      else if isMade then made().map(_ => lost)(using ExecutionContext.parasitic)
+      else Future.successful(lost)
 
   private final case class FlightResult(
       outcome: FlightOutcome,
@@ -78,12 +83,15 @@ class PausedLoopSuite extends munit.FunSuite:
       drifts: Int
   )
 
+  private val never = 0 until 0
+
   private def fly(
-      failingRead: Int = 0,
-      failingStep: Int = 0,
+      failingReads: Range = never,
+      failingSteps: Range = never,
       failedHovers: Int = 0,
       failedResumes: Int = 0,
-      stepsBy: Option[Span] = None
+      stepsBy: Int => Option[Span] = _ => None,
+      isMade: Boolean = false
   ): FlightResult = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
@@ -91,8 +99,8 @@ class PausedLoopSuite extends munit.FunSuite:
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val scenario           = PaperDuel().fleet
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
-      val stepper            = FragileStepper(world, failingStep, failedResumes, stepsBy)
-      val ports              = world.ports.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))
+      val stepper            = FragileStepper(world, failingSteps, failedResumes, stepsBy, isMade)
+      val ports              = world.ports.map(Fragile(_, () => stepper.paused, failingReads, failedHovers))
       val recorder           = MemoryRecorder(Samples.heading)
       val team               = Team(scenario, ports, clock, recorder, LoopSettings())
       Flight
@@ -145,10 +153,44 @@ class PausedLoopSuite extends munit.FunSuite:
     "a flight whose steps are as long as they should be notes no drift, and a simulator that runs on is noted"
   ):
     assertEquals(fly().drifts, 0)
-    assertEquals(fly(stepsBy = Some(Span.ofMillis(90))).drifts, 9)
+    assertEquals(fly(stepsBy = _ => Some(Span.ofMillis(90))).drifts, 9)
+
+  test("what is not answered is asked again, and a step is made once, whether its answer or itself was lost"):
+    val truth = fly()
+    for
+      landed <- Seq(
+        fly(failingReads = 5 to 12),
+        fly(failingSteps = 5 to 12),
+        fly(failingSteps = 1 to 3),
+        fly(failingSteps = 5 to 5, isMade = true)
+      )
+    do
+      assertEquals(landed.copy(stoodStill = true), truth)
+
+  test("a simulator whose clock stands still, runs back or leaps in a step ends the flight, which says so"):
+    for
+      (step, why) <- Seq(
+        Span.Zero          -> "stood still in a step of 0.10 s",
+        Span.ofMillis(-40) -> "ran back by 0.04 s in a step",
+        Span.ofMillis(700) -> "advanced by 0.70 s in a step of 0.10 s"
+      )
+    do
+      val landed = fly(stepsBy = number => Option.when(number == 4)(step))
+      landed.outcome match
+        case FlightOutcome.Failed(reason) => assert(reason.contains(why), reason)
+        case other                        => fail(s"expected a failure, came $other")
+      isReleased(landed)
+
+  private val forGood = 5 until 1_000_000
 
   test("a flight that fails midway, in a reading or in a step, lets the simulator run, too"):
-    for landed <- Seq(fly(failingRead = 5), fly(failingStep = 5), fly(failingStep = 1)) do
+    for
+      landed <- Seq(
+        fly(failingReads = forGood),
+        fly(failingSteps = forGood),
+        fly(failingSteps = 1 until 1_000_000)
+      )
+    do
       landed.outcome match
         case FlightOutcome.Failed(reason) => assert(reason.contains("no answer"), reason)
         case other                        => fail(s"expected a failure, came $other")
@@ -156,7 +198,7 @@ class PausedLoopSuite extends munit.FunSuite:
 
   test("vehicles and simulator are told again until they answer"):
     isReleased(fly(failedHovers = 3))
-    isReleased(fly(failingRead = 5, failedHovers = 2, failedResumes = 4))
+    isReleased(fly(failingReads = forGood, failedHovers = 2, failedResumes = 4))
 
   test("a simulator that never answers again is given up, and the outcome says so"):
     fly(failedResumes = 999).outcome match

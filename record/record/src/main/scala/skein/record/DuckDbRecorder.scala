@@ -1,23 +1,22 @@
 package skein.record
 
 import java.nio.file.Path
+import java.util.concurrent.ThreadFactory
 import java.util.concurrent.atomic.{AtomicLong, AtomicReference}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
-import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
-import org.apache.pekko.stream.{ActorAttributes, BoundedSourceQueue, QueueOfferResult}
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.{Failure, Success}
 
 /** Writes a flight into one DuckDB file while it flies, and gives its rows to others who write them
-  * elsewhere. Records wait in a bounded queue; a stream of its own, on the dispatcher for blocking work,
-  * commits them every [[DuckDbRecorder.commitInterval]] or every [[DuckDbRecorder.batchSize]] rows. What is
-  * committed survives a kill of the process.
+  * elsewhere. Records wait in a bounded queue; a thread of its own commits them at once, but not oftener than
+  * every [[DuckDbRecorder.commitInterval]], and [[DuckDbRecorder.batchSize]] rows at most. What is committed
+  * survives a kill of the process.
   */
 final class DuckDbRecorder private (
     capacity: Int,
-    queue: BoundedSourceQueue[Record],
+    writer: RecordWriter,
     waitingBytes: AtomicLong,
     failed: Promise[RecordError],
     ending: AtomicReference[Option[Ending]],
@@ -45,17 +44,15 @@ final class DuckDbRecorder private (
       enqueue(Event(at, EventKind.Dropped, Some(vehicle), why))
 
   private def enqueue(record: Record): Unit =
-    queue.offer(record) match
-      case QueueOfferResult.Dropped =>
-        val _ = failed.trySuccess(RecordError.QueueFull(capacity))
-        // What is queued already is still written; what comes now would leave a gap.
-        queue.complete()
-      case QueueOfferResult.Enqueued | QueueOfferResult.QueueClosed | QueueOfferResult.Failure(_) => ()
+    if !writer.offer(record) then
+      failed.trySuccess(RecordError.QueueFull(capacity)): Unit
+      // What is queued already is still written; what comes now would leave a gap.
+      writer.end()
 
   def failure: Future[RecordError] = failed.future
 
   def close(): Future[Either[RecordError, Written]] =
-    if !queue.isCompleted then queue.complete()
+    writer.end()
     closing.trySuccess(()): Unit
     closed
 
@@ -69,8 +66,10 @@ object DuckDbRecorder:
     */
   val mostWaitingBytes: Long = 96L * 1024 * 1024
 
-  /** With the time that a commit takes, a kill of the process loses less than 200 ms. */
-  val commitInterval: FiniteDuration = 50.millis
+  /** From the begin of one commit to that of the next. With the time that a commit takes, a kill of the
+    * process loses less than 100 ms.
+    */
+  val commitInterval: FiniteDuration = 25.millis
 
   /** Rows committed at once at the most. */
   val batchSize = 4096
@@ -81,12 +80,14 @@ object DuckDbRecorder:
   /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made.
     *
     * @param beside get every row that is committed, and are closed with this
+    * @param threads makes the thread that writes
     */
   def open(
       file: Path,
       heading: RecordingHeader,
       capacity: Int = defaultCapacity,
-      beside: Vector[RowSink] = Vector.empty
+      beside: Vector[RowSink] = Vector.empty,
+      threads: ThreadFactory = usual
   )(using
       system: ActorSystem
   ): Future[Either[RecordError, DuckDbRecorder]] =
@@ -94,28 +95,23 @@ object DuckDbRecorder:
     Future(RecordingFile.create(file, heading)).map(_.map: made =>
       val rows = Numbered(beside)
       rows.put(heading.records)
-      start(made, capacity, rows))
+      start(made, capacity, rows, threads))
 
-  private def start(file: RecordingFile, capacity: Int, rows: Numbered)(using
-      ActorSystem,
+  private val usual: ThreadFactory = Thread.ofPlatform().daemon().name("skein-record-", 1).factory()
+
+  private def start(file: RecordingFile, capacity: Int, rows: Numbered, threads: ThreadFactory)(using
       ExecutionContext
   ): DuckDbRecorder =
-    val failed           = Promise[RecordError]()
-    val ending           = AtomicReference(Option.empty[Ending])
-    val closing          = Promise[Unit]()
-    val waitingBytes     = AtomicLong()
-    val (queue, drained) = Source
-      .queue[Record](capacity)
-      .groupedWithin(batchSize, commitInterval)
-      .map: batch =>
-        val written = file.write(batch)
-        if written.isRight then rows.put(batch)
-        for blob <- batch.iterator.flatMap(Record.blobOf) do waitingBytes.addAndGet(-blob.size): Unit
-        written
-      .takeWhile(_.isRight, inclusive = true)
-      .toMat(Sink.foreach(_.left.foreach(failed.trySuccess)))(Keep.both)
-      .addAttributes(ActorAttributes.dispatcher(Dispatchers.DefaultBlockingDispatcherId))
-      .run()
+    val failed       = Promise[RecordError]()
+    val ending       = AtomicReference(Option.empty[Ending])
+    val closing      = Promise[Unit]()
+    val waitingBytes = AtomicLong()
+    val writer       = RecordWriter(capacity, commitInterval.toNanos, batchSize, threads): batch =>
+      val written = file.write(batch)
+      written.left.foreach(failed.trySuccess)
+      if written.isRight then rows.put(batch)
+      for blob <- batch.iterator.flatMap(Record.blobOf) do waitingBytes.addAndGet(-blob.size): Unit
+      written.isRight
     def finish(): Either[RecordError, Written] =
       for last <- ending.get do
         file.end(last).left.foreach(failed.trySuccess)
@@ -124,13 +120,12 @@ object DuckDbRecorder:
       val written = file.close()
       written.left.foreach(failed.trySuccess)
       failed.future.value.fold(written)(reason => Left(reason.get))
-    val closed = drained.transformWith:
-      case Success(_) => closing.future.map(_ => finish())
-      // The stream itself fails when its actor system ends before it.
+    val closed = writer.ended.transformWith:
+      case Success(_)      => closing.future.map(_ => finish())
       case Failure(reason) =>
         failed.trySuccess(RecordError.WriteFailed(file.path, reason.toString)): Unit
         Future.successful(finish())
-    DuckDbRecorder(capacity, queue, waitingBytes, failed, ending, closing, closed)
+    DuckDbRecorder(capacity, writer, waitingBytes, failed, ending, closing, closed)
 
   /** Numbers rows as the file does, for those beside it. */
   private final class Numbered(beside: Vector[RowSink]):

@@ -440,6 +440,23 @@ enum EventKind:
   /** A step of the paused simulator was not as long as asked for. */
   case StepDrift
 
+  /** The simulator's clock did not keep pace with the controller's for some seconds. */
+  case ClockDrift
+
+  /** Readings contradicted the known offset of the clocks, so its estimation began anew. */
+  case ClockRestarted
+
+  /** The simulator's clock ran back, stood still, jumped or differed from vehicle to vehicle: the flight has
+    * no result.
+    */
+  case ClockBroken
+
+  /** Somebody else took a vehicle from the flight or put it elsewhere: the flight has no result. */
+  case VehicleTaken
+
+  /** The machine was too busy to fly: the flight is not compared with others. */
+  case Starved
+
   /** A vehicle touched something. */
   case Contact
 

@@ -18,11 +18,16 @@ enum AirSimError:
 
   def message: String = this match
     case Call(error)                    => error.message
-    case UnknownVehicle(name, existing) =>
-      s"the simulator has no vehicle '$name'; it has ${existing.map(n => s"'$n'").mkString(", ")}"
-    case Settings(error) => s"the simulator's settings: ${error.message}"
+    case UnknownVehicle(name, existing) => AirSimError.unknown(Seq(name), existing)
+    case Settings(error)                => s"the simulator's settings: ${error.message}"
 
 object AirSimError:
+  /** That a simulator has not got these vehicles, but others. */
+  def unknown(names: Seq[String], existing: Seq[String]): String =
+    def listed(all: Seq[String]) = all.map(name => s"'$name'").mkString(", ")
+    val has                      = if existing.isEmpty then "it has none" else s"it has ${listed(existing)}"
+    s"the simulator has no vehicle ${listed(names)}; $has"
+
   /** Why the first call of all has failed, where it is not known yet who listens there. */
   def ofFirst(error: RpcError, at: Address): String = error match
     case RpcError.Timeout(_, after) =>

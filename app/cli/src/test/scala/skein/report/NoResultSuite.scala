@@ -1,0 +1,117 @@
+package skein.report
+
+import skein.measure.FlightSet
+import skein.record.*
+import skein.scenario.Scenarios
+import skein.units.*
+
+/** What a report shows of flights that have no result, and of those that a busy machine flew. */
+class NoResultSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
+  private val paused = SyntheticFlight("paused", "none", seed = 1, seconds = 12)
+  private val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 12)
+
+  /** The flight as it would be recorded if the simulator's clock showed something else, s since its begin. */
+  private def shown(recording: Recording)(clockS: Double => Double): Recording =
+    val begun = recording.readings.map(_.state.validAt).min
+    recording.copy(readings = recording.readings.map(reading =>
+      val at = reading.state.validAt.since(begun).toSeconds
+      reading.copy(state = reading.state.copy(validAt = begun + Span.ofSeconds(clockS(at))))
+    ))
+
+  private def noted(recording: Recording, kind: EventKind, detail: String): Recording =
+    recording.copy(events =
+      recording.events :+ Event(recording.readings.last.state.receivedAt, kind, None, detail)
+    )
+
+  private def row(set: FlightSet, loop: String): Map[String, String] =
+    val table  = SummaryTables.distances(set)
+    val values = table.rows.find(_.head.startsWith(loop)).getOrElse(fail(s"no row of $loop"))
+    table.header.map(_.stripPrefix("<")).zip(values).toMap
+
+  private def assertEmpty(set: FlightSet, loop: String, why: String): Unit =
+    val shown = row(set, loop)
+    assertEquals(shown.removedAll(Seq("loop", "link", "paper m")).values.toSet, Set(""), shown.toString)
+    assert(SummaryTables.remarks(set).exists(line => line.contains("has no result: ") && line.contains(why)))
+    assert(ReportSections.text(set).contains("has no result: "))
+    assertEquals(set.deviations, Vector.empty)
+
+  test(
+    "a clock that runs backwards, stands still, leaps or drifts leaves no figure of the flight, and says why"
+  ):
+    for
+      (clock, why) <- Seq[(Double => Double, String)](
+        (s => if s < 6 then s else 12 - s)  -> "ran back by",
+        (s => s.min(6))                     -> "stood still for",
+        (s => if s < 6 then s else s + 4)   -> "advanced by",
+        (s => if s < 6 then s else s + 1e9) -> "advanced by",
+        (s => s * 0.8)                      -> "advanced by"
+      )
+    do
+      val set = Report.of(Seq(paused, shown(stream)(clock)))
+      assertEmpty(set, "stream, no result: clock broken", why)
+      val ages = SummaryTables.observations(set)
+      val row  = ages.rows.find(_.head.startsWith("stream")).get
+      assertEquals(row(ages.header.indexOf("true own")), "")
+
+  test("a paused flight whose clock runs back, leaps or stands still is no truth"):
+    for
+      (clock, why) <- Seq[(Double => Double, String)](
+        (s => if s < 6 then s else 12 - s) -> "ran back by",
+        (s => s.min(3))                    -> "stood still",
+        (s => if s < 6 then s else s + 4)  -> "advanced by"
+      )
+    do
+      assertEmpty(Report.of(Seq(shown(paused)(clock), stream)), "paused, no result: clock broken", why)
+
+  test("a vehicle that was taken away leaves none either, in any scenario's table"):
+    val why = "the simulator at host:1 no longer gives Evader to this flight"
+    assertEmpty(
+      Report.of(Seq(paused, noted(stream, EventKind.VehicleTaken, why))),
+      "stream, no result: vehicle taken",
+      why
+    )
+
+  test("negative ages of earlier recordings are not shown as data"):
+    val set = Report.of(Seq(stream.copy(decisions =
+      stream.decisions.zipWithIndex.map((one, index) =>
+        if index != 40 then one
+        else
+          one.copy(trueAge =
+            one.trueAge.map(_.copy(own = Span.ofMillis(-30.7), opponent = Span.ofMillis(-1)))
+          )
+      )
+    )))
+    val least =
+      set.flights.flatMap(_.roles).flatMap(role => role.ownTrueAgeMs ++ role.opponentTrueAgeMs).map(_.least)
+    assert(least.size == 4 && least.forall(_ > 0), least.toString)
+
+  test("a flight of a machine that was too busy is marked, and not compared"):
+    val why = "the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms"
+    val set = Report.of(Seq(paused, noted(stream, EventKind.Starved, why)))
+    val one = row(set, "stream")
+    assertEquals((one("loop"), one("vs paused")), ("stream, starved", "starved"))
+    assert(one("last 10 s m").nonEmpty, "it did fly")
+    assertEquals(set.deviations, Vector.empty)
+    assert(SummaryTables.remarks(set).exists(_.contains(s"is not compared with other flights: $why")))
+    assert(TimingVerdict.sentence(set).exists(_.contains("stream, starved over vpn is not judged")))
+
+  test("one sentence says whether the timing is bad, by the truth where it flew"):
+    val deviation = Report.of(Seq(paused, stream)).deviations.head.share.mean.abs
+    val said      = TimingVerdict.sentence(Report.of(Seq(paused, stream)))
+    val word      = if deviation > 0.05 then "bad" else "good"
+    assert(
+      said.exists(_.startsWith(s"Timing, with 5 % as the limit: stream over vpn is $word, ")),
+      said.toString
+    )
+    assertEquals(TimingVerdict.sentence(Report.of(Seq(paused))), None)
+
+  test("and else by how far a vehicle flies before a command answers to what was read"):
+    val none = SyntheticFlight("stream", "none", seed = 3, seconds = 12)
+    val said = TimingVerdict.sentence(Report.of(Seq(stream, none))).getOrElse(fail("nothing was said"))
+    assert(said.contains("stream over vpn is probably bad: a vehicle flies on for "), said)
+    assert(said.contains("stream over none is probably good: "), said)
+    assert(said.contains(" between vehicles, before a command answers to what was read"), said)
+    assertEquals(said.count(_ == '\n'), 0)
+    assert(ReportSections.text(Report.of(Seq(stream, none))).endsWith(said))

@@ -1,0 +1,36 @@
+package skein.flight
+
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** How late the threads of control ran, by ticks of a timer of theirs: a machine that is too busy lets them
+  * wait for a processor, and a flight then shows the machine and not its loop.
+  *
+  * @param ticks so far
+  * @param late of them, by more than [[Lateness.Allowed]]
+  * @param most the largest lateness
+  */
+private[flight] final case class Lateness(ticks: Int = 0, late: Int = 0, most: Span = Span.Zero):
+  import Lateness.*
+
+  /** One more tick.
+    *
+    * @param by how long after its time it ran
+    */
+  def ticked(by: Span): Lateness =
+    Lateness(ticks + 1, if by > Allowed then late + 1 else late, most.max(by))
+
+  /** That too many ticks were late for the flight to be compared, in a line for a person. */
+  def starved: Option[String] = Option.when(ticks >= LeastTicks && late > ticks * MostLate):
+    s"the machine was too busy: ${(100.0 * late / ticks).fixed(0)} % of $ticks ticks came more than " +
+      s"${Allowed.toMillis.fixed(0)} ms late, one ${most.toMillis.fixed(0)} ms"
+
+private[flight] object Lateness:
+  /** Two ticks of the scheduler. A vehicle at 10 m/s flies 0.2 m in it. */
+  val Allowed: Span = Span.ofMillis(20)
+
+  /** The share of late ticks that a flight may have. */
+  val MostLate = 0.05
+
+  /** Fewer tell nothing. */
+  private val LeastTicks = 20

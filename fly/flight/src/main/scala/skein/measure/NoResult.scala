@@ -1,0 +1,45 @@
+package skein.measure
+
+import skein.record.{EventKind, Recording}
+import skein.signal.TimeAxis
+
+/** Why a flight has no result, though it was flown: what it would be measured by is wrong.
+  *
+  * @param what in two or three words
+  * @param why in a line
+  */
+final case class NoResult(what: String, why: String)
+
+object NoResult:
+
+  /** By what was noted in flight, and else by the clock that the readings show. */
+  def of(recording: Recording): Option[NoResult] =
+    val noted = recording.events.collectFirst:
+      case event if named.contains(event.kind) => NoResult(named(event.kind), event.detail)
+    noted.orElse(clock(recording).map(NoResult(named(EventKind.ClockBroken), _)))
+
+  private val named =
+    Map(EventKind.ClockBroken -> "clock broken", EventKind.VehicleTaken -> "vehicle taken")
+
+  private def clock(recording: Recording): Option[String] =
+    if recording.flight.isPaused then stepped(recording)
+    else TimeAxis.fault(recording.readings.iterator.map(one => (one.vehicle, one.state)))
+
+  /** A vehicle is read once in a step, or more often while the simulator stands still. */
+  private def stepped(recording: Recording): Option[String] =
+    val period = recording.flight.period
+    recording.readings.groupBy(_.vehicle).valuesIterator.flatMap { readings =>
+      val times = readings.map(_.state.validAt).distinct
+      val steps = recording.decisions.count(_.vehicle == readings.head.vehicle)
+      val leaps =
+        for
+          (before, now) <- times.zip(times.drop(1)) if now < before || now.since(before) > period
+          fault         <- TimeAxis.steppedFault(Some(before), now, now, period)
+        yield fault
+      leaps.headOption.orElse(
+        Option.when(steps > 2 && times.last.since(times.head) < period * (steps - 1) / 2)(
+          s"the simulator's clock stood still: it advanced by ${times.last.since(times.head).toSeconds} s in " +
+            s"${steps - 1} steps of ${period.toSeconds} s"
+        )
+      )
+    }.nextOption()

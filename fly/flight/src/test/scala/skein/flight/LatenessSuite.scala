@@ -1,0 +1,20 @@
+package skein.flight
+
+import skein.units.*
+
+class LatenessSuite extends munit.FunSuite:
+  private def ticked(ms: Double*) =
+    ms.foldLeft(Lateness())((lateness, by) => lateness.ticked(Span.ofMillis(by)))
+
+  test("a machine on which less than one tick in twenty comes late is not too busy"):
+    assertEquals(ticked(Seq.fill(600)(3.0)*).starved, None)
+    assertEquals(ticked((Seq.fill(570)(3.0) ++ Seq.fill(30)(80.0))*).starved, None)
+
+  test("one with more is, and how much is told"):
+    assertEquals(
+      ticked((Seq.fill(500)(3.0) ++ Seq.fill(99)(80.0) :+ 310.0)*).starved,
+      Some("the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms")
+    )
+
+  test("a few ticks tell nothing"):
+    assertEquals(ticked(Seq.fill(10)(500.0)*).starved, None)

@@ -1,0 +1,211 @@
+package skein.flight
+
+import java.nio.ByteBuffer
+import java.nio.charset.StandardCharsets.US_ASCII
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.Flow
+import org.apache.pekko.util.ByteString
+import scala.annotation.tailrec
+import scala.concurrent.Future
+import skein.airsim.*
+import skein.link.*
+import skein.loop.{FlightOutcome, LoopKind}
+import skein.measure.FlightSummary
+import skein.record.*
+import skein.rpc.RpcClient
+import skein.scenario.Scenarios
+import skein.settings.FlySettings
+import skein.signal.LatencyProfile
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.Unhurried
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** Flights beside a simulator whose clock lies, and beside another client of it. */
+class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
+  private given Scenarios = Scenarios.ours
+
+  private def settings(loop: LoopKind) = FlySettings(
+    List(loop),
+    List(LatencyProfile.direct),
+    duration = Span.ofSeconds(16),
+    period = Span.ofMillis(100),
+    seed = 1
+  )
+
+  /** From so long after the flight's start on, something is wrong. */
+  private val From = Span.ofSeconds(5)
+
+  /** @param told lines, each with the time since the flight began
+    */
+  private final case class Flown(landed: FlightResult, recording: Recording, told: Vector[(Span, String)]):
+    def summary: FlightSummary      = FlightSummary.of(recording)
+    def count(kind: EventKind): Int = recording.events.count(_.kind == kind)
+    def reason: String              = landed.outcome match
+      case FlightOutcome.Failed(reason) => reason
+      case other                        => fail(s"it ended as $other: $told")
+
+    /** It ended soon, and says so everywhere. */
+    def assertNoResult(kind: EventKind, words: String): Unit =
+      assert(reason.contains(words), reason)
+      assertEquals(count(kind), 1, recording.events.filterNot(_.kind == EventKind.Skipped).toString)
+      assertEquals(recording.ending.map(_.how), Some(EndingKind.Failed))
+      assert(
+        told.exists((at, line) => line.contains(words) && at > From && at < From + Span.ofSeconds(7)),
+        told.toString
+      )
+      assert(summary.noResult.exists(_.why.contains(words)), summary.noResult.toString)
+      assertEquals((summary.distance, summary.result, summary.headline), (None, None, None))
+      assertEquals(summary.roles.flatMap(role => role.ownTrueAgeMs ++ role.opponentTrueAgeMs), Vector.empty)
+      assert(summary.name.contains("no result"), summary.name)
+      assertEquals(
+        recording.decisions.flatMap(_.trueAge).count(age => age.own.min(age.opponent) < Span.Zero),
+        0
+      )
+
+  /** @param shows what the clock shows at a time since the lie began, s; absent where it is honest
+    * @param acts what another client does then
+    */
+  private def fly(
+      loop: LoopKind,
+      shows: Option[Double => Double] = None,
+      acts: AirSimClient => Future[Any] = _ => Future.unit
+  ): Flown = VirtualTime
+    .run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock = Clock.ofNanos(VirtualTime.clock(system))
+      val duel  = settings(loop).fleet.agents.map(Vehicles.settings)
+      val world =
+        SimulatorSettings(WorldSettings(duel, text = WorldSettings.render(duel)), Address("simulator", 41451))
+      var liesFrom                   = Option.empty[Instant]
+      def lied(at: Instant): Instant =
+        val lie =
+          for
+            show <- shows
+            from <- liesFrom if at >= from
+          yield from + Span.ofSeconds(show(at.since(from).toSeconds))
+        lie.getOrElse(at)
+      val between = if loop == LoopKind.Paused then LatencyProfile.direct else LatencyProfile.none
+      val network = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(between)), 1, clock)
+      var told    = Vector.empty[(Instant, String)]
+      for
+        server <- SimulatorServer.start(world, Lying(network.host("simulator"), lied), clock)
+        assembler = FlightAssembler(
+          network.host("controller"),
+          clock,
+          settings(loop),
+          Some(server.address),
+          tell = line => told :+= (clock.now(), line)
+        )
+        plan   = settings(loop).plans.head
+        memory = MemoryRecorder(assembler.heading(plan, "virtual"))
+        assembly <- assembler.start(plan, memory).map(_.fold(fail(_), identity))
+        startedAt = clock.now()
+        _ <- after(From.toDuration)(Future.unit)
+        _     = liesFrom = Some(memory.recording.readings.map(_.state.validAt).max)
+        other = AirSimClient(RpcClient(network.host("another"), server.address, clock))
+        _      <- acts(other)
+        landed <- assembly.landed
+        _      <- other.close()
+        _      <- server.close()
+      yield Flown(landed, memory.recording, told.map((at, line) => (at.since(startedAt), line)))
+    .value
+
+  private val clocks = Vector[(String, Double => Double, String)](
+    ("runs backwards", s => -s, "ran back by"),
+    ("stands still", _ => 0, "stood still for"),
+    ("leaps ahead", s => s + 5, "advanced by"),
+    ("leaps back", s => s - 5, "ran back by"),
+    ("runs at half the speed for two seconds", s => if s < 2 then s / 2 else s - 1, "advanced by"),
+    ("runs at double the speed for two seconds", s => if s < 2 then s * 2 else s + 2, "advanced by"),
+    ("drifts by a tenth", s => s * 0.9, "advanced by"),
+    ("shows one bad time", s => if s > 1 && s < 1.08 then s - 3 else s, "ran back by")
+  )
+
+  for (what, shows, words) <- clocks do
+    test(s"stream: a clock that $what ends the flight without result, and is told"):
+      fly(LoopKind.Stream, Some(shows)).assertNoResult(EventKind.ClockBroken, words)
+
+  for loop <- LoopKind.values.toSeq.filterNot(Set(LoopKind.Stream, LoopKind.Plan)) do
+    test(s"${loop.label}: a clock that runs backwards ends the flight without result"):
+      fly(loop, Some(s => -s)).assertNoResult(EventKind.ClockBroken, "ran back by")
+
+  test("restarts of the clocks' alignment are events"):
+    val flown = fly(LoopKind.Stream, Some(s => s + 0.2))
+    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
+    assert(flown.count(EventKind.ClockRestarted) > 0)
+    assertEquals(flown.count(EventKind.ClockDrift), 1)
+    assert(
+      flown.told.exists((_, line) => line.contains("the simulator's clock advanced by")),
+      flown.told.toString
+    )
+    assertEquals(flown.summary.noResult, None)
+
+  for loop <- LoopKind.values.toSeq.filterNot(_ == LoopKind.Plan) do
+    test(s"${loop.label}: beside an honest simulator nothing is told, and the flight has its result"):
+      val flown = fly(loop)
+      assertEquals(flown.landed.outcome, FlightOutcome.Completed)
+      assertEquals(flown.told, Vector.empty)
+      assertEquals(flown.summary.noResult, None)
+      assertEquals(
+        flown.recording.events.map(_.kind).filter(Set(
+          EventKind.ClockRestarted,
+          EventKind.ClockDrift,
+          EventKind.ClockBroken,
+          EventKind.VehicleTaken,
+          EventKind.Starved
+        )),
+        Vector.empty
+      )
+      assert(flown.summary.distance.isDefined)
+
+  private val taken = Vector[(String, AirSimClient => Future[Any], String)](
+    ("resets the simulator", _.reset(), ""),
+    ("takes api control away", Multirotor(_, "Pursuer").enableApiControl(false), "no longer gives Pursuer"),
+    (
+      "puts a vehicle elsewhere",
+      Multirotor(_, "Evader").setPose(VehiclePose(Vector3(30, 10, -20), Quaternion.Identity)),
+      "Evader is "
+    ),
+    (
+      "puts a vehicle back to where it began",
+      Multirotor(_, "Evader").setPose(VehiclePose(Vector3(0, 0, -20), Quaternion.Identity)),
+      "Evader is "
+    )
+  )
+
+  for
+    (what, acts, words) <- taken
+    loop                <- Seq(LoopKind.Stream, LoopKind.Futures, LoopKind.Paused)
+  do
+    test(s"${loop.label}: another client that $what ends the flight without result, and is told"):
+      fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
+
+  test("stream: another client that pauses the simulator ends the flight without result"):
+    fly(LoopKind.Stream, acts = _.pause()).assertNoResult(EventKind.ClockBroken, "stood still")
+
+  test("paused: another client that lets the simulator run is noted"):
+    assert(fly(LoopKind.Paused, acts = _.resume()).count(EventKind.StepDrift) > 0)
+
+  /** Sets the time stamps of what the simulator sends. */
+  private final class Lying(transport: Transport, lied: Instant => Instant) extends Transport:
+    def connect(to: Address) = transport.connect(to)
+    def listen(at: Address)  = transport.listen(at).map: incoming =>
+      incoming.copy(flow = Flow[ByteString].map(stamped).via(incoming.flow))
+
+    private def stamped(bytes: ByteString): ByteString =
+      @tailrec def next(done: ByteString, rest: ByteString): ByteString =
+        rest.indexOfSlice(Lying.Key) match
+          case -1 => done ++ rest
+          case at =>
+            val begin = at + Lying.Key.length
+            val shown = Instant.ofNanos(rest.slice(begin, begin + 8).toByteBuffer.getLong)
+            val bytes = ByteString(ByteBuffer.allocate(8).putLong(lied(shown).toNanos).flip())
+            next(done ++ rest.take(begin) ++ bytes, rest.drop(begin + 8))
+      next(ByteString.empty, bytes)
+
+  private object Lying:
+    /** A multirotor state's time stamp, as MessagePack has it: a key, and that 64 bits follow. */
+    val Key: ByteString = ByteString("timestamp".getBytes(US_ASCII)) ++ ByteString(0xcf.toByte)

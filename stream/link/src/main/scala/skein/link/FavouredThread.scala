@@ -1,0 +1,47 @@
+package skein.link
+
+import java.lang.foreign.{FunctionDescriptor, Linker, ValueLayout}
+import java.util.concurrent.ThreadFactory
+import java.util.concurrent.atomic.AtomicInteger
+import scala.util.Try
+
+/** Threads that go before all others but [[ControlThreads]], where the system allows it: for work that takes
+  * milliseconds and must not wait for a busy machine, such as writing a recording. They have the largest
+  * share of a processor that Linux gives by niceness, see setpriority(2). It takes the right to: root,
+  * `CAP_SYS_NICE`, or a limit of `ulimit -e 40`.
+  */
+object FavouredThread:
+
+  /** Daemon threads. */
+  def factory(name: String): ThreadFactory =
+    val count = AtomicInteger()
+    (work: Runnable) =>
+      val thread = Thread(
+        () =>
+          SchedulingPolicy.thisThread.foreach(favour)
+          work.run()
+        ,
+        s"$name-${count.incrementAndGet()}"
+      )
+      thread.setDaemon(true)
+      thread
+
+  /** @param thread as the system numbers them; what it starts has its niceness, too
+    * @return whether the system did so
+    */
+  private def favour(thread: Int): Boolean = Try:
+    val result: AnyRef = setPriority.invokeWithArguments(Int.box(0), Int.box(thread), Int.box(-20))
+    result == Int.box(0)
+  .getOrElse(false)
+
+  private lazy val setPriority =
+    val linker = Linker.nativeLinker()
+    linker.downcallHandle(
+      linker.defaultLookup().findOrThrow("setpriority"),
+      FunctionDescriptor.of(
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT
+      )
+    )
