@@ -63,12 +63,12 @@ private[skein] final class FilmedCamera(
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit =
     val (images, why) = what match
-      case Frames.Skipped.Missed(frames) => (frames, "the camera is slower")
+      case Frames.Skipped.Missed(frames)          => (frames, "the camera is slower")
       case Frames.Skipped.Failed(error: RpcError) => (1, error.message)
-      case Frames.Skipped.Failed(error)  => (1, s"$error")
-      case Frames.Skipped.Overtaken(_)   => (1, "an image was overtaken")
-      case Frames.Skipped.Repeated(_)    => (1, "the same image again")
-      case Frames.Skipped.Replaced(_)    => (1, "an image was replaced by a newer one")
+      case Frames.Skipped.Failed(error)           => (1, s"$error")
+      case Frames.Skipped.Overtaken(_)            => (1, "an image was overtaken")
+      case Frames.Skipped.Repeated(_)             => (1, "the same image again")
+      case Frames.Skipped.Replaced(_)             => (1, "an image was replaced by a newer one")
     what match
       case Frames.Skipped.Failed(_) => lastWhy = why
       case _                        => if lastWhy.isEmpty then lastWhy = why

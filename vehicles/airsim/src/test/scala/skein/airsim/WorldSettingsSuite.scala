@@ -53,7 +53,7 @@ class WorldSettingsSuite extends munit.FunSuite:
     )
 
   test("vehicles with AutoCreate false are none; ComputerVision is a type that SimMode names, too"):
-    val text = """{"SimMode": "ComputerVision", "ApiServerPort": 42, "Vehicles":
+    val text  = """{"SimMode": "ComputerVision", "ApiServerPort": 42, "Vehicles":
       {"A": {"AutoCreate": true}, "B": {"VehicleType": "PX4Multirotor", "AutoCreate": false}}}"""
     val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
     assertEquals(world.vehicles.map(vehicle => (vehicle.name, vehicle.isCamera)), Vector(("A", true)))

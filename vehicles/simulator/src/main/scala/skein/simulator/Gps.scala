@@ -24,7 +24,6 @@ private[simulator] object Gps:
       )
       GpsData(at, report, is_valid = true)
 
-  val Startup: Span         = Span.ofSeconds(1)
   private val Initial       = 100.0
   private val Final         = 0.1
   private val TimeConstantS = 0.9

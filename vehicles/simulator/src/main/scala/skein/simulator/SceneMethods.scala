@@ -10,6 +10,7 @@ import skein.units.*
   */
 private[simulator] object SceneMethods:
   import ServerMethod.*
+  import VehicleLimits.{FarthestM, LongestName, MostVehicles}
 
   val all: Seq[ServerMethod] = Seq(
     many[(String, String, Pose, String)]("simAddVehicle"):
@@ -78,11 +79,6 @@ private[simulator] object SceneMethods:
           case Right(grid)   => answer(simulation.save(path, grid))
   )
 
-  /** Vehicles at most; clients can add until then. */
-  val MostVehicles = 256
-
-  private[simulator] val LongestName = 100
-
   /** Extent that is answered, from the origin and upwards, m; the world itself has no edge. */
   private val ExtentM = 10_000.0
 
@@ -96,7 +92,7 @@ private[simulator] object SceneMethods:
     else
       val sensors = simulation.settings.world.addedSensors
       val added   = VehicleSettings(name, start, vehicleType = kind, sensors = sensors)
-      val known   = SettingsFile.flies(added) && !simulation.objects.exists(name)
+      val known   = VehicleLimits.flies(added) && !simulation.objects.exists(name)
       if known then
         val q   = pose.orientation.toQuaternion.normalized
         val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
@@ -121,9 +117,6 @@ private[simulator] object SceneMethods:
         Placement(pose.position.toVector, pose.orientation.toQuaternion.normalized)
       )
     answer(true)
-
-  /** Beyond it, and faster, numbers would soon be none. */
-  private[simulator] val FarthestM = 1e6
 
   private def isFlyable(state: KinematicsState): Boolean =
     state.position.toVector.norm <= FarthestM &&

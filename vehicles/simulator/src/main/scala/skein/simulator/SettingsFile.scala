@@ -1,6 +1,6 @@
 package skein.simulator
 
-import skein.airsim.{SettingsError, SettingsSection, VehicleSettings, WorldSettings}
+import skein.airsim.{SettingsError, SettingsSection, WorldSettings}
 
 /** What the built-in simulator makes of an AirSim `settings.json`. Each key is obeyed, or the file is refused
   * for it, or it is told as one without effect.
@@ -54,27 +54,21 @@ object SettingsFile:
     origin.number("Latitude", 0, -90, 90): Unit
     origin.number("Longitude", 0, -180, 180): Unit
     origin.number("Altitude", 0, -1000, 10_000): Unit
-    if world.vehicles.size > SceneMethods.MostVehicles then
-      root.fail("Vehicles", s"at most ${SceneMethods.MostVehicles}", world.vehicles.size.toString)
+    if world.vehicles.size > VehicleLimits.MostVehicles then
+      root.fail("Vehicles", s"at most ${VehicleLimits.MostVehicles}", world.vehicles.size.toString)
     val listed = root.section("Vehicles")
     for vehicle <- world.vehicles do
       val fields = listed.section(vehicle.name)
-      if vehicle.name.isEmpty || vehicle.name.length > SceneMethods.LongestName then
+      if vehicle.name.isEmpty || vehicle.name.length > VehicleLimits.LongestName then
         listed.fail(
           vehicle.name,
-          s"a name of 1 to ${SceneMethods.LongestName} characters",
+          s"a name of 1 to ${VehicleLimits.LongestName} characters",
           s"${vehicle.name.length}"
         )
       for axis <- Seq("X", "Y", "Z") do
-        fields.number(axis, 0, -SceneMethods.FarthestM, SceneMethods.FarthestM): Unit
-      if !flies(vehicle) then
-        fields.fail("VehicleType", Types.mkString(", "), s"'${vehicle.vehicleType}'")
-
-  /** Whether the built-in simulator has vehicles of this type. */
-  private[simulator] def flies(vehicle: VehicleSettings): Boolean =
-    Types.exists(_.equalsIgnoreCase(vehicle.vehicleType))
-
-  private val Types = Vector(WorldSettings.SimpleFlight, WorldSettings.PhysXCar, WorldSettings.ComputerVision)
+        fields.number(axis, 0, -VehicleLimits.FarthestM, VehicleLimits.FarthestM): Unit
+      if !VehicleLimits.flies(vehicle) then
+        fields.fail("VehicleType", VehicleLimits.Types.mkString(", "), s"'${vehicle.vehicleType}'")
 
   private val Modes       = Vector("Multirotor", "Car", "ComputerVision")
   private val Engines     = Vector("FastPhysicsEngine", "PhysX")

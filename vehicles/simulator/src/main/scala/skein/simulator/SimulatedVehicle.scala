@@ -101,14 +101,18 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   /** It is there from now on, at its start. */
   def start(at: Instant): Unit =
-    gpsFrom = at + Gps.Startup
+    gpsFrom = at + SimulatedVehicle.GpsStartup
     reset(at)
 
   /** What every kind of vehicle notes of a reset. */
   protected def begin(at: Instant): Unit =
-    if !hasGps(at) then gpsFrom = at + Gps.Startup
+    if !hasGps(at) then gpsFrom = at + SimulatedVehicle.GpsStartup
     sampledAt = at
     resetAt = at
     touched = None
 
   protected def sinceSample(at: Instant): Double = at.since(sampledAt).toSeconds
+
+private object SimulatedVehicle:
+  /** Until a GPS that has been switched on tells anything. */
+  val GpsStartup: Span = Span.ofSeconds(1)

@@ -46,11 +46,11 @@ private[simulator] object MutatedSettings:
     else
       val at = random.nextInt(text.length)
       random.nextInt(9) match
-        case 0 => text.updated(at, random.nextPrintableChar())
-        case 1 => text.take(at)
-        case 2 => text.patch(at, "", 1 + random.nextInt(20))
-        case 3 => text.patch(at, text.slice(at, at + random.nextInt(200)), 0)
-        case 4 => text.updated(at, random.nextInt(0x3000).toChar)
+        case 0     => text.updated(at, random.nextPrintableChar())
+        case 1     => text.take(at)
+        case 2     => text.patch(at, "", 1 + random.nextInt(20))
+        case 3     => text.patch(at, text.slice(at, at + random.nextInt(200)), 0)
+        case 4     => text.updated(at, random.nextInt(0x3000).toChar)
         case 5 | 6 =>
           // A key of another name has no effect.
           val keys = """"[A-Za-z0-9]+":""".r.findAllMatchIn(text).toVector

@@ -53,7 +53,7 @@ class SceneMethodsSuite extends munit.FunSuite:
       pose(0, 0, 0),
       Str("")
     ).contains("1 to 100"))
-    for i <- 1 until SceneMethods.MostVehicles do assert(add(s"Drone$i", "SIMPLEFLIGHT"))
+    for i <- 1 until VehicleLimits.MostVehicles do assert(add(s"Drone$i", "SIMPLEFLIGHT"))
     assert(bench.error(
       "simAddVehicle",
       Str("x"),
