@@ -1,14 +1,14 @@
-package skein.rpc
+package skein.link
 
 import skein.units.*
 
-class ConnectionSlotsSuite extends munit.FunSuite:
-  private final class Guest(val silentFor: Span) extends ConnectionSlots.Guest:
+class PlacesSuite extends munit.FunSuite:
+  private final class Guest(val silentFor: Span, val hasSpoken: Boolean = true) extends Places.Guest:
     var left          = false
     def leave(): Unit = left = true
 
-  private def full(silences: Int*): (ConnectionSlots, Seq[Guest]) =
-    val places = ConnectionSlots(silences.size, Span.ofSeconds(5))
+  private def full(silences: Int*): (Places, Seq[Guest]) =
+    val places = Places(silences.size, Span.ofSeconds(5))
     val guests = silences.map(seconds => Guest(Span.ofSeconds(seconds)))
     for (guest, i) <- guests.zipWithIndex do
       assert(places.admit())
@@ -37,3 +37,18 @@ class ConnectionSlotsSuite extends munit.FunSuite:
       places.left(0)
       assert(places.admit())
       assert(!places.admit())
+
+  test("of those who have said nothing yet the first makes room, however short it has been there"):
+    val places = Places(3, Span.ofSeconds(5))
+    val spoken = Guest(Span.ofSeconds(100))
+    val mute   = Seq.fill(3)(Guest(Span.Zero, hasSpoken = false))
+    for (guest, number) <- (spoken +: mute.take(2)).zipWithIndex do
+      assert(places.admit())
+      places.entered(number, guest)
+    assert(places.admit())
+    places.entered(3, mute(2))
+    assertEquals((spoken +: mute).map(_.left), Seq(false, true, false, false))
+    assert(places.admit() && places.admit())
+    assertEquals((spoken +: mute).map(_.left), Seq(false, true, true, true))
+    assert(places.admit(), "then the one that is silent for longest")
+    assert(spoken.left)
