@@ -5,6 +5,7 @@ import skein.airsim.WorldSettings
 import skein.airsim.wire.*
 import skein.scene.Placement
 import skein.units.*
+import upack.Bool
 
 /** Functions of what is in the scene, and where: the ground, the scene's objects and vehicles. There are no
   * assets, levels or meshes.
@@ -38,18 +39,7 @@ private[simulator] object SceneMethods:
             .orElse(simulation.objects.vehicle(name).map(simulation.objects.pose)).getOrElse(Nowhere)
       ),
     many[(String, Pose, Boolean)]("simSetObjectPose"):
-      case (simulation, (name, pose, _)) =>
-        val vehicle = simulation.objects.vehicle(name)
-        for vehicle <- vehicle do
-          val position = pose.position.toVector - vehicle.settings.startNed
-          vehicle.place(position, pose.orientation.toQuaternion, simulation.world.now)
-        val thing = simulation.objects.thing(name)
-        for index <- thing do
-          simulation.world.scene = simulation.world.scene.moved(
-            index,
-            Placement(pose.position.toVector, pose.orientation.toQuaternion.normalized)
-          )
-        answer(vehicle.nonEmpty || thing.nonEmpty)
+      case (simulation, (name, pose, _)) => within(pose.position)(setPose(simulation, name, pose))
     ,
     one[String]("simGetObjectScale")((simulation, name) =>
       answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
@@ -94,10 +84,22 @@ private[simulator] object SceneMethods:
     ,
     many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid"):
       case (simulation, (centre, x, y, z, edge, path)) =>
-        VoxelGrid.render(simulation.objects.boxes, centre.toVector, (x, y, z), edge) match
-          case Left(refusal) => CallOutcome.Threw(refusal)
-          case Right(grid)   => answer(simulation.save(path, grid))
+        val ready =
+          for
+            folder <- simulation.grids.toRight(NoGrids)
+            file   <- folder.file(path)
+            _      <- VoxelGrid.cells((x, y, z), edge)
+          yield (folder, file)
+        ready match
+          case Left(refusal)         => CallOutcome.Threw(refusal)
+          case Right((folder, file)) =>
+            val moment = simulation.objects.boxes
+            def grid   = VoxelGrid.render(moment, centre.toVector, (x, y, z), edge)
+            CallOutcome.Draws(() => Bool(folder.save(file)(grid.getOrElse(Array.emptyByteArray))))
   )
+
+  private val NoGrids =
+    "this simulator writes no files; ./skein serve --grids FOLDER lets it write voxel grids"
 
   /** Vehicles at most; clients can add until then. */
   val MostVehicles = 256
@@ -109,6 +111,19 @@ private[simulator] object SceneMethods:
 
   private val Nowhere =
     Pose(Vector3r(Float.NaN, Float.NaN, Float.NaN), Quaternionr(Float.NaN, Float.NaN, Float.NaN, Float.NaN))
+
+  private def setPose(simulation: Simulated, name: String, pose: Pose): CallOutcome =
+    val vehicle = simulation.objects.vehicle(name)
+    for vehicle <- vehicle do
+      val position = pose.position.toVector - vehicle.settings.startNed
+      vehicle.place(position, pose.orientation.toQuaternion, simulation.world.now)
+    val thing = simulation.objects.thing(name)
+    for index <- thing do
+      simulation.world.scene = simulation.world.scene.moved(
+        index,
+        Placement(pose.position.toVector, pose.orientation.toQuaternion.normalized)
+      )
+    answer(vehicle.nonEmpty || thing.nonEmpty)
 
   private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): CallOutcome =
     val start = pose.position.toVector
@@ -126,9 +141,6 @@ private[simulator] object SceneMethods:
         val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
         simulation.addVehicle(added.copy(yaw = Radians(yaw)))
       answer(known)
-
-  /** Beyond it, and faster, numbers would soon be none. */
-  private val FarthestM = 1e6
 
   private def isFlyable(state: KinematicsState): Boolean =
     state.position.toVector.norm <= FarthestM &&

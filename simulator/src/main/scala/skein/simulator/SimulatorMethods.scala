@@ -17,14 +17,19 @@ private[simulator] object SimulatorMethods:
     one[Argument.Unsigned32]("simContinueForFrames")((simulation, frames) =>
       steps(simulation.world.step * math.min(frames, LongestStepS.toLong * 1000))
     ),
-    none("reset")(simulation => done(simulation.world.reset())),
+    none("reset")(simulation => done(simulation.reset())),
     // AirSim keeps them sorted by name.
     none("listVehicles")(simulation => answer(simulation.world.vehicles.map(_.settings.name).sorted)),
     none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
-    one[Vector3r]("simSetWind")((simulation, wind) => done(simulation.world.setWind(wind.toVector)))
+    one[Vector3r]("simSetWind"): (simulation, wind) =>
+      if wind.toVector.norm <= FastestWindMps then done(simulation.world.setWind(wind.toVector))
+      else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")
   )
 
   /** A day: far beyond use, and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
+
+  /** Beyond it physics' steps would be too long. */
+  private val FastestWindMps = 300.0
 
   private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))
