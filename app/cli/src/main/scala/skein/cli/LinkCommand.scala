@@ -107,13 +107,16 @@ object LinkCommand
         s"${if isUdp then "UDP " else ""}${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it"
       )
       val stopped = CountDownLatch(1)
-      Edge.untilInterrupted(() => stopped.countDown()):
+      Edge.untilInterrupted(() => stopped.countDown(), GraceMillis):
         stopped.await()
         Edge.await(proxy.close()): Unit
         Console.out.println(summary(proxy.counts))
       Right(())
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
+
+  /** To end within, whatever crosses the link. */
+  private val GraceMillis = 2_000L
 
   private def described(profile: LinkProfile): String =
     if profile.toServer == profile.toClient then s"${profile.toServer.name} in both directions"

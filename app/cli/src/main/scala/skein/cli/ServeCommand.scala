@@ -1,5 +1,6 @@
 package skein.cli
 
+import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
@@ -17,7 +18,7 @@ import skein.simulator.{
   SimulatorServer,
   SimulatorSettings
 }
-import skein.units.{Clock, Expect}
+import skein.units.{Clock, Expect, Span}
 import skein.view.Shows
 
 /** Options of `./skein serve`. */
@@ -31,7 +32,7 @@ final case class ServeOptions(
     settings: Option[String],
     @arg(doc =
       "workers of the server, each held by a move until it ends, as " +
-        "AirSim's are: a number, vehicles+4, or unlimited"
+        "AirSim's are, for 30 s in all: a number, vehicles+4, or unlimited"
     )
     workers: String = "vehicles+4",
     @arg(doc = "speed of the simulator's clock, relative to the machine's")
@@ -59,6 +60,10 @@ final case class ServeOptions(
         "ardupilot (JSON, UDP 9002, 9012, …) or betaflight (UDP 9002, one vehicle)"
     )
     hil: Option[String],
+    @arg(doc =
+      "folder for voxel grids that clients ask for (simCreateVoxelGrid); without it, clients have no files written"
+    )
+    grids: Option[String],
     view: ViewOptions
 )
 
@@ -103,7 +108,8 @@ object ServeCommand
         s"--mavlink-instance: expected 0 to $mostInstance, came $instance"
       mavlink =
         Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host, instance))
-      hil   = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
+      hil = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
+      grids <- options.grids.fold[Either[String, Option[Path]]](Right(None))(gridsOf(_).map(Some(_)))
       shows = Shows()
       _ <- options.view.serving(shows)(
         serve(
@@ -115,7 +121,9 @@ object ServeCommand
             scene = scene.scene,
             mavlink = mavlink,
             hil = hil,
-            kind = kind
+            kind = kind,
+            patience = Some(Patience),
+            grids = grids
           ),
           Option.when(options.view.view.value)(shows),
           file.notice.map(notice => s"${options.settings.getOrElse("")}: $notice")
@@ -142,6 +150,10 @@ object ServeCommand
     AutopilotKind.values
       .find(_.label == label)
       .toRight(s"--hil: expected ${AutopilotKind.values.map(_.label).mkString(", ")}, came '$label'")
+
+  private def gridsOf(folder: String): Either[String, Path] =
+    val path = Path.of(folder)
+    Expect.that(Files.isDirectory(path))(s"--grids: expected a folder, came '$folder'").map(_ => path)
 
   private def fileOf(name: String): Either[String, SettingsFile] =
     for
@@ -180,7 +192,9 @@ object ServeCommand
       val leading =
         system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
       val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
-      val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
+      val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit, GraceMillis)(
+        Edge.await(ended.future)
+      )
       telling.cancel()
       leading.cancel()
       shown.foreach(_.cancel())
@@ -188,6 +202,12 @@ object ServeCommand
       outcome
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
+
+  /** For so long clients' moves may hold all workers, as AirSim's do. */
+  private val Patience = Span.ofSeconds(30)
+
+  /** To end within, whatever the simulation does. */
+  private val GraceMillis = 2_000L
 
   private val NewsEvery  = 10.seconds
   private val LeadsAfter = 10.seconds
@@ -197,7 +217,7 @@ object ServeCommand
     private var told   = Option.empty[String]
     private val called = settings.hil.fold("MAVLink")(_.autopilot.label)
     def run(): Unit    =
-      val news = ServerNews.line(server.stats, settings.limits, server.peerStats, called)
+      val news = ServerNews.line(server.stats, settings.limits, server.peerStats, called, server.hasHeldUp)
       if news != told then
         told = news
         news.foreach(Console.out.println)

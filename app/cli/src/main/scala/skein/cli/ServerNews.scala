@@ -11,7 +11,8 @@ private[cli] object ServerNews:
       stats: ServerStats,
       limits: ServerLimits,
       peers: PeerStats = PeerStats(),
-      called: String = "MAVLink"
+      called: String = "MAVLink",
+      hasHeldUp: Boolean = false
   ): Option[String] =
     val counts = Seq(
       stats.turnedAway -> s"turned away because ${limits.connections} connections were open",
@@ -27,14 +28,18 @@ private[cli] object ServerNews:
       peers.dropped    -> "datagrams dropped for peers too slow",
       peers.turnedAway -> "peers turned away",
       peers.ignored    -> "datagrams ignored, of too many peers or too many at once",
-      peers.unanswered -> "times no answer within a second, and time went on"
+      peers.foreign    -> "connections closed that spoke another protocol",
+      peers.unanswered -> "times lockstep lost for want of an answer within a second; time goes on without it"
     ).collect { case (count, what) if count > 0 => s"$count $what" }
-    Option.when(counts.nonEmpty || dropped.nonEmpty || ofPeers.nonEmpty):
+    val moves = Option.when(hasHeldUp):
+      "moves have held all workers for too long: from now on no call waits behind them, and the newest move of a " +
+        "vehicle wins at once"
+    Option.when(counts.nonEmpty || dropped.nonEmpty || ofPeers.nonEmpty || hasHeldUp):
       val clients = Option.when(counts.nonEmpty)(s"clients: ${counts.mkString(", ")}")
       val others  = Option.when(ofPeers.nonEmpty)(s"$called: ${ofPeers.mkString(", ")}")
       val memory  = Option.when(counts.nonEmpty || dropped.nonEmpty):
         s"at most ${mebibytes(stats.mostHeldBytes)} of ${mebibytes(limits.heldBytes)} MiB were held for " +
           "clients at any time"
-      (clients ++ dropped ++ others ++ memory).mkString("; ")
+      (clients ++ dropped ++ others ++ moves ++ memory).mkString("; ")
 
   private def mebibytes(bytes: Long): Long = (bytes + (1 << 20) - 1) >> 20

@@ -3,6 +3,7 @@ package skein.cli
 import java.io.{FileDescriptor, FileOutputStream, IOException, OutputStream, PrintStream}
 import java.nio.file.InvalidPathException
 import java.util.Locale
+import java.util.concurrent.TimeoutException
 import org.slf4j.LoggerFactory
 import skein.forecast.Structure
 import skein.loop.OwnLoop
@@ -115,11 +116,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
               case mistake: InvalidPathException =>
                 Console.err.println(s"skein $word: ${Complaint.text(wrongName(mistake))}")
                 1
-              // Said last, behind whatever other threads still print, and with an exit status of its own.
-              case error: Throwable =>
-                error.printStackTrace(Console.err)
-                Console.err.println(s"skein $word: ended by an error that nothing expected: $error")
-                1
+              case error: Throwable => unexpected(word, error)
           case None =>
             Console.err.println(
               Complaint.text(
@@ -127,6 +124,21 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
               )
             )
             2
+
+  /** Says what nothing expected, last, behind whatever other threads still print.
+    *
+    * @return an exit status of its own
+    */
+  private[skein] final def unexpected(word: String, error: Throwable): Int =
+    error match
+      // Only what a start waits for has such a limit.
+      case late: TimeoutException =>
+        val why = s"this machine has too much else to do: ${late.getMessage}"
+        Console.err.println(s"skein $word: given up before it began, for $why")
+      case _ =>
+        error.printStackTrace(Console.err)
+        Console.err.println(s"skein $word: ended by an error that nothing expected: $error")
+    1
 
   /** Where the locale knows ASCII alone, Java is not told what else a name holds. */
   private def wrongName(mistake: InvalidPathException): String =

@@ -32,3 +32,13 @@ class ServerNewsSuite extends munit.FunSuite:
           "dropped; at most 3 of 10 MiB were held for clients at any time"
       )
     )
+
+  test("lost lockstep, foreign connections and moves that hold all workers are told"):
+    assertEquals(
+      ServerNews.line(calm, ServerLimits(), PeerStats(unanswered = 1, foreign = 2), "px4", hasHeldUp = true),
+      Some(
+        "px4: 2 connections closed that spoke another protocol, 1 times lockstep lost for want of an answer " +
+          "within a second; time goes on without it; moves have held all workers for too long: from now on no " +
+          "call waits behind them, and the newest move of a vehicle wins at once"
+      )
+    )

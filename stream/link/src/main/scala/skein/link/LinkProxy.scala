@@ -1,17 +1,21 @@
 package skein.link
 
-import org.apache.pekko.Done
+import java.util.concurrent.atomic.AtomicLong
+import org.apache.pekko.{Done, NotUsed}
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.stream.scaladsl.{BidiFlow, Keep, Sink}
+import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Keep, Sink, Source}
 import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
+import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
+import skein.units.Span
 
 /** Puts an emulated link between clients and a server: it listens, and forwards each connection that it
   * accepts to the server's address, over the link in both directions. A client that gets through here while
   * the server does not listen sees its connection break.
   *
   * A connection is accepted without delay; only what crosses it is delayed. By datagrams, whoever is heard is
-  * a connection.
+  * a connection. A stream that begins as HTTP or TLS does is closed, and nothing of it is forwarded
+  * ([[FirstBytes]]): a browser reaches nobody through the link.
   */
 final class LinkProxy private (listening: Listening, link: EmulatedLink, switch: SharedKillSwitch):
 
@@ -29,8 +33,10 @@ object LinkProxy:
 
   /** Starts listening. Fails with a [[TransportError]] where that is not possible.
     *
-    * @param maxConnections open at the same time; further clients wait to be accepted
-    * @param unreachable told why, when an accepted connection cannot be continued to the server
+    * @param maxConnections open at the same time. One more takes the place of the first over which nothing
+    *   has come yet, or of the one that has been silent for longest, if that is at least 5 s; else it is
+    *   closed
+    * @param unreachable told why, when an accepted connection is not continued to the server
     * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
     */
   def start(
@@ -44,25 +50,54 @@ object LinkProxy:
   )(using ActorSystem): Future[LinkProxy] =
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
+    val places             = Places(maxConnections, Silence)
+    val numbers            = AtomicLong()
 
-    def forward(incoming: Incoming): Future[Done] =
+    def forward(incoming: Incoming): Unit =
+      val number = numbers.getAndIncrement()
+      val guest  = Crossing(KillSwitches.shared(s"link-proxy-$number"))
+      places.entered(number, guest)
+      val own    = if isDatagrams then Flow[ByteString] else FirstBytes.guard(incoming.from)
+      val client = incoming.flow.via(own).via(guest.noting)
       val server = BidiFlow
-        .fromFlows(switch.flow, switch.flow)
+        .fromFlows(switch.flow, guest.noting.via(switch.flow))
         .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
         .joinMat(transport.connect(to))(Keep.right)
-      val (sent, (reached, answered)) = incoming.flow
+      val (sent, (reached, answered)) = client
         .watchTermination()(Keep.right)
         .joinMat(server.watchTermination()(Keep.both))(Keep.both)
         .run()
       reached.failed.foreach(unreachable)
-      for
-        _ <- sent.recover(_ => Done)
-        _ <- answered.recover(_ => Done)
-      yield Done
+      sent.failed.foreach:
+        case foreign: TransportError.Foreign => unreachable(foreign)
+        case _                               => ()
+      sent.onComplete(_ => answered.onComplete(_ => places.left(number)))
+
+    def accept(incoming: Incoming): Unit =
+      if places.admit() then forward(incoming)
+      else Source.empty[ByteString].via(incoming.flow).runWith(Sink.cancelled): Unit
 
     transport
       .listen(listenAt)
-      .mapAsyncUnordered(maxConnections)(forward)
-      .toMat(Sink.ignore)(Keep.left)
+      .to(Sink.foreach(accept))
       .run()
       .map(LinkProxy(_, link, switch))
+
+  private val Silence = Span.ofSeconds(5)
+
+  /** A connection over the link. */
+  private final class Crossing(switch: SharedKillSwitch) extends Places.Guest:
+    @volatile private var crossedNs = System.nanoTime()
+    @volatile private var crossed   = false
+
+    /** Notes what comes from either side. */
+    def noting: Flow[ByteString, ByteString, NotUsed] = Flow[ByteString]
+      .via(switch.flow)
+      .map: bytes =>
+        crossed = true
+        crossedNs = System.nanoTime()
+        bytes
+
+    def hasSpoken: Boolean = crossed
+    def silentFor: Span    = Span.ofNanos(System.nanoTime() - crossedNs)
+    def leave(): Unit      = switch.shutdown()

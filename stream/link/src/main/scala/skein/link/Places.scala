@@ -1,63 +1,54 @@
 package skein.link
 
-import skein.units.{Instant, Span}
+import java.util.concurrent.ConcurrentHashMap
+import java.util.concurrent.atomic.AtomicInteger
+import scala.jdk.CollectionConverters.*
+import skein.units.*
 
-/** Who has one of a port's places, and who gives up a place to one who comes when all are taken. Immutable.
-  *
-  * First go those who have never said anything of use, the oldest of them; then those who have been silent,
-  * the longest silent. Where nobody has been idle for long enough, who comes gets no place. So connections
-  * that stay silent, send a message a byte at a time, or say one word and wait lock nobody out.
-  *
-  * @param most places, at least one
-  * @param guests who has one, by a name of the caller's
-  * @tparam K names guests
+/** Who has one of a port's limited places. When all are taken, one more gets the place of the guest that came
+  * first of those who have said nothing of the port's protocol yet; else of the one that has been silent for
+  * the longest time, if that is at least `silence`; else it is turned away. So whoever only holds a place
+  * makes room at once for those who speak. Safe from any thread.
   */
-final case class Places[K] private (most: Int, guests: Map[K, Places.Guest]):
-  import Places.*
+private[skein] class Places(most: Int, silence: Span):
+  private val guests = ConcurrentHashMap[Long, Places.Guest]()
+  private val taken  = AtomicInteger()
 
-  /** One more comes. Costs a look at all guests where all places are taken. */
-  def entered(guest: K, now: Instant): Entry[K] =
-    if guests.sizeIs < most then Entry.Free(copy(guests = guests.updated(guest, Guest(now, None))))
-    else
-      idlest(now) match
-        case None        => Entry.Full()
-        case Some(other) =>
-          Entry.InPlaceOf(other, copy(guests = (guests - other).updated(guest, Guest(now, None))))
+  /** Whether one more may come; it has a place then, until it has [[left]]. */
+  def admit(): Boolean = synchronized:
+    val free = taken.incrementAndGet() <= most || vacate()
+    if !free then
+      val _ = taken.decrementAndGet()
+    free
 
-  /** A guest has said something of use; nothing where it has no place any more. */
-  def spoke(guest: K, now: Instant): Places[K] =
-    copy(guests = guests.updatedWith(guest)(_.map(_.copy(spokeAt = Some(now)))))
-
-  def left(guest: K): Places[K] = copy(guests = guests - guest)
-
-  private def idlest(now: Instant): Option[K] =
-    val (silent, speaking) = guests.partition((_, guest) => guest.spokeAt.isEmpty)
-    silent.minByOption(_._2.cameAt).filter((_, guest) => now.since(guest.cameAt) >= Unspoken)
-      .orElse(speaking.minByOption(_._2.spokeAt).filter((_, guest) =>
-        guest.spokeAt.forall(now.since(_) >= Silent)
-      ))
-      .map(_._1)
-
-object Places:
-  /** So long a connection may take to say its first word before one who comes may have its place. */
-  val Unspoken: Span = Span.ofSeconds(1)
-
-  /** So long it may be silent after that. */
-  val Silent: Span = Span.ofSeconds(5)
-
-  /** @param spokeAt when it last said something of use, if ever
+  /** @param number counts guests in the order in which they come
     */
-  final case class Guest(cameAt: Instant, spokeAt: Option[Instant])
+  def entered(number: Long, guest: Places.Guest): Unit =
+    val _ = guests.put(number, guest)
 
-  enum Entry[K]:
-    case Free(places: Places[K])
+  def left(number: Long): Unit =
+    val _ = guests.remove(number)
+    val _ = taken.decrementAndGet()
 
-    /** `other` is to go. */
-    case InPlaceOf(other: K, places: Places[K])
+  private def vacate(): Boolean =
+    val present = guests.asScala
+    val leaving = present
+      .filter(!_._2.hasSpoken)
+      .minByOption(_._1)
+      .orElse(present.maxByOption(_._2.silentFor).filter(_._2.silentFor >= silence))
+    for (number, guest) <- leaving do
+      val _ = guests.remove(number)
+      guest.leave()
+    leaving.isDefined
 
-    /** All are taken by those who use theirs. */
-    case Full()
+private[skein] object Places:
+  /** Asked from any thread. */
+  trait Guest:
+    /** Whether a message of the port's protocol has come of it. */
+    def hasSpoken: Boolean
 
-  def of[K](most: Int): Places[K] =
-    require(most > 0, s"expected at least one place, got $most")
-    Places(most, Map.empty)
+    /** For how long it has asked nothing and waited for nothing. */
+    def silentFor: Span
+
+    /** It is to close. */
+    def leave(): Unit

@@ -42,6 +42,10 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
         reason
       )
 
+  /** Who connects speaks another protocol: see [[FirstBytes]]. */
+  case Foreign(from: Address, what: String)
+      extends TransportError(s"connection from $from closed: expected this port's own protocol, came $what")
+
   /** Anything else on the way to a connection. */
   case Failed(to: Address, reason: Throwable)
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)

@@ -18,6 +18,7 @@ import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import org.apache.pekko.util.ByteString
 import org.apache.pekko.{Done, NotUsed}
 import scala.concurrent.{ExecutionContext, Future}
+import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.units.Span
 
@@ -25,7 +26,8 @@ import skein.units.Span
   * Nobody is told of the other side's end, what is lost is lost, and what does not fit into a datagram is
   * cut. For protocols that find the beginning of a message by themselves, such as MAVLink.
   *
-  * @param mostPeers at one port; what others send is dropped
+  * @param mostPeers at one port. One more takes the place of the one that has been silent for longest, if
+  *   that is at least [[UdpSocket.Silence]]; else what it sends is dropped
   */
 final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem)
     extends Transport:
@@ -62,12 +64,15 @@ final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(u
 
 /** An open UDP port, with a thread of its own that receives.
   *
-  * @param dropped datagrams of peers beyond the limit, or for which nobody was quick enough
+  * @param speaks whether a datagram is of the port's protocol: others make nobody a peer
+  * @param dropped datagrams of peers beyond the limit, or of another protocol, or for which nobody was quick
+  *   enough
   */
 final class UdpSocket private (
     socket: DatagramSocket,
     mostPeers: Int,
     idle: Span,
+    speaks: ByteString => Boolean,
     val dropped: LongAdder
 )(using system: ActorSystem):
   import UdpSocket.*
@@ -96,7 +101,8 @@ final class UdpSocket private (
       Source.queue[ByteString](Waiting).preMaterialize()
     @volatile private var heardNs = System.nanoTime()
 
-    def isIdle: Boolean = !isLasting && System.nanoTime() - heardNs > idle.toNanos
+    /** For how long nothing was heard of it; of a lasting one, no time. */
+    def silentFor: Span = if isLasting then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
 
     def heard(bytes: ByteString): Unit =
       heardNs = System.nanoTime()
@@ -134,38 +140,54 @@ final class UdpSocket private (
         val bytes = ByteString.fromArray(packet.getData, packet.getOffset, packet.getLength)
         packet.setLength(1 << 16)
         forgetIdle()
-        Option(peers.get(from)).orElse(admitted(from)) match
+        Option(peers.get(from)).orElse(Option.when(speaks(bytes))(from).flatMap(admitted)) match
           case Some(peer) => peer.heard(bytes)
           case None       => dropped.increment()
       catch case _: java.io.IOException => ()
 
   private def admitted(from: InetSocketAddress): Option[Peer] =
-    for tell <- tellNew if peers.size < mostPeers yield
+    for tell <- tellNew if peers.size < mostPeers || vacated() yield
       val peer = open(from, isLasting = false, () => ())
       tell(Incoming(Address(from.getAddress.getHostAddress, from.getPort), peer.flow))
       peer
 
   private def forgetIdle(): Unit = peers.forEach: (at, peer) =>
-    if peer.isIdle then
-      peers.remove(at, peer)
-      peer.end()
+    if peer.silentFor > idle then forget(at, peer)
+
+  /** Whether somebody who was silent for long has made room. */
+  private def vacated(): Boolean =
+    val silent = peers.asScala.maxByOption(_._2.silentFor).filter(_._2.silentFor >= Silence)
+    silent.foreach(forget)
+    silent.isDefined
+
+  private def forget(at: InetSocketAddress, peer: Peer): Unit =
+    peers.remove(at, peer): Unit
+    peer.end()
 
 object UdpSocket:
   /** Fails with a [[TransportError]]. */
-  def bind(at: Address, mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem): UdpSocket =
+  def bind(
+      at: Address,
+      mostPeers: Int = 64,
+      idle: Span = Span.ofSeconds(30),
+      speaks: ByteString => Boolean = _ => true
+  )(using ActorSystem): UdpSocket =
     val socket =
       try DatagramSocket(resolved(at))
       catch
         case e: BindException if e.getMessage.contains("in use") => throw TransportError.PortTaken(at)
         case e: SocketException => throw TransportError.CannotListen(at, e.getMessage)
     socket.setReceiveBufferSize(1 << 20)
-    val opened = UdpSocket(socket, mostPeers, idle, LongAdder())
+    val opened = UdpSocket(socket, mostPeers, idle, speaks, LongAdder())
     Thread.ofPlatform().daemon().name(s"udp-${opened.address}").start(() => opened.receive())
     opened
 
   private[link] def resolved(at: Address): InetSocketAddress =
     try InetSocketAddress(InetAddress.getByName(at.host), at.port)
     catch case _: UnknownHostException => throw TransportError.UnknownHost(at)
+
+  /** Who was not heard for so long makes room for others. */
+  val Silence: Span = Span.ofSeconds(2)
 
   /** Of a datagram that is sent: fits into an Ethernet frame. */
   private val MostBytes = 1400

@@ -3,6 +3,7 @@ package skein.rpc
 import java.util.ArrayDeque
 import java.util.concurrent.atomic.{AtomicBoolean, LongAdder}
 import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
+import scala.jdk.CollectionConverters.*
 
 /** Calls that wait to be run: a line for each connection, from which calls are taken in rounds. Calls of one
   * connection keep their order.
@@ -13,23 +14,29 @@ import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
   * answer costs more than to run most calls, and so it is woken once for several. No call that is first in
   * its line waits for more than `share` calls of every other connection.
   *
+  * While nothing else can be run, [[takeUrgent]] gives calls that need not wait for the others.
+  *
   * Any thread may put and forget, one takes. What waits is bounded by the server, which lets each connection
   * have a limited number of calls unanswered.
   */
-final class CallLines[Call](share: Int = 16, batch: Int = 4):
+final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => Boolean = (_: Call) => false):
   require(share >= batch && batch > 0, s"a batch, $batch, must be positive and within the share, $share")
 
+  private final class Place(val line: Line, val call: Call):
+    @volatile var isTaken = false
+
   private final class Line:
-    val calls  = ConcurrentLinkedQueue[Call]()
+    val calls  = ConcurrentLinkedQueue[Place]()
     val inTurn = AtomicBoolean()
 
     // The rest is the taker's.
     var round = -1L
     var taken = 0 // in that round
 
-  private val lines = ConcurrentHashMap[Long, Line]()
-  private val came  = ConcurrentLinkedQueue[Line]() // had been empty
-  private val gone  = LongAdder()
+  private val lines  = ConcurrentHashMap[Long, Line]()
+  private val came   = ConcurrentLinkedQueue[Line]() // had been empty
+  private val urgent = ConcurrentLinkedQueue[Place]()
+  private val gone   = LongAdder()
 
   // The taker's: of this round, first those that had been empty; of the next one.
   private val first = ArrayDeque[Line]()
@@ -44,8 +51,10 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4):
   def isEmpty: Boolean = came.isEmpty && first.isEmpty && turns.isEmpty && later.isEmpty
 
   def put(connection: Long, call: Call): Unit =
-    val line = lines.computeIfAbsent(connection, _ => Line())
-    val _    = line.calls.add(call)
+    val line  = lines.computeIfAbsent(connection, _ => Line())
+    val place = Place(line, call)
+    val _     = line.calls.add(place)
+    if isUrgent(call) then urgent.add(place): Unit
     if line.inTurn.compareAndSet(false, true) then
       val _ = came.add(line)
 
@@ -57,8 +66,11 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4):
     val line   = if sparse then first.poll() else turns.poll()
     if line == null then None
     else
-      val call = line.calls.poll()
-      if call != null then line.taken += 1
+      val place = line.calls.poll()
+      if place != null then
+        line.taken += 1
+        place.isTaken = true
+        forgetTaken()
       if line.calls.isEmpty then
         line.inTurn.set(false)
         // One may have come between the two.
@@ -67,12 +79,45 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4):
       else if line.taken >= batch then later.add(line): Unit
       else if sparse then turns.add(line): Unit
       else turns.addFirst(line)
-      if call == null then take() else Some(call)
+      if place == null then take() else Some(place.call)
+
+  /** The first urgent call, before all that wait, and what becomes needless of those that its connection has
+    * asked before it: they are taken, too.
+    *
+    * @param supersedes whether the first call makes the other one needless
+    */
+  @annotation.tailrec
+  def takeUrgent(supersedes: (Call, Call) => Boolean): Option[(call: Call, superseded: Vector[Call])] =
+    forgetTaken()
+    val place = urgent.poll()
+    if place == null then None
+    else
+      val before = place.line.calls.iterator.asScala.takeWhile(_ ne place).toVector
+      if !takeOut(place) then takeUrgent(supersedes)
+      else
+        val needless = before.filter(other => supersedes(place.call, other.call)).filter(takeOut)
+        Some((place.call, needless.map(_.call)))
+
+  /** By the thread that takes. */
+  def hasUrgent: Boolean =
+    forgetTaken()
+    !urgent.isEmpty
+
+  private def takeOut(place: Place): Boolean =
+    place.isTaken = true
+    place.line.calls.remove(place)
+
+  private def forgetTaken(): Unit = while Option(urgent.peek()).exists(_.isTaken) do urgent.poll(): Unit
 
   /** The connection has closed: nobody waits for its calls, and they are not to be run. */
   def forget(connection: Long): Unit =
     val line = lines.remove(connection)
-    if line != null then while line.calls.poll() != null do gone.increment()
+    if line != null then
+      var place = line.calls.poll()
+      while place != null do
+        place.isTaken = true
+        gone.increment()
+        place = line.calls.poll()
 
   /** Gives every line that has come its place, and begins a round when the last is over. */
   private def sort(): Unit =

@@ -8,13 +8,18 @@ import skein.units.*
 private[rpc] final class Patience(limits: ServerLimits):
   private var midway           = 0
   private var untaken          = 0
+  private var quiet            = 0
   @volatile private var silent = 0
 
-  /** For how long nothing has come and nothing been under way. From any thread. */
+  /** For how long nothing has come and nothing been under way; who waits for an answer, and says nothing for
+    * more than [[ServerLimits.waiting]] meanwhile, is silent from then on. From any thread.
+    */
   def silentFor: Span = ServerLimits.Watch * silent.toLong
 
   /** Bytes have come. */
-  def came(): Unit = silent = 0
+  def came(): Unit =
+    silent = 0
+    quiet = 0
 
   /** The message under way is complete. */
   def completed(): Unit = midway = 0
@@ -31,12 +36,13 @@ private[rpc] final class Patience(limits: ServerLimits):
   def watch(forMessage: Boolean, forTaking: Boolean, forNothing: Boolean): Option[(ServerLimit, String)] =
     midway = if forMessage then midway + 1 else 0
     untaken = if forTaking then untaken + 1 else 0
-    silent = if forNothing then silent + 1 else 0
+    quiet += 1
+    silent = if forNothing || ServerLimits.Watch * quiet.toLong > limits.waiting then silent + 1 else 0
     if lasts(midway, limits.messageTime) then
       Some(ServerLimit.Time -> s"a message under way for more than ${seconds(limits.messageTime)}")
     else if lasts(untaken, limits.replyTime) then
       Some(ServerLimit.Time -> s"replies not taken for more than ${seconds(limits.replyTime)}")
-    else if lasts(silent, limits.idle) then
+    else if forNothing && lasts(silent, limits.idle) then
       Some(ServerLimit.Idle -> s"silent for more than ${seconds(limits.idle)}")
     else None
 

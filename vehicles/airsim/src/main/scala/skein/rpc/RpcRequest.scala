@@ -15,6 +15,9 @@ final case class RpcRequest(connection: Long, method: String, params: IndexedSeq
 enum ServerEvent:
   case Opened(connection: Long, from: Address)
 
+  /** The peer sends no more, and may have left: what it has asked for is still answered. */
+  case Finished(connection: Long)
+
   /** The connection ended; `reason` is None if the peer closed it between two messages. */
   case Closed(connection: Long, reason: Option[String])
 

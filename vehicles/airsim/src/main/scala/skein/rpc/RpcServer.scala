@@ -8,7 +8,7 @@ import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
-import skein.link.{Address, Incoming, Listening, Transport}
+import skein.link.{Address, Incoming, Listening, Places, Transport}
 
 /** A running MessagePack-RPC server.
   *
@@ -50,7 +50,7 @@ object RpcServer:
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
     val turns    = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters = ServerCounters(holdings)
-    val places   = ConnectionSlots(limits.connections, limits.silence)
+    val places   = Places(limits.connections, limits.silence)
     val stop     = KillSwitches.shared("rpc-server")
     val told     = AtomicInteger()
 

@@ -8,6 +8,7 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
+import skein.link.{FirstBytes, Places}
 import skein.units.*
 import upack.Msg
 
@@ -30,7 +31,7 @@ private[rpc] final class ServerConnection(
     counters: ServerCounters,
     holdings: Holdings,
     turns: Holdings,
-    places: ConnectionSlots,
+    places: Places,
     observe: ServerEvent => Unit
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
   import ServerConnection.*
@@ -41,7 +42,7 @@ private[rpc] final class ServerConnection(
   override val shape: FlowShape[ByteString, ByteString] = FlowShape(in, out)
 
   override def createLogic(inherited: Attributes): GraphStageLogic =
-    new TimerGraphStageLogic(shape) with InHandler with OutHandler with ConnectionSlots.Guest:
+    new TimerGraphStageLogic(shape) with InHandler with OutHandler with Places.Guest:
       private val framer    = Framer(limits.frame)
       private val writer    = MessageWriter()
       private val patience  = Patience(limits)
@@ -53,6 +54,9 @@ private[rpc] final class ServerConnection(
       private var consumed  = true // every value of the last segment is taken
       private var strays    = 0    // values since the last request that were no messages
       private var reason    = Option.empty[String]
+
+      @volatile private var spoken   = false // a request has come
+      @volatile private var finished = false // the peer sends no more
 
       // The next message, while it is too large for what is left, and the watches since it is.
       private var heldBack = Option.empty[Array[Byte]]
@@ -76,18 +80,33 @@ private[rpc] final class ServerConnection(
 
       override def onPush(): Unit =
         val bytes = grab(in)
-        framer.offer(bytes)
-        segment = bytes.length
-        consumed = false
         patience.came()
-        proceed()
+        foreign(bytes) match
+          case Some(what) =>
+            close(ServerLimit.Malformed, s"expected a message of MessagePack-RPC, came $what")
+          case None =>
+            framer.offer(bytes)
+            segment = bytes.length
+            consumed = false
+            proceed()
+
+      /** What speaks, if that is not MessagePack-RPC: its first byte alone tells. */
+      private def foreign(bytes: ByteString): Option[String] =
+        if spoken || framer.midway then None
+        else
+          FirstBytes.verdict(bytes, Starts) match
+            case FirstBytes.Foreign(what) => Some(what)
+            case _                        => None
 
       override def onPull(): Unit =
         sending = 0
         patience.taken()
         proceed()
 
-      override def onUpstreamFinish(): Unit = proceed()
+      override def onUpstreamFinish(): Unit =
+        finished = true
+        observe(ServerEvent.Finished(connection))
+        proceed()
 
       override def onUpstreamFailure(failure: Throwable): Unit =
         reason = Some(Option(failure.getMessage).getOrElse(failure.toString))
@@ -99,7 +118,9 @@ private[rpc] final class ServerConnection(
         places.left(connection)
         observe(ServerEvent.Closed(connection, reason))
 
-      def silentFor: Span = patience.silentFor
+      def hasSpoken: Boolean = spoken
+
+      def silentFor: Span = if finished then limits.idle else patience.silentFor
 
       def leave(): Unit = leaving.invoke(())
 
@@ -214,7 +235,9 @@ private[rpc] final class ServerConnection(
       private def ignore(what: String): Unit =
         strays += 1
         observe(ServerEvent.Ignored(connection, what))
-        if strays > limits.strays then
+        if !spoken then
+          refuse(ServerLimit.Malformed, s"expected a message of MessagePack-RPC first, came $what")
+        else if strays > limits.strays then
           refuse(ServerLimit.Malformed, s"more than ${limits.strays} values in a row that are no messages")
 
       private def run(id: Long, request: RpcRequest, bytes: Long): Unit =
@@ -222,6 +245,7 @@ private[rpc] final class ServerConnection(
           try handler(request)
           catch case NonFatal(failure) => Future.failed(failure)
         strays = 0
+        spoken = true
         inFlight += 1
         inHand += bytes
         answer.value match
@@ -266,6 +290,9 @@ private object ServerConnection:
 
   /** Memory that a request takes beside its message: the objects that lead it to its answer. */
   private val BytesPerRequest = 512
+
+  /** The first bytes of an array of three or four, MessagePack's and AirSim's clients' only ones. */
+  private val Starts = Set(0x93, 0x94, 0xdc, 0xdd)
 
   private case object Watch
   private final case class Outcome(

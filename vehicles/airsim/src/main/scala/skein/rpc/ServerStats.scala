@@ -66,6 +66,7 @@ private[rpc] final class ServerCounters(holdings: Holdings):
 
   def count(event: ServerEvent): Unit = event match
     case ServerEvent.Opened(_, _)      => ()
+    case ServerEvent.Finished(_)       => ()
     case ServerEvent.Closed(_, reason) =>
       closed.increment()
       if reason.nonEmpty then closedWithReason.increment()

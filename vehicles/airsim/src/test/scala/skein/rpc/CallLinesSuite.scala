@@ -90,3 +90,24 @@ class CallLinesSuite extends munit.FunSuite:
     threads.foreach(_.join())
     for (connection, calls) <- taken.result().groupMap(_._1)(_._2) do
       assertEquals(calls, 1 to each, s"connection $connection")
+
+  test("urgent calls are taken before all others, with what they supersede of their own connection"):
+    val lines = CallLines[String](isUrgent = _.startsWith("!"))
+    for call <- Seq("move a", "read", "!hover a", "move b") do lines.put(1, call)
+    for call <- Seq("move a", "!ping") do lines.put(2, call)
+    def urgent() = lines.takeUrgent((control, other) => control == "!hover a" && other == "move a")
+    assertEquals(urgent(), Some(("!hover a", Vector("move a"))))
+    assert(lines.hasUrgent)
+    assertEquals(urgent(), Some(("!ping", Vector.empty)))
+    assert(!lines.hasUrgent)
+    assertEquals(urgent(), None)
+    assertEquals(drain(lines).toSet, Set("read", "move b", "move a"))
+
+  test("an urgent call that was taken in its turn, or forgotten, is not taken again"):
+    val lines = CallLines[String](isUrgent = _ => true)
+    lines.put(1, "a")
+    lines.put(2, "b")
+    assertEquals(lines.take(), Some("a"))
+    lines.forget(2)
+    assertEquals(lines.takeUrgent((_, _) => false), None)
+    assert(!lines.hasUrgent && lines.isEmpty || drain(lines).isEmpty)

@@ -6,6 +6,7 @@ import org.apache.pekko.stream.scaladsl.{Flow, Keep}
 import org.apache.pekko.stream.testkit.scaladsl.{TestSink, TestSource}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{Future, Promise}
+import skein.link.Places
 import upack.{Arr, Binary, Int32, Msg, Null, Str}
 
 class ServerConnectionSuite extends munit.FunSuite:
@@ -21,7 +22,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
     val turns    = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters = ServerCounters(holdings)
-    val places   = ConnectionSlots(limits.connections, limits.silence)
+    val places   = Places(limits.connections, limits.silence)
 
     private def handler(request: RpcRequest): Future[Either[String, Msg]] = request.method match
       case "now"   => Future.successful(Right(Int32(1)))
@@ -98,6 +99,8 @@ class ServerConnectionSuite extends munit.FunSuite:
 
   test("values that are no messages are counted and the connection lives"):
     val r = Rig()
+    r.ask(0, "now")
+    assertEquals(r.reply(), RpcMessage.Reply(0, Null, Int32(1)))
     r.send(Arr(Int32(0), Int32(1)))
     r.send(upack.Obj(Str("a") -> Null))
     r.send(Int32(7))
@@ -106,6 +109,39 @@ class ServerConnectionSuite extends munit.FunSuite:
     assertEquals(
       Seq.fill(3)(r.event()),
       Seq("an array of 2", "a map", "an integer").map(ServerEvent.Ignored(1, _))
+    )
+
+  for (bytes, came) <- Seq(
+      ByteString("GET / HTTP/1.1\r\n")     -> "an HTTP request (GET)",
+      ByteString("P")                      -> "a first byte of 0x50",
+      ByteString("OPTIONS / HTTP/1.1\r\n") -> "an HTTP request (OPTIONS)",
+      ByteString(22, 3, 1, 2, 0)           -> "a greeting of TLS",
+      ByteString(0x05)                     -> "a first byte of 0x05",
+      ByteString(Wire.pack(upack.Obj()))   -> "a first byte of 0x80",
+      ByteString(0x93, 5, 6, 7)            -> "",
+      ByteString(0x94, 1, 2, 0xc0, 0xc0)   -> ""
+    )
+  do
+    test(s"nothing is obeyed of a connection that begins with ${bytes.map(b => f"$b%02x").mkString(" ")}"):
+      val r = Rig()
+      r.send(bytes ++ ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("slow"), Arr()))))
+      val _ = r.replies.ensureSubscription().expectComplete()
+      r.event() match
+        case ServerEvent.Closed(1, Some(why)) if came.nonEmpty =>
+          assertEquals(why, s"expected a message of MessagePack-RPC, came $came")
+        case ServerEvent.Closed(1, Some(_)) if came.isEmpty => ()
+        case other                                          => fail(s"$other")
+      assert(r.asked.isEmpty)
+      assertEquals(r.counters.snapshot.malformed, 1L)
+
+  test("before the first request no other message is borne"):
+    val r = Rig()
+    r.send(ByteString(0xdc, 0, 2, 1, 2) ++ ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("slow"), Arr()))))
+    val _ = r.replies.ensureSubscription().expectComplete()
+    assertEquals(r.event(), ServerEvent.Ignored(1, "an array of 2"))
+    assertEquals(
+      r.event(),
+      ServerEvent.Closed(1, Some("expected a message of MessagePack-RPC first, came an array of 2"))
     )
 
   for (what, bytes, reason) <- Seq(
@@ -156,6 +192,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val r = Rig()
     r.ask(1, "slow")
     r.requests.sendComplete()
+    assertEquals(r.event(), ServerEvent.Finished(1))
     r.next()._2.success(Right(Int32(9)))
     assertEquals(r.reply(), RpcMessage.Reply(1, Null, Int32(9)))
     val _ = r.replies.expectComplete()
@@ -166,4 +203,5 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.send(ByteString(0x94, 0x00))
     r.requests.sendComplete()
     val _ = r.replies.ensureSubscription().expectComplete()
+    assertEquals(r.event(), ServerEvent.Finished(1))
     assertEquals(r.event(), ServerEvent.Closed(1, Some("the peer stopped in the middle of a message")))

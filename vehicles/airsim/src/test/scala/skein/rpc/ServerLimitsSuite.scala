@@ -7,6 +7,7 @@ import org.apache.pekko.stream.scaladsl.{Flow, Keep}
 import org.apache.pekko.stream.testkit.scaladsl.{TestSink, TestSource}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{Future, Promise}
+import skein.link.Places
 import upack.{Arr, Binary, Int32, Msg, Null, Str}
 
 /** What a server does to connections that ask too much of its memory or its patience, in manual time. */
@@ -18,9 +19,9 @@ class ServerLimitsSuite extends munit.FunSuite:
     val holdings       = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
     val turns          = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters       = ServerCounters(holdings)
-    val guests         = java.util.concurrent.ConcurrentLinkedQueue[ConnectionSlots.Guest]()
-    private val places = new ConnectionSlots(limits.connections, limits.silence):
-      override def entered(connection: Long, guest: ConnectionSlots.Guest): Unit =
+    val guests         = java.util.concurrent.ConcurrentLinkedQueue[Places.Guest]()
+    private val places = new Places(limits.connections, limits.silence):
+      override def entered(connection: Long, guest: Places.Guest): Unit =
         val _ = guests.add(guest)
     val events           = LinkedBlockingQueue[ServerEvent]()
     val never            = Promise[Either[String, Msg]]()
@@ -247,6 +248,7 @@ class ServerLimitsSuite extends munit.FunSuite:
   rig("values that are no messages are borne for a while", ServerLimits(strays = 3)): r =>
     val c     = r.Connection()
     val stray = ByteString(0x05)
+    c.ping()
     c.send(stray ++ stray ++ stray)
     c.ping()
     c.send(stray ++ stray ++ stray ++ stray)

@@ -22,6 +22,10 @@ final class MavlinkChannel(
   private val due     = mutable.HashMap.empty[(Int, Int), Span]
   private val pieces  = Vector.newBuilder[Array[Byte]]
   private var piece   = Array.emptyByteArray
+  private var waiting = 0
+
+  /** Whether more wait to be taken than a peer could take: what it asks for now need not be made. */
+  def isFull: Boolean = waiting >= MavlinkChannel.MostWaiting
 
   for system <- systems; (id, interval) <- Telemetry.intervals do
     every((system, id)) = interval
@@ -73,8 +77,15 @@ final class MavlinkChannel(
     cut()
     val all = pieces.result()
     pieces.clear()
+    waiting = 0
     all
 
   private def cut(): Unit =
-    if piece.nonEmpty then pieces += piece
+    if piece.nonEmpty then
+      pieces += piece
+      waiting += 1
     piece = Array.emptyByteArray
+
+object MavlinkChannel:
+  /** Datagrams; some 10 ms to make. */
+  private val MostWaiting = 64

@@ -10,9 +10,12 @@ import skein.vehicle.Setpoint
   * the truth, and adds its sensors' errors itself; the inertial sensors have ours as well.
   *
   * A frame lasts as long as ArduPilot says, in whole milliseconds. One that is repeated, because its answer
-  * was lost, gets the same answer.
+  * was lost, gets the same answer. While it was given up physics runs by the clock, and it is told the state
+  * as often as it asks.
+  *
+  * @param before how often an autopilot of this vehicle was given up before
   */
-final class ArduPilotInterface(sensors: Sensors, from: Span) extends AutopilotInterface:
+final class ArduPilotInterface(sensors: Sensors, from: Span, before: Int = 0) extends AutopilotInterface:
   import ArduPilotInterface.*
   import AutopilotInterface.Step
 
@@ -23,19 +26,24 @@ final class ArduPilotInterface(sensors: Sensors, from: Span) extends AutopilotIn
   private var answered = Vector.empty[Array[Byte]]
   private var sensed   = from
   private var notRead  = 0L
+  private val trust    = Trust(before)
+  private var heardAt  = from
 
   def hear(bytes: Array[Byte], up: Span): Vector[Array[Byte]] =
-    val from  = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
-    val magic = if bytes.length >= HeaderLength then from.getShort() & 0xffff else -1
-    if !ServosByMagic.get(magic).exists(servos => bytes.length == HeaderLength + 2 * servos) then
+    val from = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
+    if !isFrame(bytes) then
       notRead += 1
       Vector.empty
     else
+      from.getShort(): Unit
       val rate  = from.getShort() & 0xffff
       val count = from.getInt() & 0xffffffffL
       if count == frame then if hasToAsk then answered else Vector.empty
       else
         frame = count
+        if up - heardAt > LongestFrame * 5 then trust.missed()
+        heardAt = up
+        trust.answered()
         controls = AutopilotInterface.rotors(
           Vector.fill(4)(((from.getShort() & 0xffff) - LeastPulse) / (MostPulse - LeastPulse))
         )
@@ -45,14 +53,16 @@ final class ArduPilotInterface(sensors: Sensors, from: Span) extends AutopilotIn
           hasToAsk = false
         Vector.empty
 
-  def rotors: Setpoint        = controls
-  def isWaiting: Boolean      = hasToAsk
-  def isByClock: Boolean      = false
-  def stop(until: Span): Span = due
+  def rotors: Setpoint   = controls
+  def isWaiting: Boolean = hasToAsk && trust.isGiven
+  def isByClock: Boolean = !trust.isGiven
+  def losses: Int        = trust.losses
+
+  /** Where it has not asked there is nothing to be told. */
+  def stop(until: Span): Span = if hasToAsk then until + LongestFrame else due
   def damaged: Long           = notRead
 
-  /** It asks again by itself. */
-  def giveUp(): Unit = ()
+  def giveUp(): Unit = trust.lose()
 
   def sense(truth: SensorTruth): Vector[Array[Byte]] =
     val inertial = sensors.inertial(truth, (truth.up - sensed).max(Step).toSeconds)
@@ -71,6 +81,13 @@ final class ArduPilotInterface(sensors: Sensors, from: Span) extends AutopilotIn
 object ArduPilotInterface:
   /** Of the first vehicle; each further one's is ten higher. */
   val Port = 9002
+
+  /** Whether a datagram is one of its frames. */
+  private[hil] def isFrame(bytes: Array[Byte]): Boolean =
+    bytes.length >= HeaderLength && {
+      val magic = (bytes(0) & 0xff) | (bytes(1) & 0xff) << 8
+      ServosByMagic.get(magic).exists(servos => bytes.length == HeaderLength + 2 * servos)
+    }
 
   private val HeaderLength = 8
 

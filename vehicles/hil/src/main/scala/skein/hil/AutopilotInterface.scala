@@ -34,8 +34,13 @@ trait AutopilotInterface:
     */
   def sense(truth: SensorTruth): Vector[Array[Byte]]
 
-  /** The autopilot has not answered for so long that physics goes on without it. */
+  /** The autopilot has not answered for so long that physics goes on without it, unless it shows that it is
+    * about to: it is not waited for any more until it has answered for a while in time.
+    */
   def giveUp(): Unit
+
+  /** How often it was given up. */
+  def losses: Int
 
   /** Messages that could not be read. */
   def damaged: Long

@@ -1,5 +1,6 @@
 package skein.hil
 
+import skein.mavlink.FrameReader
 import skein.units.Span
 
 /** Autopilots whose interface the simulator speaks. */
@@ -18,8 +19,21 @@ enum AutopilotKind(val label: String):
     * @param system its number, from 1
     * @param from when it begins
     * @param speed of the simulator's clock against the real one
+    * @param losses how often an autopilot of this vehicle was given up before
     */
-  def interface(system: Int, sensors: Sensors, from: Span, speed: Double = 1): AutopilotInterface = this match
-    case Px4        => Px4Interface(system, sensors, from)
-    case ArduPilot  => ArduPilotInterface(sensors, from)
+  def interface(
+      system: Int,
+      sensors: Sensors,
+      from: Span,
+      speed: Double = 1,
+      losses: Int = 0
+  ): AutopilotInterface = this match
+    case Px4        => Px4Interface(system, sensors, from, losses)
+    case ArduPilot  => ArduPilotInterface(sensors, from, losses)
     case Betaflight => BetaflightInterface(sensors, from, speed)
+
+  /** Whether a datagram, or a piece of a stream, holds a message of it. */
+  def speaks(bytes: Array[Byte]): Boolean = this match
+    case Px4        => FrameReader().read(bytes).nonEmpty
+    case ArduPilot  => ArduPilotInterface.isFrame(bytes)
+    case Betaflight => BetaflightInterface.isPacket(bytes)

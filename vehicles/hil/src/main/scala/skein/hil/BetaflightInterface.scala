@@ -36,7 +36,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
   private var rateFrom = Option.empty[Span]
 
   def hear(bytes: Array[Byte], up: Span): Vector[Array[Byte]] =
-    if bytes.length != ServoLength then notRead += 1
+    if !isPacket(bytes) then notRead += 1
     else
       val values = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
       controls = AutopilotInterface.rotors(Vector.fill(4)(values.getFloat().toDouble))
@@ -50,6 +50,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due.max(AutopilotInterface.onGrid(until))
   def giveUp(): Unit          = ()
+  def losses: Int             = 0
   def damaged: Long           = notRead
 
   def sense(truth: SensorTruth): Vector[Array[Byte]] =
@@ -108,6 +109,8 @@ object BetaflightInterface:
 
   /** Nor from a state that comes half a second of real time after the last. */
   private val MostApartRealMs = 400
+
+  private[hil] def isPacket(bytes: Array[Byte]): Boolean = bytes.length == ServoLength
 
   private val ServoLength = 4 * 4
   private val StateLength = 18 * 8

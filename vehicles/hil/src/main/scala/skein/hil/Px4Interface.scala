@@ -16,9 +16,14 @@ import skein.vehicle.{Airframe, Setpoint}
   * answer taken for the newest sensors', PX4's controls would be late by all of that for the rest of the
   * flight.
   *
+  * One that is given up is not waited for until it has answered for a second in time, and for longer each
+  * further time ([[Trust]]).
+  *
   * @param system the number that frames are sent under
+  * @param before how often an autopilot of this vehicle was given up before
   */
-final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends AutopilotInterface:
+final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int = 0)
+    extends AutopilotInterface:
   import Px4Interface.*
 
   private val reader        = FrameReader()
@@ -27,8 +32,12 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
   private var isLockstep    = false
   private var owes          = false
   private var sensedUsec    = 0L
-  private var outdated      = 0 // answers since then, to sensors before
-  private var waitedFor     = 0
+  private var outdated      = 0  // answers since then, to sensors before
+  private val trust         = Trust(before)
+  private var answeredUsec  = 0L // the newest time answered
+  private var answeredAt    = 0L // tick
+  private var catchesUp     = false
+  private var postponed     = 0
   private var hasOwnClock   = false
   private var due           = Period * (from.toNanos / Period.toNanos + 1)
   private var ticks         = 0L
@@ -48,7 +57,13 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
           isLockstep = (answer.flags & LockstepFlag) != 0
           val isOutdated = answer.timeUsec < sensedUsec && !hasOwnClock
           if isOutdated then outdated += 1
-          owes = isLockstep && isOutdated
+          catchesUp ||= isOutdated && answer.timeUsec > answeredUsec
+          answeredUsec = answeredUsec.max(answer.timeUsec)
+          val isInTime = !isOutdated || answer.timeUsec >= sensedUsec - MostLateUsec
+          if isLockstep && isInTime && answeredAt != ticks then
+            answeredAt = ticks
+            trust.answered()
+          owes = isLockstep && isOutdated && trust.isGiven
           controls =
             if (answer.mode & ModeFlag.Armed) == 0 then AutopilotInterface.MotorsOff
             else AutopilotInterface.rotors(answer.controls.map(_.toDouble))
@@ -65,14 +80,17 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
 
-  /** While it catches up it is waited for. Where it has nothing more to say, the times that it tells are not
-    * those of the sensors.
+  /** While it catches up it is waited for, within reason. Where it has nothing more to say, the times that it
+    * tells are not those of the sensors; where it says nothing, it is given up.
     */
   def giveUp(): Unit =
-    if outdated > waitedFor then waitedFor = outdated
+    if catchesUp && postponed < MostPostponed then postponed += 1
     else
-      hasOwnClock ||= outdated > 0
+      if outdated > 0 && !hasOwnClock then hasOwnClock = true else trust.lose()
       owes = false
+    catchesUp = false
+
+  def losses: Int = trust.losses
 
   def damaged: Long =
     val counts = reader.counts
@@ -85,8 +103,9 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
     ticks += 1
     sensedUsec = micros(truth.up)
     outdated = 0
-    waitedFor = 0
-    owes = isLockstep
+    postponed = 0
+    if ticks - answeredAt > MostLateTicks then trust.missed()
+    owes = isLockstep && trust.isGiven
     Vector(messages.flatMap(writer.write).toArray)
 
   private def sensor(truth: SensorTruth): Message =
@@ -188,6 +207,13 @@ object Px4Interface:
   private val Component = 200
 
   private val LockstepFlag = 1L
+
+  /** Answers that are later than this are not in time, where time does not wait. */
+  private val MostLateTicks = 25
+  private val MostLateUsec  = MostLateTicks * Period.toNanos / 1000
+
+  /** Times that one that catches up is waited for again. */
+  private val MostPostponed = 10
 
   private val StateId = 115
 

@@ -85,11 +85,12 @@ class Px4InterfaceSuite extends munit.FunSuite:
   test("it waits for the answer to the newest sensors, whatever is answered before"):
     val peer   = Peer()
     val sensed = peer.ticks(1).collect { case one: HilSensor => one.timeUsec }
-    for at <- sensed.init do
+    for (at, count) <- sensed.init.zipWithIndex do
       peer.say(answer(at, 1, 1))
       assert(peer.interface.isWaiting, s"answered at $at")
-      peer.interface.giveUp()
-      assert(peer.interface.isWaiting, s"it catches up, at $at")
+      if count % 30 == 0 then
+        peer.interface.giveUp()
+        assert(peer.interface.isWaiting, s"it catches up, at $at")
     peer.say(answer(sensed.last, 1, 1))
     assert(!peer.interface.isWaiting)
 
@@ -105,6 +106,67 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assert(peer.interface.isWaiting)
     peer.say(answer(8, 1, 1))
     assert(!peer.interface.isWaiting)
+
+  test("one that answers once and then never is not waited for again"):
+    val peer = Peer()
+    peer.ticks(1)
+    peer.say(controls(1, 1))
+    peer.tick()
+    assert(peer.interface.isWaiting)
+    peer.interface.giveUp()
+    for tick <- 1 to 1000 do
+      peer.tick()
+      assert(!peer.interface.isWaiting, s"tick $tick")
+    assertEquals(peer.interface.losses, 1)
+
+  test("one that was given up is waited for again once it has answered for a second, then for two, in time"):
+    val peer = Peer()
+    peer.say(controls(1, 1))
+    for (seconds, loss) <- Seq(1, 2, 4).zipWithIndex do
+      peer.tick()
+      peer.interface.giveUp()
+      assertEquals(peer.interface.losses, loss + 1)
+      var answers = 0
+      while !peer.interface.isWaiting do
+        val sensed = peer.tick().collect { case one: HilSensor => one.timeUsec }.head
+        if !peer.interface.isWaiting then
+          peer.say(answer(sensed, 1, 1))
+          // A second answer to the same sensors is none.
+          peer.say(answer(sensed, 1, 1))
+          answers += 1
+      assertEquals(answers, 250 * seconds)
+
+  test("one that answers now and then is not waited for, and what it was is known when it comes again"):
+    val peer = Peer()
+    peer.say(controls(1, 1))
+    peer.tick()
+    peer.interface.giveUp()
+    for _ <- 1 to 1000 do
+      peer.ticks(0.12)
+      peer.say(answer(Long.MaxValue, 1, 1))
+    peer.tick()
+    assert(!peer.interface.isWaiting)
+    val again = Px4Interface(1, Sensors(1), Span.Zero, before = peer.interface.losses)
+    again.hear(FrameWriter(1, 1).write(controls(1, 1)), Span.Zero): Unit
+    again.sense(atRest(again.stop(Span.Zero), Vector3.Zero)): Unit
+    assert(!again.isWaiting)
+
+  for (name, absurd) <- Seq("0" -> 0L, "2^63 - 1" -> Long.MaxValue) do
+    test(s"times of $name hold time up once at most, and with silence behind them it is given up"):
+      val peer = Peer()
+      peer.ticks(1)
+      var waits = 0
+      for _ <- 1 to 1000 do
+        peer.say(answer(absurd, 1, 1))
+        peer.say(answer(absurd, 1, 1))
+        if peer.interface.isWaiting then
+          waits += 1
+          peer.interface.giveUp()
+        peer.tick()
+      assert(waits <= 1, s"$waits waits")
+      peer.interface.giveUp()
+      peer.tick()
+      assert(!peer.interface.isWaiting)
 
   test("rotors turn while it is armed, each between 0 and 1, and stand for what is no number"):
     val peer = Peer()

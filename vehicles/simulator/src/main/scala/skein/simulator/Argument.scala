@@ -17,7 +17,7 @@ import upack.*
   *   - What is refused is told as `std::bad_cast`, with no word about where.
   *
   * Otherwise than AirSim it refuses numbers that are not finite, or too large for a 32-bit float where one is
-  * wanted: they would poison physics for good.
+  * wanted, or so large in a vector or a place that nothing is there: they would poison physics for good.
   */
 private[simulator] trait Argument[A]:
   /** Throws [[BadArgument]]. */
@@ -58,7 +58,13 @@ private[simulator] object Argument:
     case Arr(values) => values.iterator.map(element.read).toVector
     case _           => badCast
 
-  given Argument[Vector3r]    = record(Vector3r.Zero)
+  /** Beyond it numbers lose their metres. */
+  private val FarthestM = 1e9f
+
+  given Argument[Vector3r] = checked(record(Vector3r.Zero)): vector =>
+    if Seq(vector.x_val, vector.y_val, vector.z_val).forall(math.abs(_) <= FarthestM) then None
+    else Some("the numbers of a vector are within 1e9")
+
   given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
   given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
 
@@ -70,7 +76,19 @@ private[simulator] object Argument:
   given Argument[YawMode]     = record(YawMode.Still)
   given Argument[RcData]      = record(RcData.Absent)
   given Argument[CarControls] = record(CarControls())
-  given Argument[GeoPoint]    = record(GeoPoint(0, 0, 0))
+  given Argument[GeoPoint]    = checked(record(GeoPoint(0, 0, 0))): point =>
+    misplaced(point.latitude, point.longitude, point.altitude)
+
+  /** Why it is no place on the globe. */
+  def misplaced(latitudeDeg: Double, longitudeDeg: Double, altitudeM: Float): Option[String] =
+    Option.unless(
+      math.abs(latitudeDeg) <= 90 && math.abs(longitudeDeg) <= 360 && math.abs(altitudeM) <= 1e6f
+    ):
+      "a place has latitudes within 90 degrees, longitudes within 360 and altitudes within 1000 km"
+
+  private def checked[A](argument: Argument[A])(mistake: A => Option[String]): Argument[A] = value =>
+    val read = argument.read(value)
+    mistake(read).fold(read)(why => throw BadArgument(why))
 
   given Argument[KinematicsState] = record(
     KinematicsState(

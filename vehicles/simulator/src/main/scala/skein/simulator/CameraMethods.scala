@@ -104,7 +104,9 @@ private[simulator] object CameraMethods:
     many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
       case (simulation, (camera, kind, mesh, name, external)) =>
         detecting(simulation, camera, kind, name, external): filter =>
-          if filter.meshes.size < DetectionFilter.MostMeshes then
+          if mesh.length > DetectionFilter.LongestName then
+            Left(s"a mesh's name has at most ${DetectionFilter.LongestName} characters, not ${mesh.length}")
+          else if filter.meshes.size < DetectionFilter.MostMeshes then
             Right(filter.copy(meshes = filter.meshes + mesh))
           else Left(s"a detection filter holds at most ${DetectionFilter.MostMeshes} names")
     ,

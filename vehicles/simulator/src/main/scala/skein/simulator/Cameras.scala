@@ -48,4 +48,5 @@ final private[simulator] class Cameras(equipment: SensorSettings):
 final private[simulator] case class DetectionFilter(meshes: Set[String] = Set.empty, radiusCm: Float = 20_000)
 
 private[simulator] object DetectionFilter:
-  val MostMeshes = 1000
+  val MostMeshes  = 100
+  val LongestName = 100

@@ -14,15 +14,16 @@ private[simulator] object Detections:
     val view    = Shots.view(simulation, vehicle, camera, imageType)
     val moment  = simulation.objects.moment
     val origin  = simulation.settings.world.origin
-    val wanted  = filter.meshes.toSeq.map(wildcard)
+    val wanted  = filter.meshes.toSeq
     val radiusM = filter.radiusCm / 100
     () =>
       for
         extent <- Renderer.extents(moment, view, except = moment.itemOf(vehicle))
         thing  <- moment.thing(extent.item).toVector
-        if wanted.exists(
-          _.matches(thing.name)
-        ) && (thing.place.position - view.place.position).norm <= radiusM
+        if wanted.exists(NamePattern.isLike(
+          thing.name,
+          _
+        )) && (thing.place.position - view.place.position).norm <= radiusM
       yield
         val (least, most) = thing.bounds
         val place         = origin.locate(thing.place.position)
@@ -44,13 +45,3 @@ private[simulator] object Detections:
     val inverse = Placement(Vector3.Zero, q.copy(x = -q.x, y = -q.y, z = -q.z))
     val turned  = inverse.outside(Placement(Vector3.Zero, thing.orientation))
     Pose(Vector3r(camera.inside(thing.position)), Quaternionr(turned.orientation))
-
-  /** A name in which `*` stands for anything and `?` for one letter, in any case of letters. */
-  private def wildcard(text: String): NamePattern = NamePattern(
-    text.map {
-      case '*' => ".*"
-      case '?' => "."
-      case c   => java.util.regex.Pattern.quote(c.toString)
-    }.mkString,
-    ignoreCase = true
-  )

@@ -16,6 +16,9 @@ private[simulator] object GainMethods:
     gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
   )
 
+  /** AirSim's own are up to 2.5. */
+  private val Largest = 1000f
+
   private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): ServerMethod =
     many[(Seq[Float], Seq[Float], Seq[Float], String)](method):
       case (simulation, (p, i, d, name)) =>
@@ -23,6 +26,8 @@ private[simulator] object GainMethods:
           // AirSim reads past the end of a shorter one.
           if Seq(p, i, d).exists(_.size < 3) then
             CallOutcome.Threw("gains are three lists of three numbers: P, I, D")
+          else if Seq(p, i, d).exists(_.exists(gain => math.abs(gain) > Largest)) then
+            CallOutcome.Threw(s"gains are at most ${Largest.round}")
           else
             def axis(n: Int) = Pid(p(n), i(n), d(n))
             vehicle.tune(change(vehicle.gains, AxisGains(axis(0), axis(1), axis(2))))

@@ -21,19 +21,27 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
 
   private var damagedBefore = 0L
   private var lost          = 0L
-  private var waitingSince  = Option.empty[Instant]
+  private val losses        = mutable.HashMap.empty[Int, Int]
+
+  // Wall time waited beyond what autopilots may slow time.
+  private var waited  = Span.Zero
+  private var toldAt  = Option.empty[Instant]
+  private var toldFor = Span.Zero
 
   world.holdTo(this)
 
   def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit =
     for system <- systems.headOption; case vehicle: SimulatedMultirotor <- world.vehicles.lift(system - 1) do
       val sensors   = Sensors(SplitMix64.seedOf(settings.seed, system), settings.noise)
-      val interface = settings.autopilot.interface(system, sensors, up, simulation.speed)
-      flown(channel) = Flown(vehicle, interface)
+      val before    = losses.getOrElse(system, 0)
+      val interface = settings.autopilot.interface(system, sensors, up, simulation.speed, before)
+      for (other, _) <- flown.find(_._2.vehicle eq vehicle) do leave(other)
+      flown(channel) = Flown(system, vehicle, interface)
       vehicle.flyBy(Some(interface.rotors))
 
   def leave(channel: Long): Unit = flown.remove(channel).foreach: gone =>
     damagedBefore += gone.interface.damaged
+    losses(gone.system) = gone.interface.losses
     gone.vehicle.flyBy(None)
 
   def receive(channel: Long, bytes: Array[Byte]): Unit = flown.get(channel).foreach: one =>
@@ -67,15 +75,17 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     else stop(world.now)
 
   def told(at: Instant): Unit =
-    if !isWaiting then waitingSince = None
-    else
-      val since = waitingSince.getOrElse(at)
-      waitingSince = Some(since)
-      if at.since(since) >= Patience then
-        for one <- interfaces if one.isWaiting do
-          one.giveUp()
-          if !one.isWaiting then lost += 1
-        waitingSince = None
+    // A machine that stands still has let nobody answer.
+    val passed = toldAt.fold(Span.Zero)(at.since(_)).min(LongestLook)
+    val slowed = (up - toldFor) * MostSlowdown
+    toldAt = Some(at)
+    toldFor = up
+    waited = ((if isWaiting then waited + passed else waited) - slowed).max(Span.Zero)
+    if waited >= Patience then
+      waited = Span.Zero
+      for one <- interfaces if one.isWaiting do
+        one.giveUp()
+        if !one.isWaiting then lost += 1
 
   private def interfaces = flown.valuesIterator.map(_.interface)
 
@@ -104,7 +114,11 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     )
 
 private[simulator] object HilVehicles:
-  private final class Flown(val vehicle: SimulatedMultirotor, val interface: AutopilotInterface):
+  private final class Flown(
+      val system: Int,
+      val vehicle: SimulatedMultirotor,
+      val interface: AutopilotInterface
+  ):
     private var jumps = vehicle.jumps
 
     /** Whether it has jumped since this was asked before. */
@@ -113,5 +127,10 @@ private[simulator] object HilVehicles:
       jumps = vehicle.jumps
       jumps != before
 
-  /** An autopilot that has not answered for so long is not waited for: as PX4's plugin for Gazebo does it. */
-  private val Patience = Span.ofSeconds(1)
+  /** An autopilot that has not answered for so long is not waited for: as PX4's plugin for Gazebo does it.
+    * Nor is one by which time is slower than this, for as long.
+    */
+  private val Patience     = Span.ofSeconds(1)
+  private val MostSlowdown = 150L
+
+  private val LongestLook = Span.ofMillis(100)

@@ -36,7 +36,8 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       frame <- peer.read(bytes)
       (system, component) = targetOf(frame.message)
       one <- autopilots
-      if peer.systems.contains(
+      // Who asks for more than it could take has no answer.
+      if !peer.isFull && peer.systems.contains(
         one.system
       ) && (system == 0 || system == one.system) && component <= CommonDialect.Autopilot1
     do one.hear(frame.message, (system = frame.system, component = frame.component), peer)

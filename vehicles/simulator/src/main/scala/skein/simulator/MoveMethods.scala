@@ -48,9 +48,11 @@ private[simulator] object MoveMethods:
             (latitude, longitude, altitude, speed, timeout, drivetrain, yaw, lookahead, adaptive, name)
           ) =>
         val travel = Travel(drivetrain, yaw, lookahead, adaptive)
-        fly(simulation, name): vehicle =>
-          val there = GeoLocation(latitude, longitude, Metres(altitude)).nedFrom(vehicle.home)
-          PathMove.order(Seq(there), speed, timeout, travel)(vehicle)
+        Argument.misplaced(latitude, longitude, altitude).fold(
+          fly(simulation, name): vehicle =>
+            val there = GeoLocation(latitude, longitude, Metres(altitude)).nedFrom(vehicle.home)
+            PathMove.order(Seq(there), speed, timeout, travel)(vehicle)
+        )(CallOutcome.Threw(_))
     ,
     many[(Seq[Vector3r], Float, Float, Int, YawMode, Float, Float, String)]("moveOnPath"):
       case (simulation, (path, speed, timeout, drivetrain, yaw, lookahead, adaptive, name)) =>

@@ -39,6 +39,11 @@ final private[simulator] class PathMove private (
   private val lengths = points.zip(points.tail).map((from, to) => (to - from).norm) :+ 0.0
   private val before  = lengths.scanLeft(0.0)(_ + _)
 
+  /** From each segment on the first that has a length. */
+  private val solid = lengths.indices.scanRight(last)((segment, next) =>
+    if segment >= last then last else if lengths(segment) > 0 then segment else next
+  )
+
   private var reached  = Place(0, 0, points.head)
   private var aim      = ahead(reached, lookaheadM)
   private var progress = 0.0
@@ -78,18 +83,33 @@ final private[simulator] class PathMove private (
       Move.facing(travel.drivetrain, travel.yaw, way)
     )
 
+  /** Cost: a few segments are walked; farther ahead they are searched, so that a path of thousands of points
+    * in one place costs no more.
+    */
   private def ahead(from: Place, distanceM: Double): Place =
-    var segment = from.segment
-    var offset  = from.offsetM + distanceM
-    while segment < last && (lengths(segment) == 0 || lengths(segment) < offset) do
+    var segment  = solid(from.segment)
+    var offset   = from.offsetM + distanceM
+    var walked   = 0
+    def isBeyond = segment < last && lengths(segment) < offset
+    while isBeyond && walked < MostWalked do
       offset -= lengths(segment)
-      segment += 1
+      segment = solid(segment + 1)
+      walked += 1
+    if isBeyond then
+      val goal        = before(segment) + offset
+      var (low, high) = (segment, last)
+      while low < high do
+        val middle = (low + high) / 2
+        if before(middle + 1) >= goal then high = middle else low = middle + 1
+      segment = low
+      offset = goal - before(low)
     if segment == last then Place(last, 0, points(last))
     else
       val along = (points(segment + 1) - points(segment)) * (offset / lengths(segment))
       Place(segment, offset, points(segment) + along)
 
 private[simulator] object PathMove:
+  private val MostWalked = 64
 
   /** A place on the path: the segment that starts at that point, and how far along it. */
   private case class Place(segment: Int, offsetM: Double, point: Vector3)

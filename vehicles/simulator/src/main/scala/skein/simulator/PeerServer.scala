@@ -1,15 +1,16 @@
 package skein.simulator
 
-import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
+import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
-import org.apache.pekko.stream.{BoundedSourceQueue, KillSwitches}
+import org.apache.pekko.stream.{BoundedSourceQueue, KillSwitches, SharedKillSwitch}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.{Failure, Success, Try}
 import skein.hil.AutopilotKind
-import skein.link.{Address, Listening, Transport, UdpSocket}
+import skein.link.{Address, FirstBytes, Listening, Places, Transport, TransportError, UdpSocket}
+import skein.mavlink.FrameReader
 import skein.units.Span
 
 /** Where peers reach vehicles by another protocol than AirSim's.
@@ -28,13 +29,15 @@ private[simulator] final case class PeerPorts(
   * @param mostPeers at a time
   * @param tells who is told without having asked
   * @param isOneWay whether only that one is told, and what others send counts as its
+  * @param speaks whether a datagram, or the bytes of a stream so far, hold a message of the port's protocol
   */
 private[simulator] final case class PeerPort(
     at: Address,
     systems: Vector[Int] = Vector.empty,
     mostPeers: Int = PeerServer.MostPeers,
     tells: Option[Address] = None,
-    isOneWay: Boolean = false
+    isOneWay: Boolean = false,
+    speaks: Array[Byte] => Boolean = FrameReader().read(_).nonEmpty
 )
 
 private[simulator] object PeerPorts:
@@ -44,7 +47,9 @@ private[simulator] object PeerPorts:
   )
 
   def of(settings: HilSettings): PeerPorts =
-    val ports = settings.ports.zipWithIndex.map((at, index) => PeerPort(at, Vector(index + 1), mostPeers = 1))
+    val ports = settings.ports.zipWithIndex.map((at, index) =>
+      PeerPort(at, Vector(index + 1), mostPeers = 1, speaks = settings.autopilot.speaks)
+    )
     settings.autopilot match
       case AutopilotKind.Px4        => PeerPorts(streams = ports)
       case AutopilotKind.ArduPilot  => PeerPorts(datagrams = ports)
@@ -100,6 +105,19 @@ private[simulator] object PeerServer:
   /** A peer that is alone at its port makes room when nothing was heard of it for this long. */
   private val AloneIdle = Span.ofSeconds(5)
 
+  /** A peer of which nothing was heard for so long makes room for others. */
+  private val Silence = Span.ofSeconds(5)
+
+  /** Bytes of a stream in which there must be a message. The longest has 280. */
+  private val MostBefore = 1024
+
+  /** Bytes of a stream that are dealt with at once: its messages are answered between other clients' calls.
+    */
+  private val MostAtOnce = 2048
+
+  /** Of MAVLink 2 and of MAVLink 1, which is all that comes by streams. */
+  private val Starts = Set(0xfd, 0xfe)
+
   /** Fails with a [[skein.link.TransportError]]. */
   def start(
       ports: PeerPorts,
@@ -112,43 +130,55 @@ private[simulator] object PeerServer:
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("peers")
     val numbers            = AtomicLong()
-    val present            = AtomicInteger()
+    val present            = Places(MostPeers, Silence)
 
-    def serve(port: PeerPort, isDatagrams: Boolean, presentHere: AtomicInteger)(
+    /** @param isKnown whether it has spoken already, or is spoken to without having to
+      */
+    def serve(port: PeerPort, isDatagrams: Boolean, presentHere: Places, isKnown: Boolean)(
         flow: Flow[ByteString, ByteString, ?]
     ): Unit =
-      val counts = Seq(present -> MostPeers, presentHere -> port.mostPeers)
-      // All are counted, whatever one of them says.
-      if counts.map((count, most) => count.incrementAndGet() <= most).forall(identity) then
+      val channel = numbers.getAndIncrement()
+      if isAdmitted(channel, Seq(presentHere, present)) then
         val (queue, out) = Source.queue[ByteString](Waiting).preMaterialize()
-        val channel      = numbers.getAndIncrement()
-        peers.joined(JoinedPeer(channel, port.systems, isDatagrams, queue))
+        val joined       = JoinedPeer(channel, port.systems, isDatagrams, queue)
+        val guest        = Guest(KillSwitches.shared(s"peer-$channel"), port.speaks, peers, joined)
+        val places       = Seq(presentHere, present)
+        places.foreach(_.entered(channel, guest))
+        if isKnown then guest.join()
         out
           .via(switch.flow)
+          .via(guest.switch.flow)
           .via(flow)
-          .mapAsync(1): bytes =>
-            val done = Promise[Done]()
-            peers.heard(channel, bytes.toArrayUnsafe(), done)
-            done.future
+          .mapConcat(bytes => if isDatagrams then Iterator(bytes) else bytes.grouped(MostAtOnce))
+          .mapAsync(1)(guest.heard)
+          .via(guest.switch.flow)
           .runWith(Sink.ignore)
-          .onComplete: _ =>
-            counts.foreach((count, _) => count.decrementAndGet())
-            peers.left(channel)
+          .onComplete: how =>
+            places.foreach(_.left(channel))
+            if guest.hasSpoken then peers.left(channel)
+            for case _: TransportError.Foreign <- how.failed do counters.foreign.incrementAndGet(): Unit
       else
-        counts.foreach((count, _) => count.decrementAndGet())
         counters.turnedAway.incrementAndGet(): Unit
         Source.empty[ByteString].via(flow).runWith(Sink.cancelled): Unit
+
+    // All are counted, whatever one of them says.
+    def isAdmitted(channel: Long, places: Seq[Places]): Boolean =
+      val admitted = places.map(_.admit())
+      val all      = admitted.forall(identity)
+      if !all then for case (place, true) <- places.zip(admitted) do place.left(channel)
+      all
 
     def open(): Vector[UdpSocket] =
       ports.datagrams.foldLeft(Vector.empty[UdpSocket]): (opened, port) =>
         try
           val isAlone = port.mostPeers == 1
-          val here    = AtomicInteger()
+          val here    = Places(port.mostPeers, Silence)
           // Who is told without having asked is a peer, too.
-          val admitted = port.mostPeers + (if port.isOneWay then 1 else 0)
-          val socket   =
-            if isAlone then UdpSocket.bind(port.at, admitted, AloneIdle)
-            else UdpSocket.bind(port.at, admitted)
+          val admitted                  = port.mostPeers + (if port.isOneWay then 1 else 0)
+          def speaks(bytes: ByteString) = port.speaks(bytes.toArrayUnsafe())
+          val socket                    =
+            if isAlone then UdpSocket.bind(port.at, admitted, AloneIdle, speaks)
+            else UdpSocket.bind(port.at, admitted, speaks = speaks)
           if port.isOneWay then
             val (heard, in) = Source.queue[ByteString](Waiting).preMaterialize()
             socket.onPeer(incoming =>
@@ -156,12 +186,12 @@ private[simulator] object PeerServer:
                 Source.maybe[ByteString].via(incoming.flow).runForeach(bytes => heard.offer(bytes): Unit)
             )
             for to <- port.tells do
-              serve(port, isDatagrams = true, here)(
+              serve(port, isDatagrams = true, here, isKnown = true)(
                 Flow.fromSinkAndSourceCoupled(socket.peer(to).to(Sink.ignore), in)
               )
           else
-            socket.onPeer(incoming => serve(port, isDatagrams = true, here)(incoming.flow))
-            port.tells.foreach(to => serve(port, isDatagrams = true, here)(socket.peer(to)))
+            socket.onPeer(incoming => serve(port, isDatagrams = true, here, isKnown = false)(incoming.flow))
+            port.tells.foreach(to => serve(port, isDatagrams = true, here, isKnown = true)(socket.peer(to)))
           opened :+ socket
         catch
           case error: Throwable =>
@@ -171,11 +201,13 @@ private[simulator] object PeerServer:
     def listen(): Future[Vector[Listening]] =
       ports.streams.foldLeft(Future.successful(Vector.empty[Listening])): (opened, port) =>
         opened.flatMap: before =>
-          val here = AtomicInteger()
+          val here = Places(port.mostPeers, Silence)
           transport
             .listen(port.at)
             .toMat(
-              Sink.foreach(incoming => serve(port, isDatagrams = false, here)(incoming.flow))
+              Sink.foreach: incoming =>
+                val own = incoming.flow.via(FirstBytes.guard(incoming.from, Starts))
+                serve(port, isDatagrams = false, here, isKnown = false)(own)
             )(Keep.left)
             .run()
             .transformWith:
@@ -198,3 +230,46 @@ private[simulator] object PeerServer:
         sockets.foreach(_.close())
         closed(listening)
     )
+
+  /** Joins with its first message: who only connects is nobody yet, and nothing is told to it. */
+  private final class Guest(
+      val switch: SharedKillSwitch,
+      speaks: Array[Byte] => Boolean,
+      peers: Peers,
+      joined: JoinedPeer
+  ) extends Places.Guest:
+    @volatile private var spoken  = false
+    @volatile private var isTold  = false
+    @volatile private var heardNs = System.nanoTime()
+    private var before            = ByteString.empty
+
+    def hasSpoken: Boolean = spoken
+    def silentFor: Span    = if isTold then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
+    def leave(): Unit      = switch.shutdown()
+
+    /** It is a peer without having spoken. */
+    def join(): Unit =
+      spoken = true
+      isTold = true
+      peers.joined(joined)
+
+    def heard(bytes: ByteString): Future[Done] =
+      heardNs = System.nanoTime()
+      if spoken then told(bytes)
+      else
+        before = before ++ bytes
+        if speaks(before.toArrayUnsafe()) then
+          spoken = true
+          peers.joined(joined)
+          told(before)
+        else if before.length < MostBefore then Future.successful(Done)
+        else
+          Future.failed(TransportError.Foreign(
+            Address("", 0),
+            s"${before.length} bytes without a message of it"
+          ))
+
+    private def told(bytes: ByteString): Future[Done] =
+      val done = Promise[Done]()
+      peers.heard(joined.channel, bytes.toArrayUnsafe(), done)
+      done.future

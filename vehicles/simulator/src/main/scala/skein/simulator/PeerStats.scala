@@ -7,16 +7,19 @@ import java.util.concurrent.atomic.AtomicLong
   * @param damaged messages that came with a wrong checksum, of an unknown kind or of a wrong content
   * @param dropped pieces for peers that did not take them in time
   * @param turnedAway peers beyond the most at a time
-  * @param ignored datagrams of peers beyond the most at a port, or that came faster than they were dealt with
+  * @param ignored datagrams of peers beyond the most at a port, of another protocol, or that came faster than
+  *   they were dealt with
   * @param unanswered times that an autopilot in lockstep did not answer within a second, and time went on
   *   without it
+  * @param foreign connections closed because they did not begin as the protocol does
   */
 final case class PeerStats(
     damaged: Long = 0,
     dropped: Long = 0,
     turnedAway: Long = 0,
     ignored: Long = 0,
-    unanswered: Long = 0
+    unanswered: Long = 0,
+    foreign: Long = 0
 )
 
 private[simulator] final class PeerCounters:
@@ -24,6 +27,7 @@ private[simulator] final class PeerCounters:
   val dropped: AtomicLong    = AtomicLong()
   val turnedAway: AtomicLong = AtomicLong()
   val unanswered: AtomicLong = AtomicLong()
+  val foreign: AtomicLong    = AtomicLong()
 
   def stats: PeerStats =
-    PeerStats(damaged.get, dropped.get, turnedAway.get, unanswered = unanswered.get)
+    PeerStats(damaged.get, dropped.get, turnedAway.get, unanswered = unanswered.get, foreign = foreign.get)

@@ -4,6 +4,7 @@ import skein.airsim.VehicleSettings
 import skein.airsim.wire.*
 import skein.scene.Placement
 import skein.units.*
+import upack.Bool
 
 /** Functions of what is in the scene, and where: the ground, the scene's objects and vehicles. There are no
   * assets, levels or meshes.
@@ -29,7 +30,7 @@ private[simulator] object SceneMethods:
         // What is not there is told so whatever the pose is: `simGetObjectPose` gives NaN for it.
         if simulation.objects.vehicle(name).isEmpty && simulation.objects.thing(name).isEmpty then
           answer(false)
-        else pose.fold(throw NotFinite())(moveTo(simulation, name, _))
+        else pose.fold(throw NotFinite())(there => within(there.position)(moveTo(simulation, name, there)))
     ,
     one[String]("simGetObjectScale")((simulation, name) =>
       answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
@@ -74,10 +75,22 @@ private[simulator] object SceneMethods:
     ,
     many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid"):
       case (simulation, (centre, x, y, z, edge, path)) =>
-        VoxelGrid.render(simulation.objects.boxes, centre.toVector, (x, y, z), edge) match
-          case Left(refusal) => CallOutcome.Threw(refusal)
-          case Right(grid)   => answer(simulation.save(path, grid))
+        val ready =
+          for
+            folder <- simulation.grids.toRight(NoGrids)
+            file   <- folder.file(path)
+            _      <- VoxelGrid.cells((x, y, z), edge)
+          yield (folder, file)
+        ready match
+          case Left(refusal)         => CallOutcome.Threw(refusal)
+          case Right((folder, file)) =>
+            val moment = simulation.objects.boxes
+            def grid   = VoxelGrid.render(moment, centre.toVector, (x, y, z), edge)
+            CallOutcome.Draws(() => Bool(folder.save(file)(grid.getOrElse(Array.emptyByteArray))))
   )
+
+  private val NoGrids =
+    "this simulator writes no files; ./skein serve --grids FOLDER lets it write voxel grids"
 
   /** Extent that is answered, from the origin and upwards, m; the world itself has no edge. */
   private val ExtentM = 10_000.0

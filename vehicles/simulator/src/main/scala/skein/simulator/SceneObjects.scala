@@ -14,6 +14,10 @@ final private[simulator] class SceneObjects(world: World):
   private val scales = mutable.Map.empty[String, Vector3]
   private val chosen = mutable.Map.empty[String, Int]
 
+  // Of which scene the places are: a client's change makes a new one.
+  private var seen   = Scene.Empty
+  private var places = Map.empty[String, Int]
+
   /** As a [[Moment]] counts them. */
   def names: Seq[String] = Ground +: (world.scene.objects.map(_.name) ++ world.vehicles.map(_.settings.name))
 
@@ -21,7 +25,10 @@ final private[simulator] class SceneObjects(world: World):
 
   /** An object of the scene, by its place among them. */
   def thing(name: String): Option[Int] =
-    Option(world.scene.objects.indexWhere(_.name == name)).filter(_ >= 0)
+    if seen ne world.scene then
+      seen = world.scene
+      places = seen.objects.iterator.map(_.name).zipWithIndex.toVector.reverse.toMap
+    places.get(name)
 
   def vehicle(name: String): Option[SimulatedVehicle] = world.vehicles.find(_.settings.name == name)
 

@@ -1,6 +1,7 @@
 package skein.simulator
 
 import scala.util.control.NonFatal
+import skein.airsim.wire.Vector3r
 import skein.rpc.Encoded
 import skein.units.Span
 import upack.Msg
@@ -108,6 +109,11 @@ private[simulator] object ServerMethod:
     vehicle(simulation, name):
       case (index, car: SimulatedCar) => run(index, car)
       case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a ${other.kind}")
+
+  /** Runs what puts something there. */
+  def within(place: Vector3r)(run: => CallOutcome): CallOutcome =
+    if place.toVector.norm <= VehicleLimits.FarthestM then run
+    else CallOutcome.Threw(s"a place within ${(VehicleLimits.FarthestM / 1000).round} km is wanted")
 
   private def find(simulation: Simulated, name: String, what: String, reason: String)(
       run: (Int, SimulatedVehicle) => CallOutcome

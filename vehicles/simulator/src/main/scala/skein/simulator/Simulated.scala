@@ -27,5 +27,8 @@ private[simulator] trait Simulated:
 
   private[simulator] def recording_=(on: Boolean): Unit
 
-  /** Writes a file that a client has asked for to a path, and says whether it could. */
-  private[simulator] def save: (String, Array[Byte]) => Boolean
+  /** Where voxel grids are written, if they are. */
+  private[simulator] def grids: Option[GridFolder]
+
+  /** All vehicles back to their starts; no move goes on, and none waits. */
+  private[simulator] def reset(): Unit

@@ -1,13 +1,17 @@
 package skein.simulator
 
+import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.VehicleSettings
 import skein.rpc.Encoded
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** A call as it came: `token` names it in its answer. */
-final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
+/** A call as it came: `token` names it in its answer.
+  *
+  * @param client who calls: see [[Simulation.depart]]
+  */
+final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg], client: Long = 0)
 
 /** What a call is answered: its result, or what draws it, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
@@ -28,12 +32,10 @@ final class DeferredResult(work: () => Msg | Encoded):
   *
   * @param startedAt when it starts, by the clock that all later times are told of, and the simulator's clock
   *   at that moment
-  * @param save writes a file that a client has asked for to a path, and says whether it could
   */
 final class Simulation(
     val settings: SimulatorSettings,
-    startedAt: Instant,
-    private[simulator] val save: (String, Array[Byte]) => Boolean = (_, _) => false
+    startedAt: Instant
 ) extends Simulated:
   import Simulation.*
 
@@ -41,6 +43,8 @@ final class Simulation(
 
   val world: World =
     World(settings.world, startedAt, settings.multirotors, scene = settings.scene, equipment = equipment)
+
+  private[simulator] val grids: Option[GridFolder] = settings.grids.map(GridFolder(_))
 
   private[simulator] val objects   = SceneObjects(world)
   private[simulator] val cameras   = Cameras(equipment)
@@ -55,20 +59,50 @@ final class Simulation(
   private var until      = startedAt
   private var paused     = false
   private var lag        = Span.Zero
+  private val departed   = mutable.HashSet.empty[Long]
+  private var fullSince  = Option.empty[Instant]
+  private var heldUp     = Span.Zero
 
   // The simulator's clock showed `anchored` at `anchoredAt`.
   private var anchoredAt = startedAt
   private var anchored   = startedAt
 
   /** Whether a call is run as soon as it is received, rather than waiting for a worker. */
-  def isFree: Boolean = workers.isFree
+  def isFree: Boolean = workers.isFree || isOpen
+
+  /** Whether no call waits behind moves, and the newest move of a vehicle wins at once: while time stands
+    * still, and once moves have held all workers for longer than the settings let them.
+    */
+  private def isOpen = isPaused || hasHeldUp
+
+  /** Whether moves have held all workers for so long that they do so no more. */
+  def hasHeldUp: Boolean = settings.patience.exists(heldUp >= _)
 
   /** Takes a call in at `at`, no earlier than any time told before. */
   def receive(call: SimulatorCall, at: Instant): Unit =
     // Else every call that comes while a long step is computed would wait for its share of it.
     if continuing.isEmpty then advance(at)
-    workers.offer(call)
+    if isControl(call.method) then
+      workers.drop(supersedes(call.method, call.params, _)).foreach(giveUp)
+      run(call, at)
+    else workers.offer(call)
     settle(at)
+
+  private def supersedes(method: String, params: IndexedSeq[Msg], other: SimulatorCall): Boolean =
+    Simulation.supersedes(method, params, other.method, other.params)
+
+  /** A client sends no more: what it asked for holds nothing any longer. Its vehicles fly on as it told them
+    * last.
+    *
+    * @param isForgotten whether nothing of what it has sent comes any more
+    */
+  def depart(client: Long, isForgotten: Boolean, at: Instant): Unit =
+    if isForgotten then departed -= client else departed += client
+    workers.leave(client).foreach(flight => giveUp(flight.call))
+    settle(at)
+
+  /** Answers what is not done any more, as a move that was cancelled. */
+  private def giveUp(call: SimulatorCall): Unit = answers += SimulatorAnswer(call.token, Right(Bool(false)))
 
   /** Lets time pass up to `at`. Its work is bounded: what does not fit is done by the next calls of it while
     * time stands still, or else skipped, and counted by [[behind]].
@@ -116,6 +150,11 @@ final class Simulation(
     world.add(vehicle)
     workers.addVehicle()
 
+  private[simulator] def reset(): Unit =
+    world.reset()
+    for vehicle <- world.vehicles.indices do
+      workers.dismiss(vehicle, all = true).foreach(flight => giveUp(flight.call))
+
   private[simulator] def setPaused(on: Boolean): Unit =
     paused = on
     if !on then finishStep()
@@ -154,13 +193,24 @@ final class Simulation(
   private def settle(at: Instant): Unit =
     var again = true
     while again do
-      for World.Ended(vehicle, token, result) <- world.takeEnded() do
-        answers += SimulatorAnswer(token, Right(Bool(result)))
-        workers.release(vehicle, at)
+      answerEnded(at)
       handOver(at, at)
-      val job = workers.take()
+      val job = workers.take(isOpen)
       job.foreach(run(_, at))
       again = job.nonEmpty || world.hasEnded
+    noteHolding(at)
+
+  private def answerEnded(at: Instant): Unit =
+    for World.Ended(vehicle, token, result) <- world.takeEnded() do
+      answers += SimulatorAnswer(token, Right(Bool(result)))
+      workers.release(vehicle, at)
+
+  /** Counts how long moves hold all workers; what every burst does for a moment does not count. */
+  private def noteHolding(at: Instant): Unit =
+    for since <- fullSince if settings.patience.isDefined && at.since(since) > Moment do
+      heldUp = heldUp + (at.since(since) - Moment)
+      fullSince = Some(at - Moment)
+    fullSince = if workers.isFull then fullSince.orElse(Some(at)) else None
 
   /** Starts the moves whose lock arrives by `due`. */
   private def handOver(due: Instant, at: Instant): Unit =
@@ -188,7 +238,13 @@ final class Simulation(
           case CallOutcome.Steps(span) => continueFor(span, call.token, at)
           case CallOutcome.Flies(vehicle, order) =>
             val flight = Waiting(call, order)
-            if workers.acquire(vehicle, flight) then start(vehicle, flight, at)
+            val wins   = isControl(call.method) || isOpen && !settings.losesCancel()
+            workers.dismiss(vehicle, all = wins).foreach(flight => giveUp(flight.call))
+            if wins then
+              world.cancelMove(vehicle)
+              answerEnded(at)
+            if workers.acquire(vehicle, flight, call.client, departed(call.client)) then
+              start(vehicle, flight, at)
             else if !settings.losesCancel() then world.cancelMove(vehicle)
 
   private def start(vehicle: Int, flight: Waiting, at: Instant): Unit =
@@ -221,7 +277,9 @@ final class Simulation(
   private def longestRun: Span     = stepsOf(LongestRunSteps)
   private def longestStretch: Span = stepsOf(LongestStretchSteps)
 
-  private def stepsOf(all: Int): Span = world.step * (all / world.vehicles.size).max(1).toLong
+  private def stepsOf(all: Int): Span =
+    val things = world.vehicles.size.toLong * (1 + world.scene.objects.size / ObjectsOfAStep)
+    world.step * (all / things).max(1L)
 
 object Simulation:
 
@@ -231,8 +289,14 @@ object Simulation:
   /** Of the time that an autopilot in lockstep has taken longer than it simulates. */
   private val MostMadeUpFor = Span.ofMillis(20)
 
+  /** All workers held for so long are no burden. */
+  private val Moment = Span.ofMillis(100)
+
   /** Steps of one vehicle that one call may compute: some 30 ms. */
   private val LongestRunSteps = 200_000
+
+  /** To look at so many of a scene's objects, near a vehicle, costs as much as its step. */
+  private val ObjectsOfAStep = 16
 
   /** Of a step that was asked for, so many at a time: some 4 ms, between which others are answered. */
   private val LongestStretchSteps = 30_000
@@ -247,6 +311,26 @@ object Simulation:
   /** By their names, AirSim's form before Cosys-AirSim's. */
   private[simulator] val named: Map[String, Seq[ServerMethod]] =
     (methods ++ CosysMethods.forms(methods)).groupBy(_.name)
+
+  /** Functions by which a person gets a simulator back that is busy: they never wait behind moves. */
+  private val Controls = Set("simPause", "simIsPaused", "ping", "hover", "cancelLastTask", "reset") ++
+    Set("getServerVersion", "getMinRequiredClientVersion")
+
+  private[simulator] def isControl(method: String): Boolean = Controls(method)
+
+  private val Moves = MoveMethods.all.map(_.name).toSet
+
+  /** Whether a call makes an earlier one needless that has not been run: a move before a hover of its
+    * vehicle, or a reset.
+    */
+  private[simulator] def supersedes(
+      method: String,
+      params: IndexedSeq[Msg],
+      earlier: String,
+      earlierParams: IndexedSeq[Msg]
+  ): Boolean =
+    Moves(earlier) && earlier != "hover" && (method == "reset" ||
+      method == "hover" && params.nonEmpty && earlierParams.lastOption == params.lastOption)
 
   /** The functions it has. */
   val methodNames: Set[String] = named.keySet

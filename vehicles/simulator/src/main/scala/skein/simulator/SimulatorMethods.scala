@@ -18,11 +18,13 @@ private[simulator] object SimulatorMethods:
     one[Argument.Unsigned32]("simContinueForFrames")((_, frames) =>
       steps(Span.ofSeconds(math.min(frames.toDouble / FramesPerS, LongestStepS)))
     ),
-    none("reset")(simulation => done(simulation.world.reset())),
+    none("reset")(simulation => done(simulation.reset())),
     // AirSim keeps them sorted by name.
     none("listVehicles")(simulation => answer(simulation.world.vehicles.map(_.settings.name).sorted)),
     none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
-    one[Vector3r]("simSetWind")((simulation, wind) => done(simulation.world.setWind(wind.toVector)))
+    one[Vector3r]("simSetWind"): (simulation, wind) =>
+      if wind.toVector.norm <= FastestWindMps then done(simulation.world.setWind(wind.toVector))
+      else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")
   )
 
   /** Of a renderer that keeps up with AirSim's usual screen. */
@@ -30,5 +32,8 @@ private[simulator] object SimulatorMethods:
 
   /** A day: far beyond use, and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
+
+  /** Beyond it physics' steps would be too long. */
+  private val FastestWindMps = 300.0
 
   private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))

@@ -4,18 +4,20 @@ import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.scaladsl.{Behaviors, TimerScheduler}
-import org.apache.pekko.actor.typed.{ActorRef, Behavior, DispatcherSelector}
+import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.stream.{BoundedSourceQueue, QueueOfferResult}
 import org.apache.pekko.util.ByteString
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.util.Try
 import scala.util.control.NonFatal
 import skein.link.{Address, Transport}
 import skein.rpc.{CallLines, Encoded, RpcRequest, RpcServer, ServerEvent, ServerStats}
 import skein.signal.Kinematics
 import skein.units.*
-import upack.Msg
+import upack.{Bool, Msg}
 
 /** The built-in simulator behind a socket, or whatever a [[Transport]] has: it speaks AirSim's wire, so that
   * any of its clients can fly it.
@@ -35,7 +37,8 @@ final class SimulatorServer private (
     behindNanos: AtomicLong,
     broken: Future[Throwable],
     peers: Option[PeerServer],
-    counters: PeerCounters
+    counters: PeerCounters,
+    heldUp: AtomicBoolean
 ):
 
   /** Where it listens, with the actual port. */
@@ -57,6 +60,9 @@ final class SimulatorServer private (
 
   /** Simulated time skipped so far because the machine was too slow, or asleep. */
   def behind: Span = Span.ofNanos(behindNanos.get)
+
+  /** Whether moves have held all workers for longer than [[SimulatorSettings.patience]]. */
+  def hasHeldUp: Boolean = heldUp.get
 
   /** Where all vehicles truly are; never, once it is closed. */
   def truth(): Future[SimulatorServer.Truth] =
@@ -86,24 +92,32 @@ object SimulatorServer:
   ): Future[SimulatorServer] =
     given ExecutionContext = ExecutionContext.parasitic
     val behind             = AtomicLong()
+    val heldUp             = AtomicBoolean()
     val broken             = Promise[Throwable]()
-    val lines              = CallLines[Call]()
+    val lines              = CallLines[Call](isUrgent = call => Simulation.isControl(call.request.method))
     val work               = AtomicBoolean()
     val counters           = PeerCounters()
+    val beside             = Beside(system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId))
     val simulator          = system.spawnAnonymous(
       Behaviors.withTimers(Running(
-        Simulation(settings, clock.now(), VoxelGrid.save),
+        Simulation(settings, clock.now()),
         counters,
         clock,
         lines,
+        beside,
         work,
         behind,
+        heldUp,
         broken
       ).behavior)
     )
     def forget(event: ServerEvent): Unit = event match
-      case ServerEvent.Closed(connection, _) => lines.forget(connection)
-      case _                                 => ()
+      case ServerEvent.Finished(connection)  => simulator ! Message.Gone(connection, isForgotten = false)
+      case ServerEvent.Closed(connection, _) =>
+        lines.forget(connection)
+        beside.forget(connection)
+        simulator ! Message.Gone(connection, isForgotten = true)
+      case _ => ()
     val bound = RpcServer.bind(transport, settings.address, settings.limits, observer = forget): request =>
       val answer = Promise[Either[String, Msg | Encoded]]()
       lines.put(request.connection, Call(request, answer))
@@ -129,7 +143,7 @@ object SimulatorServer:
             .recoverWith: error =>
               simulator ! Message.Stop
               rpc.close().transformWith(_ => Future.failed(error))
-    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters)
+    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp)
 
   private[simulator] enum Message:
     /** Calls wait. */
@@ -137,6 +151,9 @@ object SimulatorServer:
     case Wake
     case Look(answer: Promise[Truth])
     case Stop
+
+    /** A client sends no more. */
+    case Gone(connection: Long, isForgotten: Boolean)
 
     /** Peers of MAVLink, or autopilots. */
     case Joined(peer: JoinedPeer)
@@ -155,11 +172,13 @@ object SimulatorServer:
       counters: PeerCounters,
       clock: Clock,
       lines: CallLines[Call],
+      beside: Beside,
       work: AtomicBoolean,
       behind: AtomicLong,
+      heldUp: AtomicBoolean,
       broken: Promise[Throwable]
   ):
-    private val waiting                        = mutable.LongMap.empty[Promise[Either[String, Msg | Encoded]]]
+    private val waiting                        = mutable.LongMap.empty[Call]
     private var nextToken                      = 0L
     private var wakeAt                         = Option.empty[Instant]
     private val protocol: Option[PeerProtocol] =
@@ -168,9 +187,6 @@ object SimulatorServer:
     private val outs = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
-      // Drawing takes long, and must not take control's threads.
-      given ExecutionContext = context.system.dispatchers.lookup(DispatcherSelector.blocking())
-
       def goOn(): Behavior[Message] =
         takeCalls()
         for answer <- simulation.takeAnswers() do
@@ -180,6 +196,7 @@ object SimulatorServer:
             if out.offer(ByteString.fromArrayUnsafe(bytes)) == QueueOfferResult.Dropped then
               counters.dropped.incrementAndGet(): Unit
         behind.set(simulation.behind.toNanos)
+        heldUp.set(simulation.hasHeldUp)
         val now  = clock.now()
         val told = protocol.flatMap(_.nextDue).flatMap(simulation.comesTo)
         for at <- (simulation.nextWake(now) ++ told.map(_.max(now))).minOption if wakeAt.forall(at < _) do
@@ -187,8 +204,8 @@ object SimulatorServer:
           // A timer is late by up to its scheduler's tick.
           if at <= now then context.self ! Message.Wake
           else timers.startSingleTimer(Message.Wake, at.since(now).toDuration)
-        if simulation.isFree && !lines.isEmpty && work.compareAndSet(false, true) then
-          context.self ! Message.Work
+        val more = if simulation.isFree then !lines.isEmpty else lines.hasUrgent
+        if more && work.compareAndSet(false, true) then context.self ! Message.Work
         Behaviors.same
 
       def orEnd(next: => Behavior[Message]): Behavior[Message] =
@@ -212,6 +229,10 @@ object SimulatorServer:
           orEnd:
             simulation.advance(clock.now())
             answer.success(truth): Unit
+            goOn()
+        case Message.Gone(connection, isForgotten) =>
+          orEnd:
+            simulation.depart(connection, isForgotten, clock.now())
             goOn()
         case Message.Stop         => Behaviors.stopped
         case Message.Joined(peer) =>
@@ -253,23 +274,43 @@ object SimulatorServer:
       )
 
     /** Images are drawn beside the simulation, which goes on meanwhile. */
-    private def complete(
-        promise: Promise[Either[String, Msg | Encoded]],
-        result: Either[String, Msg | Encoded | DeferredResult]
-    )(using ExecutionContext): Unit = result match
-      case Left(text)                     => promise.success(Left(text))
-      case Right(drawing: DeferredResult) => promise.completeWith(Future(Right(drawing.result())))
-      case Right(value: (Msg | Encoded))  => promise.success(Right(value))
+    private def complete(call: Call, result: Either[String, Msg | Encoded | DeferredResult]): Unit =
+      result match
+        case Left(text)                     => call.answer.success(Left(text)): Unit
+        case Right(value: (Msg | Encoded))  => call.answer.success(Right(value)): Unit
+        case Right(drawing: DeferredResult) =>
+          beside.put(call.request.connection)(call.answer.complete(Try(Right(drawing.result()))): Unit)
 
     /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection.
+      * What never waits behind moves is run in any case.
       */
     private def takeCalls(): Unit =
       var left = CallsAtOnce
-      while left > 0 && simulation.isFree do
-        lines.take() match
-          case None                        => left = 0
-          case Some(Call(request, answer)) =>
-            left -= 1
-            waiting.update(nextToken, answer)
-            simulation.receive(SimulatorCall(nextToken, request.method, request.params), clock.now())
-            nextToken += 1
+      while left > 0 do
+        left -= 1
+        if simulation.isFree then
+          lines.take() match
+            case None       => left = 0
+            case Some(call) => run(call)
+        else
+          lines.takeUrgent(supersedes) match
+            case None                     => left = 0
+            case Some((call, superseded)) =>
+              superseded.foreach(_.answer.success(Right(Bool(false))))
+              run(call)
+
+    private def supersedes(call: Call, earlier: Call) = Simulation.supersedes(
+      call.request.method,
+      call.request.params,
+      earlier.request.method,
+      earlier.request.params
+    )
+
+    private def run(call: Call): Unit =
+      val Call(request, _) = call
+      waiting.update(nextToken, call)
+      simulation.receive(
+        SimulatorCall(nextToken, request.method, request.params, request.connection),
+        clock.now()
+      )
+      nextToken += 1

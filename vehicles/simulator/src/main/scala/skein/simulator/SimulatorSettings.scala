@@ -1,5 +1,6 @@
 package skein.simulator
 
+import java.nio.file.Path
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotInterface
 import skein.link.Address
@@ -24,12 +25,15 @@ enum Overload:
   *
   * @param address where it listens; port 0 takes a free one
   * @param speed of its clock against the machine's, on top of the settings' `ClockSpeed`
+  * @param patience for how long moves may hold all workers, taken together, beyond moments of 100 ms; then no
+  *   call waits behind moves any more. None: for ever, as AirSim
   * @param losesCancel asked whenever a move comes that replaces another, for tests of clients: where it says
   *   so, the other one is not cancelled. AirSim loses a cancel that comes while a move is about to begin
   * @param scene what stands in the world
   * @param mavlink where its vehicles are reached by MAVLink, too
   * @param hil which autopilots outside fly its vehicles; then they are not reached by MAVLink
   * @param kind what its multirotors are; without one, AirSim's quadrotors
+  * @param grids the folder for voxel grids that clients ask for; without one, none is written
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -41,7 +45,9 @@ final case class SimulatorSettings(
     scene: Scene = Scene.Empty,
     mavlink: Option[MavlinkSettings] = None,
     hil: Option[HilSettings] = None,
-    kind: Option[RotorcraftKind] = None
+    kind: Option[RotorcraftKind] = None,
+    patience: Option[Span] = None,
+    grids: Option[Path] = None
 ):
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")

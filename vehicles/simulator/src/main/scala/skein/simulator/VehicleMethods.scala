@@ -48,7 +48,8 @@ private[simulator] object VehicleMethods:
     many[(Pose, Boolean, String)]("simSetVehiclePose"):
       case (simulation, (pose, _, name)) =>
         simulated(simulation, name): (_, vehicle) =>
-          done(vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now))
+          within(pose.position):
+            done(vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now))
     ,
     one[String]("simGetCollisionInfo")((simulation, name) =>
       simulated(simulation, name)((_, vehicle) => answer(collision(vehicle.takeTouch())))
@@ -62,7 +63,8 @@ private[simulator] object VehicleMethods:
             CallOutcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
           else
             val turn = pose.orientation.toQuaternion
-            done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
+            within(pose.position):
+              done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
     ,
     sensor("getImuData", SensorKind.Imu, "IMU")(imu),
     sensor("getGpsData", SensorKind.Gps, "gps")(Gps.read),

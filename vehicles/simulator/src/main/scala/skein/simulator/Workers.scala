@@ -16,6 +16,8 @@ import skein.units.*
   * takes cancels the one that has just got the lock. Seen at AirSim: a burst of 8 four-second moves on two
   * vehicles' six workers holds a ping up for 4 s, one of 20 for 24 s. From these two figures is that share.
   *
+  * A client that has left holds no worker: what it asked for last goes on, until another client's move comes.
+  *
   * Pure bookkeeping: it is told the time, and the caller does what it says. What waits is bounded by who
   * calls: a server lets each connection have a limited number of requests unanswered.
   *
@@ -30,9 +32,20 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   private var busy  = 0
   private var race  = 3
 
+  /** A move that has a vehicle's lock, or waits for it. */
+  final private class Claim(val flight: Flight, val client: Long):
+    private var hasWorker = true
+    busy += 1
+
+    def isLeft: Boolean = !hasWorker
+
+    def freeWorker(): Unit =
+      if hasWorker then busy -= 1
+      hasWorker = false
+
   final private class Lock:
-    val waiting    = Queue.empty[Flight]
-    var held       = false
+    val waiting    = Queue.empty[Claim]
+    var holder     = Option.empty[Claim]
     var handoverAt = Option.empty[Instant]
 
   /** One more vehicle has a lock; the number of workers stays, as in AirSim. */
@@ -41,28 +54,67 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   /** Whether a request offered now is run at once. */
   def isFree: Boolean = busy < limit && jobs.isEmpty
 
+  /** Whether moves hold all workers. */
+  def isFull: Boolean = busy >= limit
+
   def offer(job: Job): Unit = jobs.enqueue(job)
 
-  /** The next request, if a worker is free for it. */
-  def take(): Option[Job] = Option.when(busy < limit && jobs.nonEmpty)(jobs.dequeue())
+  /** The next request, if a worker is free for it.
+    *
+    * @param isOpen whether there is one for every request
+    */
+  def take(isOpen: Boolean = false): Option[Job] =
+    Option.when((isOpen || busy < limit) && jobs.nonEmpty)(jobs.dequeue())
+
+  /** Requests that nobody wants any more, which waited for a worker. */
+  def drop(isNeedless: Job => Boolean): Vector[Job] = jobs.dequeueAll(isNeedless).toVector
 
   /** The request taken is a move: its worker is held from now on. True: it has the lock and starts. False: it
     * waits, and the vehicle's move is to be cancelled.
+    *
+    * @param client who asks
+    * @param isLeft whether it has left meanwhile
     */
-  def acquire(vehicle: Int, flight: Flight): Boolean =
-    val lock = locks(vehicle)
-    busy += 1
-    val free = !lock.held && lock.waiting.isEmpty
-    if free then lock.held = true else lock.waiting.enqueue(flight)
+  def acquire(vehicle: Int, flight: Flight, client: Long = 0, isLeft: Boolean = false): Boolean =
+    val lock  = locks(vehicle)
+    val claim = Claim(flight, client)
+    if isLeft then claim.freeWorker()
+    val free = lock.holder.isEmpty && lock.waiting.isEmpty
+    if free then lock.holder = Some(claim) else lock.waiting.enqueue(claim)
     free
 
   /** The vehicle's move has ended: its worker is free, and its lock goes to the next. */
   def release(vehicle: Int, at: Instant): Unit =
     val lock = locks(vehicle)
-    busy -= 1
-    lock.held = false
+    lock.holder.foreach(_.freeWorker())
+    lock.holder = None
     if lock.waiting.nonEmpty then
       lock.handoverAt = Some(if jobs.nonEmpty && lockIsFirst() then at else at + handover)
+
+  /** The moves that wait for the vehicle's lock do so no longer.
+    *
+    * @param all else those of clients that have left
+    */
+  def dismiss(vehicle: Int, all: Boolean): Vector[Flight] =
+    val lock = locks(vehicle)
+    dismissed(lock, claim => all || claim.isLeft)
+
+  /** A client has left: its moves hold no workers any more. Of those of a vehicle that wait for its lock only
+    * the newest stays.
+    *
+    * @return the others
+    */
+  def leave(client: Long): Vector[Flight] = locks.toVector.flatMap: lock =>
+    lock.holder.filter(_.client == client).foreach(_.freeWorker())
+    val own = lock.waiting.filter(_.client == client)
+    own.lastOption.foreach(_.freeWorker())
+    dismissed(lock, own.dropRight(1).contains)
+
+  private def dismissed(lock: Lock, which: Claim => Boolean): Vector[Flight] =
+    val gone = lock.waiting.dequeueAll(which).toVector
+    gone.foreach(_.freeWorker())
+    if lock.waiting.isEmpty then lock.handoverAt = None
+    gone.map(_.flight)
 
   private def lockIsFirst(): Boolean =
     race = (race + 5) % 8
@@ -83,7 +135,8 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
       .filter(vehicle => locks(vehicle).handoverAt.exists(_ <= at))
       .minByOption(vehicle => locks(vehicle).handoverAt)
       .map: vehicle =>
-        val lock = locks(vehicle)
+        val lock  = locks(vehicle)
+        val claim = lock.waiting.dequeue()
         lock.handoverAt = None
-        lock.held = true
-        (vehicle, lock.waiting.dequeue())
+        lock.holder = Some(claim)
+        (vehicle, claim.flight)

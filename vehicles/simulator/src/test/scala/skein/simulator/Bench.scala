@@ -15,7 +15,9 @@ final private[skein] class Bench(
     overload: Overload = Overload.AirSim,
     speed: Double = 1.0,
     scene: Scene = Scene.Empty,
-    text: String = "{}"
+    text: String = "{}",
+    grids: Option[java.nio.file.Path] = None,
+    patience: Option[Span] = None
 ):
   private val start = Instant.ofNanos(1_000_000_000L)
 
@@ -28,7 +30,9 @@ final private[skein] class Bench(
       ),
       overload = overload,
       speed = speed,
-      scene = scene
+      scene = scene,
+      grids = grids,
+      patience = patience
     ),
     start
   )
@@ -43,12 +47,20 @@ final private[skein] class Bench(
   def simulatedS: Double = simulation.world.now.since(start).toSeconds
 
   /** Calls now; the token finds the answer. */
-  def call(method: String, params: Msg*): Long =
+  def call(method: String, params: Msg*): Long = callBy(0)(method, params*)
+
+  /** As a client of this number. */
+  def callBy(client: Long)(method: String, params: Msg*): Long =
     val token = nextToken
     nextToken += 1
-    simulation.receive(SimulatorCall(token, method, params.toVector), clock)
+    simulation.receive(SimulatorCall(token, method, params.toVector, client), clock)
     collect()
     token
+
+  /** A client sends no more. */
+  def depart(client: Long): Unit =
+    simulation.depart(client, isForgotten = false, clock)
+    collect()
 
   /** Calls and expects the answer at once. */
   def now[A: Reader](method: String, params: Msg*): A =
@@ -104,8 +116,15 @@ final private[skein] class Bench(
       tell("skeinHoverAt", writeMsg(pose), Str(name))
     this
 
-  def velocityZ(vx: Double, vy: Double, z: Double, durationS: Double, name: String = "Evader"): Long =
-    call(
+  def velocityZ(
+      vx: Double,
+      vy: Double,
+      z: Double,
+      durationS: Double,
+      name: String = "Evader",
+      client: Long = 0
+  ): Long =
+    callBy(client)(
       "moveByVelocityZ",
       real(vx),
       real(vy),

@@ -78,8 +78,59 @@ class HilVehiclesSimulation extends munit.FunSuite:
     assertEquals(flown.hil.unanswered, 1L)
     flown.run(Span.ofSeconds(1))(flying(autopilot))
     // What it was late by is lost but for a few milliseconds.
-    assert((flown.up - before).toSeconds < 1.1, s"${(flown.up - before).toSeconds} s")
+    assert((flown.up - before).toSeconds < 1.2, s"${(flown.up - before).toSeconds} s")
     assert((flown.simulation.behind + flown.up).toSeconds > 3.9)
+
+  test(
+    "one silent autopilot holds the others up for a second, then time goes on, and it is waited for again"
+  ):
+    val flown  = Flown(vehicles = 2)
+    val pilots = Map(0L -> SmallAutopilot(), 1L -> SmallAutopilot(Vector3(0, 0, -3)))
+    for (channel, _) <- pilots do flown.hil.join(channel, Vector(channel.toInt + 1), isDatagrams = false)
+    def run(span: Span, silent: Long) = flown.run(span)((channel, bytes) =>
+      if channel == silent then Nil else flying(pilots(channel))(channel, bytes)
+    )
+    run(Span.ofSeconds(12), silent = -1)
+    val before = flown.up
+    run(Span.ofSeconds(6), silent = 1)
+    assertEqualsDouble((flown.up - before).toSeconds, 5, 0.1)
+    assertEquals(flown.hil.unanswered, 1L)
+    assertEqualsDouble(flown.truth(0).positionNed.z, -5, 1)
+    run(Span.ofSeconds(2), silent = -1)
+    val again = flown.up
+    run(Span.ofMillis(500), silent = 1)
+    assert((flown.up - again).toMillis <= 4, "in lockstep again")
+
+  test("an autopilot that slows time more than 150-fold is given up, though it answers each time"):
+    val flown     = Flown()
+    val autopilot = SmallAutopilot()
+    flown.hil.join(0, Vector(1), isDatagrams = false)
+    flown.run(Span.ofSeconds(1))(flying(autopilot))
+    val before   = flown.up
+    var underWay = Vector.empty[(Instant, Array[Byte])]
+    for _ <- 1 to 10_000 do
+      flown.now = flown.now + Span.ofMillis(1)
+      flown.simulation.advance(flown.now)
+      val (here, later) = underWay.partition(_._1 <= flown.now)
+      here.foreach((_, answer) => flown.hil.receive(0, answer))
+      underWay = later ++ flown.hil.take().flatMap(_.datagrams).map(bytes =>
+        (flown.now + Span.ofMillis(900), autopilot.hear(bytes))
+      )
+    assertEqualsDouble((flown.up - before).toSeconds, 8.5, 0.8)
+
+  test("an autopilot that comes again and again, answers once and is silent, slows time by little"):
+    val flown = Flown()
+    var comes = 0L
+    for _ <- 1 to 20 do
+      val autopilot = SmallAutopilot()
+      flown.hil.join(comes, Vector(1), isDatagrams = false)
+      var answered = 0
+      flown.run(Span.ofSeconds(3)): (channel, bytes) =>
+        answered += 1
+        if answered <= 5 then flying(autopilot)(channel, bytes) else Nil
+      flown.hil.leave(comes)
+      comes += 1
+    assertEqualsDouble(flown.up.toSeconds, 59, 0.5)
 
   test("answers that take 3 ms slow nothing down; those that take 6 ms slow the simulator's clock"):
     for (late, seconds) <- Seq(3.0 -> 2.0, 6.0 -> 2.0 * 4 / 6) do
@@ -199,8 +250,11 @@ class HilVehiclesSimulation extends munit.FunSuite:
       frame += 1
     assertEquals(flown.up, Span.ofSeconds(20))
     assert((flown.truth().positionNed - Vector3(1, 0, -2)).norm < 0.2, line)
-    flown.run(Span.ofSeconds(5))((_, _) => Nil)
+    flown.run(Span.ofMillis(900))((_, _) => Nil)
     assertEquals(flown.up, Span.ofSeconds(20), "nobody asked for more")
+    flown.run(Span.ofSeconds(5))((_, _) => Nil)
+    assertEqualsDouble(flown.up.toSeconds, 24.9, 0.2, "time goes on without one that is silent for a second")
+    assertEquals(flown.hil.unanswered, 1L)
 
   test("Betaflight is told the state every 2 ms, by the clock, and what is late is left out"):
     val flown = Flown(AutopilotKind.Betaflight)

@@ -38,9 +38,11 @@ object Siege:
     val attacks               = args.lift(3).fold(Attacks)(_.split(',').toSeq)
     given system: ActorSystem =
       ActorSystem("siege", ConfigFactory.parseString(AsServed).withFallback(ConfigFactory.load()))
-    val settings = SimulatorSettings(address = Address("127.0.0.1", 0), overload = Overload.Never)
-    val server   = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
-    val honest   = Honest(server.address.port)
+    val folder   = Files.createTempDirectory("siege")
+    val settings =
+      SimulatorSettings(address = Address("127.0.0.1", 0), overload = Overload.Never, grids = Some(folder))
+    val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
+    val honest = Honest(server.address.port)
     println(s"seed $seed; honest client: getMultirotorState every 5 ms; waits in ms")
     println(
       f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s " +
@@ -64,8 +66,7 @@ object Siege:
     row("nobody") { Thread.sleep(5000); "" }
     if attacks.contains("fuzz") then
       row("fuzz"):
-        val folder = Files.createTempDirectory("siege")
-        val grid   = folder.resolve("grid.binvox")
+        val grid = folder.resolve("grid.binvox")
         try
           val said = child("fuzz", server.address.port, calls, seed, grid.toString)
           s"$said; voxel grid written: ${Files.exists(grid)}; heap ${heapMiB()} MiB"

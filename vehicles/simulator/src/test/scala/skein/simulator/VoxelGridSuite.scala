@@ -64,16 +64,49 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
       assert(VoxelGrid.render(ground, Vector3.Zero, size, edge).isLeft, s"$size $edge")
 
   folder.test("a grid is written to a new file and over an older grid, and over nothing else"): folder =>
-    val grid  = VoxelGrid.render(ground, Vector3.Zero, (4, 4, 4), 1).toOption.get
-    val fresh = folder.resolve("a.binvox")
-    assert(VoxelGrid.save(fresh.toString, grid))
-    assert(VoxelGrid.save(fresh.toString, grid.take(40)))
+    val grids              = GridFolder(folder)
+    val grid               = VoxelGrid.render(ground, Vector3.Zero, (4, 4, 4), 1).toOption.get
+    def save(name: String) = grids.file(name).exists(grids.save(_)(grid))
+    val fresh              = folder.resolve("a.binvox")
+    assert(save("a.binvox"))
+    assert(grids.file(fresh.toString).exists(grids.save(_)(grid.take(40))))
     assertEquals(Files.size(fresh), 40L)
     val diary = Files.writeString(folder.resolve("diary.binvox"), "dear diary")
-    assert(!VoxelGrid.save(diary.toString, grid))
+    assert(!save("diary.binvox"))
     assertEquals(Files.readString(diary), "dear diary")
-    assert(!VoxelGrid.save(folder.resolve("profile").toString, grid))
-    val link = Files.createSymbolicLink(folder.resolve("link.binvox"), fresh)
-    assert(!VoxelGrid.save(link.toString, grid))
-    assert(!VoxelGrid.save(folder.resolve("none").resolve("a.binvox").toString, grid))
-    assert(!VoxelGrid.save("\u0000.binvox", grid))
+    Files.createSymbolicLink(folder.resolve("link.binvox"), fresh): Unit
+    assert(!save("link.binvox"))
+
+  folder.test("no client writes a file elsewhere, nor of another kind, nor more than the folder may hold"):
+    folder =>
+      val grids = GridFolder(folder)
+      for path <- Seq(
+          "/tmp/x.binvox",
+          "../x.binvox",
+          s"$folder/../x.binvox",
+          s"$folder/deep/x.binvox",
+          "deep/x.binvox",
+          "profile",
+          "",
+          "\u0000.binvox"
+        )
+      do assert(grids.file(path).isLeft, path)
+      for i <- 1 to GridFolder.Most do assert(grids.file(s"$i.binvox").exists(grids.save(_)(Array(1))))
+      assert(!grids.file("more.binvox").exists(grids.save(_)(Array(1))))
+
+  folder.test("one grid is made at a time, and a simulator without a folder makes none"): folder =>
+    val grids = GridFolder(folder)
+    val file  = grids.file("a.binvox").toOption.get
+    def both  = grids.save(file)({ grids.save(file)(Array(1)); Array(2) })
+    assert(intercept[BadArgument](both).getMessage.contains("one is made at a time"))
+    assert(grids.save(file)(Array(3)))
+    val said = Bench().error("simCreateVoxelGrid", SampleCalls.params("simCreateVoxelGrid")*)
+    assert(said.contains("--grids"), said)
+
+  test("the most cells, each within every one of the most vehicles, are a matter of some 0.1 s"):
+    val crowd = boxes(Seq.fill(256)(Vector3.Zero))
+    val begun = java.lang.management.ManagementFactory.getThreadMXBean.getCurrentThreadCpuTime
+    assert(VoxelGrid.render(crowd, Vector3.Zero, (1, 1, 1), 0.004f).isRight)
+    val spentS =
+      (java.lang.management.ManagementFactory.getThreadMXBean.getCurrentThreadCpuTime - begun) * 1e-9
+    assert(spentS < 5, s"$spentS s of processor time")

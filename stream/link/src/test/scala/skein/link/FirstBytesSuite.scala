@@ -1,0 +1,64 @@
+package skein.link
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.Await
+import scala.concurrent.duration.*
+
+class FirstBytesSuite extends munit.FunSuite:
+  import FirstBytes.*
+
+  private given system: ActorSystem = ActorSystem("first-bytes")
+  override def afterAll(): Unit     = Await.result(system.terminate(), 20.seconds): Unit
+
+  private val requests =
+    Seq(
+      "GET / HTTP/1.1\r\n",
+      "POST /x",
+      "PUT /",
+      "HEAD /",
+      "DELETE /",
+      "OPTIONS *",
+      "CONNECT a:1",
+      "TRACE /"
+    ) ++
+      Seq("PATCH /", "PRI * HTTP/2.0\r\n\r\n")
+  private val hello = ByteString(22, 3, 1, 2, 0, 1)
+
+  test("each request of HTTP is foreign as soon as its method has come, whatever the pieces"):
+    for request <- requests do
+      val method = request.indexOf(' ') + 1
+      for length <- 0 until method do
+        assertEquals(verdict(ByteString(request.take(length))), Undecided, s"'${request.take(length)}'")
+      for length <- method to request.length do
+        assert(verdict(ByteString(request.take(length))).isInstanceOf[Foreign], request.take(length))
+
+  test("TLS's first byte is foreign, and 'GETTING', 'AKKA' and a length of four bytes are not"):
+    assertEquals(verdict(hello), Foreign("a greeting of TLS"))
+    assertEquals(verdict(hello.take(1)), Foreign("a greeting of TLS"))
+    for own <- Seq(ByteString("GETTING"), ByteString("AKKA"), ByteString(0, 0, 0, 10)) do
+      assertEquals(verdict(own), Own)
+
+  test("a port that knows how its protocol begins takes nothing else, not even one byte of it"):
+    val own = Set(0xfd, 0xfe)
+    assertEquals(verdict(ByteString(0xfd), own), Own)
+    assertEquals(verdict(ByteString(0x00), own), Foreign("a first byte of 0x00"))
+    assertEquals(verdict(ByteString("G"), own), Foreign("a first byte of 0x47"))
+    assertEquals(verdict(ByteString("GET "), own), Foreign("an HTTP request (GET)"))
+    assertEquals(verdict(hello, Set(22)), Own)
+
+  private def through(pieces: ByteString*) = Await.result(
+    Source(pieces).via(guard(Address("127.0.0.1", 5))).runWith(Sink.seq).map(_.reduce(_ ++ _))(using
+      system.dispatcher
+    ),
+    20.seconds
+  )
+
+  test("the guard passes on what is its own from the first byte, and nothing of what is foreign"):
+    assertEquals(through(ByteString("G"), ByteString("ET"), ByteString("S on")), ByteString("GETS on"))
+    val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
+    assertEquals(
+      error.getMessage,
+      "connection from 127.0.0.1:5 closed: expected this port's own protocol, came an HTTP request (GET)"
+    )

@@ -1,0 +1,45 @@
+package skein.simulator
+
+import java.util.concurrent.Executor
+import java.util.concurrent.atomic.AtomicInteger
+import skein.rpc.CallLines
+
+/** Work that takes long, such as drawing, beside the simulation and on other threads than control's: at most
+  * one less at a time than the machine has processors, in rounds over the clients, so that nobody waits for
+  * all that another has asked for. What waits is bounded by the calls that a client may have unanswered.
+  *
+  * @param threads that may be blocked
+  */
+private[simulator] final class Beside(
+    threads: Executor,
+    most: Int = (Runtime.getRuntime.availableProcessors - 1).max(1)
+):
+  private val lines   = CallLines[() => Unit](share = 1, batch = 1)
+  private val running = AtomicInteger()
+
+  def put(client: Long)(work: => Unit): Unit =
+    lines.put(client, () => work)
+    start()
+
+  /** What a client has asked for and is not begun is not done. */
+  def forget(client: Long): Unit = lines.forget(client)
+
+  @annotation.tailrec
+  private def start(): Unit =
+    val now = running.get
+    if now < most then if running.compareAndSet(now, now + 1) then threads.execute(() => work()) else start()
+
+  private def next(): Option[() => Unit] = synchronized(lines.take())
+
+  private def isIdle = synchronized(lines.isEmpty)
+
+  private def work(): Unit =
+    try
+      var one = next()
+      while one.nonEmpty do
+        one.foreach(_())
+        one = next()
+    finally
+      running.decrementAndGet(): Unit
+      // Something may have come between the last look and this.
+      if !isIdle then start()

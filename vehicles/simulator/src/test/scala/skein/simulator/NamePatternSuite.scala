@@ -1,0 +1,87 @@
+package skein.simulator
+
+import java.util.regex.Pattern
+import scala.util.{Random, Try}
+
+class NamePatternSuite extends munit.FunSuite:
+
+  private def refusal(text: String): String =
+    intercept[BadArgument](NamePattern(text).matches("x")).getMessage
+
+  test("whole names are matched, as by the JDK's expressions, in 20,000 random cases"):
+    val random = Random(43)
+    val pieces =
+      Vector("a", "b", "x", ".", "[ab]", "[^a]", "[a-c]", "\\d", "\\w", "\\.", "^", "$", "\\b", "|")
+    // The JDK's are wrong about repetitions of what is empty: they are tried apart.
+    def isEmpty(part: String)          = part.contains("\\b") || Pattern.compile(part).matcher("").matches()
+    def expression(depth: Int): String =
+      val parts = Vector.fill(1 + random.nextInt(4)):
+        if depth > 0 && random.nextInt(3) == 0 then s"(${expression(depth - 1)})"
+        else pieces(random.nextInt(pieces.size))
+      parts
+        .map: part =>
+          if part.head == '|' || part == "^" || part == "$" || part == "\\b" then part
+          else if part.head == '(' && isEmpty(part) then part
+          else part + Vector("", "", "", "*", "+", "?", "*?", "{2}", "{0,2}", "{1,}")(random.nextInt(10))
+        .mkString
+    for case_ <- 1 to 20_000 do
+      val text       = expression(3)
+      val ignoreCase = random.nextBoolean()
+      val name       = Vector.fill(random.nextInt(6))("abxAB1_. " (random.nextInt(9))).mkString
+      val expected   = Pattern.compile(text, if ignoreCase then Pattern.CASE_INSENSITIVE else 0)
+      assertEquals(
+        NamePattern(text, ignoreCase).matches(name),
+        expected.matcher(name).matches(),
+        s"case $case_: /$text/ on '$name'${if ignoreCase then ", any case" else ""}"
+      )
+
+  test("60 nested repetitions, which a search with a way back never ends, are told no in linear time"):
+    for nested <-
+        Seq("(.*)*" * 60 + "x", "(a*)*" * 60 + "b", "(a|a)*" * 50 + "b", "(.?)*" * 80, "((a+)+)+" * 30)
+    do
+      val pattern = NamePattern(nested)
+      for name <- Seq("Ground", "Evader", "a" * 100) do pattern.matches(name)
+    assert(NamePattern("(^x*?\\w*?(\\w.|)*){2}").matches("bA.Aa"), "of what is empty, too")
+    assert(!NamePattern("(.*)*" * 60 + "x").matches("a" * 100))
+    assert(NamePattern("(.*)*" * 60 + "x").matches("a" * 100 + "x"))
+
+  test("what is too large, or takes too much for all names together, is refused"):
+    assertEquals(refusal("((a{99}){99}){99}"), "the regular expression takes too long")
+    assertEquals(
+      refusal("(" * 200 + ")" * 200),
+      "no regular expression: groups nested too deep at character 51"
+    )
+    val pattern = NamePattern("(a?){900}")
+    intercept[BadArgument]((1 to 100_000).foreach(_ => pattern.matches("a" * 50)))
+
+  test("what is no expression, or one that is not known here, is told with its place"):
+    for (text, why) <- Seq(
+        "("      -> "expected ')' at character 2",
+        "a)"     -> "unmatched ')' at character 2",
+        "*"      -> "nothing to repeat before '*' at character 1",
+        "[a"     -> "it ends too soon at character 3",
+        "[b-a]"  -> "a range that ends before it begins at character 5",
+        "a{2,1}" -> "a count that ends before it begins at character 7",
+        "(a)\\1" -> "references to groups are not known here at character 5",
+        "(?=a)"  -> "groups other than ( ) and (?: ) are not known here at character 2",
+        "\\q"    -> "unknown escape '\\q' at character 3",
+        "\\u12"  -> "expected 4 hexadecimal digits at character 5"
+      )
+    do assertEquals(refusal(text), s"no regular expression: $why")
+
+  test("kinds of letters have their names, and escapes their letters"):
+    assert(NamePattern("[[:alpha:]_]+\\x41\\u0042[\\d\\-]{2}").matches("ab_AB1-"))
+    assert(!NamePattern("[^\\w]").matches("a") && NamePattern("\\S\\s").matches("a "))
+
+  test("a wildcard's star stands for anything, its question mark for a letter, in any case"):
+    for (wildcard, name, is) <- Seq(
+        ("Car*", "car_12", true),
+        ("*", "", true),
+        ("?", "", false),
+        ("*a*b?", "xxaybc", true),
+        ("*a*b?", "xxayb", false),
+        ("a.c", "abc", false),
+        ("", "a", false)
+      )
+    do assertEquals(NamePattern.isLike(name, wildcard), is, s"$wildcard $name")
+    assert(Try(NamePattern.isLike("a" * 100, "*a" * 50 + "b")).toOption.contains(false))
