@@ -34,6 +34,6 @@ enum AutopilotKind(val label: String):
 
   /** Whether a datagram, or a piece of a stream, holds a message of it. */
   def speaks(bytes: Array[Byte]): Boolean = this match
-    case Px4        => FrameReader().read(bytes).nonEmpty
+    case Px4        => FrameReader.isSpoken(bytes)
     case ArduPilot  => ArduPilotInterface.isFrame(bytes)
     case Betaflight => BetaflightInterface.isPacket(bytes)

@@ -16,8 +16,8 @@ import skein.vehicle.{Airframe, Setpoint}
   * answer taken for the newest sensors', PX4's controls would be late by all of that for the rest of the
   * flight.
   *
-  * One that is given up is not waited for until it has answered for a second in time, and for longer each
-  * further time ([[Trust]]).
+  * One that is silent, or whose answers have other times, is given up: it is not waited for until it has
+  * answered for a second in time, and for longer each further time ([[Trust]]).
   *
   * @param system the number that frames are sent under
   * @param before how often an autopilot of this vehicle was given up before
@@ -32,13 +32,11 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
   private var isLockstep    = false
   private var owes          = false
   private var sensedUsec    = 0L
-  private var outdated      = 0  // answers since then, to sensors before
   private val trust         = Trust(before)
   private var answeredUsec  = 0L // the newest time answered
   private var answeredAt    = 0L // tick
   private var catchesUp     = false
   private var postponed     = 0
-  private var hasOwnClock   = false
   private var due           = Period * (from.toNanos / Period.toNanos + 1)
   private var ticks         = 0L
   private var magneticFrd   = Vector3.Zero
@@ -55,15 +53,15 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
       frame.message match
         case answer: HilActuatorControls =>
           isLockstep = (answer.flags & LockstepFlag) != 0
-          val isOutdated = answer.timeUsec < sensedUsec && !hasOwnClock
-          if isOutdated then outdated += 1
-          catchesUp ||= isOutdated && answer.timeUsec > answeredUsec
-          answeredUsec = answeredUsec.max(answer.timeUsec)
-          val isInTime = !isOutdated || answer.timeUsec >= sensedUsec - MostLateUsec
-          if isLockstep && isInTime && answeredAt != ticks then
-            answeredAt = ticks
-            trust.answered()
-          owes = isLockstep && isOutdated && trust.isGiven
+          val told     = answer.timeUsec
+          val isAbsurd = told < 0 || told > sensedUsec + PeriodUsec
+          if !isAbsurd then
+            catchesUp ||= told < sensedUsec && told > answeredUsec
+            answeredUsec = answeredUsec.max(told)
+            if isLockstep && told >= sensedUsec - MostLateUsec && answeredAt != ticks then
+              answeredAt = ticks
+              trust.answered()
+          owes = isLockstep && trust.isGiven && (owes && isAbsurd || !isAbsurd && told < sensedUsec)
           controls =
             if (answer.mode & ModeFlag.Armed) == 0 then AutopilotInterface.MotorsOff
             else AutopilotInterface.rotors(answer.controls.map(_.toDouble))
@@ -80,13 +78,11 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
 
-  /** While it catches up it is waited for, within reason. Where it has nothing more to say, the times that it
-    * tells are not those of the sensors; where it says nothing, it is given up.
-    */
+  /** While it catches up it is waited for, within reason. */
   def giveUp(): Unit =
     if catchesUp && postponed < MostPostponed then postponed += 1
     else
-      if outdated > 0 && !hasOwnClock then hasOwnClock = true else trust.lose()
+      trust.lose()
       owes = false
     catchesUp = false
 
@@ -102,7 +98,6 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
     due = due + Period
     ticks += 1
     sensedUsec = micros(truth.up)
-    outdated = 0
     postponed = 0
     if ticks - answeredAt > MostLateTicks then trust.missed()
     owes = isLockstep && trust.isGiven
@@ -210,7 +205,8 @@ object Px4Interface:
 
   /** Answers that are later than this are not in time, where time does not wait. */
   private val MostLateTicks = 25
-  private val MostLateUsec  = MostLateTicks * Period.toNanos / 1000
+  private val PeriodUsec    = Period.toNanos / 1000
+  private val MostLateUsec  = MostLateTicks * PeriodUsec
 
   /** Times that one that catches up is waited for again. */
   private val MostPostponed = 10

@@ -119,3 +119,9 @@ final class FrameReader(signing: Option[Signing] = None):
     val gap = sequences.get((system, component)).fold(0)(before => (sequence - before - 1) & 0xff)
     sequences((system, component)) = sequence
     counted = counted.copy(frames = counted.frames + 1, lost = counted.lost + gap)
+
+object FrameReader:
+  /** Whether these bytes hold a whole frame of a message that is known here, of either version. */
+  def isSpoken(bytes: Array[Byte]): Boolean =
+    val reader = FrameReader()
+    reader.read(bytes).nonEmpty || reader.counts.version1 > 0

@@ -133,4 +133,4 @@ private[simulator] object HilVehicles:
   private val Patience     = Span.ofSeconds(1)
   private val MostSlowdown = 150L
 
-  private val LongestLook = Span.ofMillis(100)
+  private val LongestLook = Span.ofMillis(500)

@@ -70,21 +70,12 @@ private[simulator] object NamePattern:
 
   private def tooHard = BadArgument("the regular expression takes too long")
 
-  /** An expression as a tree; `size` is how many instructions it takes. */
-  enum Tree(val size: Long):
-    case Letter(is: Char => Boolean)         extends Tree(1)
-    case Place(is: (String, Int) => Boolean) extends Tree(1)
-    case InOrder(parts: Vector[Tree])        extends Tree(parts.map(_.size).sum)
-    case OneOf(choices: Vector[Tree])        extends Tree(choices.map(_.size + 2).sum)
-    case Times(what: Tree, least: Int, most: Option[Int])
-        extends Tree(((what.size + 2) * most.getOrElse(least + 1).max(1)).min(1_000_000))
-
   /** Reads ECMAScript's syntax. */
   final private class Reader(text: String, ignoreCase: Boolean):
     private var at    = 0
     private var depth = 0
 
-    def all(): Tree =
+    def all(): NameTree =
       val read = choices()
       if at < text.length then wrong(s"unmatched '${text(at)}'") else read
 
@@ -103,20 +94,20 @@ private[simulator] object NamePattern:
       at += 1
       text(at - 1)
 
-    private def choices(): Tree =
+    private def choices(): NameTree =
       depth += 1
       if depth > Deepest then wrong("groups nested too deep")
       val found = ArrayBuffer(inOrder())
       while taken('|') do found += inOrder()
       depth -= 1
-      if found.size == 1 then found.head else Tree.OneOf(found.toVector)
+      if found.size == 1 then found.head else NameTree.OneOf(found.toVector)
 
-    private def inOrder(): Tree =
-      val parts = ArrayBuffer.empty[Tree]
+    private def inOrder(): NameTree =
+      val parts = ArrayBuffer.empty[NameTree]
       while at < text.length && !comes('|') && !comes(')') do parts += repeated(one())
-      Tree.InOrder(parts.toVector)
+      NameTree.InOrder(parts.toVector)
 
-    private def repeated(what: Tree): Tree =
+    private def repeated(what: NameTree): NameTree =
       val times =
         if taken('*') then Some((0, None))
         else if taken('+') then Some((1, None))
@@ -126,7 +117,7 @@ private[simulator] object NamePattern:
         // Of a whole name it is all the same whether more or less is tried first.
         val _ = taken('?')
         if "*+?{".exists(comes) then wrong(s"nothing to repeat before '${text(at)}'")
-        Tree.Times(what, least, most)
+        NameTree.Times(what, least, most)
 
     private def counts(): (Int, Option[Int]) =
       at += 1
@@ -141,32 +132,32 @@ private[simulator] object NamePattern:
       while at < text.length && text(at).isDigit && at - from < 5 do at += 1
       text.substring(from, at).toIntOption.getOrElse(wrong("expected a number"))
 
-    private def one(): Tree = next() match
+    private def one(): NameTree = next() match
       case '('  => group()
-      case '['  => Tree.Letter(oneOfSet())
-      case '.'  => Tree.Letter(c => c != '\n' && c != '\r' && c != '\u2028' && c != '\u2029')
-      case '^'  => Tree.Place((_, place) => place == 0)
-      case '$'  => Tree.Place((name, place) => place == name.length)
+      case '['  => NameTree.Letter(oneOfSet())
+      case '.'  => NameTree.Letter(c => c != '\n' && c != '\r' && c != '\u2028' && c != '\u2029')
+      case '^'  => NameTree.Place((_, place) => place == 0)
+      case '$'  => NameTree.Place((name, place) => place == name.length)
       case '\\' => escaped()
       case c @ ('*' | '+' | '?' | '{') =>
         at -= 1
         wrong(s"nothing to repeat before '$c'")
-      case c => Tree.Letter(cased(_ == c))
+      case c => NameTree.Letter(cased(_ == c))
 
-    private def group(): Tree =
+    private def group(): NameTree =
       if comes('?') && !taken("?:") then wrong("groups other than ( ) and (?: ) are not known here")
       val inside = choices()
       if !taken(')') then wrong("expected ')'") else inside
 
-    private def escaped(): Tree =
-      if taken('b') then Tree.Place(isEdge)
-      else if taken('B') then Tree.Place((name, place) => !isEdge(name, place))
+    private def escaped(): NameTree =
+      if taken('b') then NameTree.Place(isEdge)
+      else if taken('B') then NameTree.Place((name, place) => !isEdge(name, place))
       else if at < text.length && text(at) >= '1' && text(at) <= '9' then
         wrong("references to groups are not known here")
       else
-        kind().map(Tree.Letter(_)).getOrElse:
+        kind().map(NameTree.Letter(_)).getOrElse:
           val c = letter()
-          Tree.Letter(cased(_ == c))
+          NameTree.Letter(cased(_ == c))
 
     /** `\d` and its like. */
     private def kind(): Option[Char => Boolean] =

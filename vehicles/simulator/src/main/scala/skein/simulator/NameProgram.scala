@@ -1,7 +1,6 @@
 package skein.simulator
 
 import scala.collection.mutable.ArrayBuffer
-import skein.simulator.NamePattern.Tree
 
 /** A [[NamePattern]]'s tree as instructions, all ways through which are followed side by side. */
 final private[simulator] class NameProgram private (code: Array[NameProgram.Step]):
@@ -62,18 +61,18 @@ private[simulator] object NameProgram:
     case Jump(to: Int)
     case End
 
-  def of(tree: Tree): NameProgram =
+  def of(tree: NameTree): NameProgram =
     val code = ArrayBuffer.empty[Step]
 
     def fork(): Int =
       code += Step.End
       code.size - 1
 
-    def add(tree: Tree): Unit = tree match
-      case Tree.Letter(is)     => code += Step.Letter(is)
-      case Tree.Place(is)      => code += Step.Place(is)
-      case Tree.InOrder(parts) => parts.foreach(add)
-      case Tree.OneOf(choices) =>
+    def add(tree: NameTree): Unit = tree match
+      case NameTree.Letter(is)     => code += Step.Letter(is)
+      case NameTree.Place(is)      => code += Step.Place(is)
+      case NameTree.InOrder(parts) => parts.foreach(add)
+      case NameTree.OneOf(choices) =>
         val ends = choices.init.map: choice =>
           val at = fork()
           add(choice)
@@ -82,7 +81,7 @@ private[simulator] object NameProgram:
           end
         add(choices.last)
         ends.foreach(end => code(end) = Step.Jump(code.size))
-      case Tree.Times(what, least, most) =>
+      case NameTree.Times(what, least, most) =>
         for _ <- 1 to least do add(what)
         most match
           case None =>

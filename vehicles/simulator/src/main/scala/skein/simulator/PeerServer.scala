@@ -37,7 +37,7 @@ private[simulator] final case class PeerPort(
     mostPeers: Int = PeerServer.MostPeers,
     tells: Option[Address] = None,
     isOneWay: Boolean = false,
-    speaks: Array[Byte] => Boolean = FrameReader().read(_).nonEmpty
+    speaks: Array[Byte] => Boolean = FrameReader.isSpoken
 )
 
 private[simulator] object PeerPorts:

@@ -8,19 +8,19 @@ import scala.concurrent.duration.*
 import skein.hil.{AutopilotKind, SmallAutopilot}
 import skein.link.{Address, PreciseScheduler, TcpTransport}
 import skein.mavlink.{FrameWriter, Heartbeat}
-import skein.rpc.{MessageWriter, RpcClient, RpcSettings}
-import skein.testing.Waiting
+import skein.rpc.{CallOptions, MessageWriter, RpcClient, RpcSettings}
+import skein.testing.{Unhurried, Waiting}
 import skein.units.*
 import upack.*
 import upickle.default.writeMsg
 import skein.airsim.wire.YawMode
 
 /** What strangers do to the simulator's ports, over real sockets. */
-class AttackedLiveSuite extends munit.FunSuite, Waiting:
+class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
   private given system: ActorSystem = ActorSystem("attacked", PreciseScheduler.config)
 
   override def afterAll(): Unit =
-    val _ = Await.result(system.terminate(), 20.seconds)
+    val _ = Await.result(system.terminate(), 120.seconds)
 
   private val loopback = InetAddress.getLoopbackAddress
   private val free     = Address("127.0.0.1", 0)
@@ -28,31 +28,31 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting:
   private def serving[A](settings: SimulatorSettings = SimulatorSettings(address = free))(
       use: SimulatorServer => A
   ): A =
-    val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 20.seconds)
+    val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 120.seconds)
     try use(server)
     finally
-      val _ = Await.result(server.close(), 20.seconds)
+      val _ = Await.result(server.close(), 120.seconds)
 
   private def asked[A](server: SimulatorServer)(use: ((String, Seq[Msg]) => Msg) => A): A =
     val client = RpcClient(TcpTransport(), server.address, Clock.system, RpcSettings(controlConnections = 1))
     try
       use: (method, params) =>
         Await.result(
-          client.call(method, params),
-          20.seconds
+          client.call(method, params, CallOptions(timeout = Span.ofSeconds(100))),
+          120.seconds
         ).fold(error => fail(s"$method: $error"), identity)
     finally
-      val _ = Await.result(client.close(), 20.seconds)
+      val _ = Await.result(client.close(), 120.seconds)
 
   private def until(what: String)(holds: => Boolean): Unit =
-    val patience = System.nanoTime() + 20_000_000_000L
+    val patience = System.nanoTime() + 120_000_000_000L
     while !holds do
       assert(System.nanoTime() < patience, s"it never came to hold: $what")
       Thread.`yield`()
 
   private def connected(at: Address): Socket =
     val socket = Socket(loopback, at.port)
-    socket.setSoTimeout(20_000)
+    socket.setSoTimeout(120_000)
     socket
 
   /** Whether the other side ends it, without a word before. */
@@ -114,13 +114,13 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting:
       assert(server.peerStats.foreign >= 8L, s"${server.peerStats}")
 
   private def up(server: SimulatorServer) =
-    val now = Await.result(server.truth(), 20.seconds).at
+    val now = Await.result(server.truth(), 120.seconds).at
     started.getOrElseUpdate(server, now)
     now.since(started(server)).toSeconds
   private val started = scala.collection.mutable.Map.empty[SimulatorServer, Instant]
 
   private def down(server: SimulatorServer) =
-    Await.result(server.truth(), 20.seconds).vehicles.head.kinematics.positionNed.z
+    Await.result(server.truth(), 120.seconds).vehicles.head.kinematics.positionNed.z
 
   test("one expression of 328 bytes is answered, and so is everybody else"):
     serving(): server =>

@@ -177,3 +177,21 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
       case Timesync(_, 99, _, _) => true
       case _                     => false))
     assert(flown.simulation.world.multirotor(0).state.kinematics.isFinite)
+
+  for extreme <- Seq(Float.NaN, Float.PositiveInfinity, Float.NegativeInfinity, Float.MaxValue, -1e9f) do
+    test(s"commands whose numbers are all $extreme leave the vehicle's state a number"):
+      val flown = takenOff()
+      for number <- (0 to 600).toVector :+ 2500 do
+        flown.send(command(1, number, Seq.fill(7)(extreme)*))
+        flown.send(command(1, number, 1 +: Seq.fill(6)(extreme)*))
+        flown.heard = Vector.empty
+        if number % 10 == 0 then flown.run(Span.ofMillis(20))
+      flown.run(Span.ofSeconds(5))
+      assert(flown.simulation.world.multirotor(0).state.kinematics.isFinite)
+
+  test("who asks for all parameters a thousand times at once is answered no more than it could take"):
+    val flown = Flown(vehicles = 5)
+    val frame = FrameWriter(245, 190).write(ParamRequestList(0, 1))
+    flown.send(Array.fill(1000)(frame).flatten)
+    val answers = flown.heard.count(_.message.isInstanceOf[ParamValue])
+    assert(answers > 100 && answers < 5000, s"$answers answers")

@@ -1,0 +1,235 @@
+package skein.simulator
+
+import java.io.IOException
+import java.net.{DatagramPacket, DatagramSocket, InetAddress, InetSocketAddress, Socket}
+import java.util.concurrent.ConcurrentLinkedQueue
+import scala.jdk.CollectionConverters.*
+import scala.util.Random
+import skein.airsim.wire.{ImageRequest, Pose, Quaternionr, Vector3r, YawMode}
+import skein.hil.SmallAutopilot
+import skein.mavlink.{FrameWriter, Heartbeat, ParamRequestList}
+import skein.rpc.MessageWriter
+import upack.*
+import upickle.default.writeMsg
+
+/** Everything that strangers have tried on `./skein serve`, at once and for as long as is wanted, beside an
+  * honest client that asks for a vehicle's state 20 times a second: how long it waited without attackers,
+  * with them, and in the seconds after they had left.
+  *
+  * Arguments: the port of RPC, that of an autopilot (`--hil px4`) or 0, that of MAVLink by UDP (`--mavlink`)
+  * or 0, seconds of the attack, and a seed (default 1).
+  */
+object LongAttack:
+  def main(arguments: Array[String]): Unit =
+    val Array(rpc, hil, udp, seconds) = arguments.take(4).map(_.toInt): @unchecked
+    val attack                        = LongAttack(rpc, hil, udp, arguments.lift(4).fold(1L)(_.toLong))
+    val honest                        = Honest(rpc)
+    println(f"${"phase"}%-22s ${"asked"}%7s ${"p50"}%8s ${"p99"}%8s ${"max"}%8s ms  lost")
+    honest.phase("nobody", 20)
+    attack.begin()
+    for minute <- 1 to (seconds + 59) / 60 do
+      honest.phase(s"attack, minute $minute", math.min(60, seconds - (minute - 1) * 60))
+    println(attack.told)
+    attack.end()
+    for second <- 1 to 5 do honest.phase(s"second $second after", 1)
+    honest.phase("nobody", 20)
+    sys.exit(0)
+
+  private val loopback = InetAddress.getLoopbackAddress
+
+  /** Connects again whenever it is thrown out. */
+  private final class Honest(port: Int):
+    private var socket = Option.empty[Socket]
+    private var lost   = 0
+    private var id     = 0
+
+    private def ask(): Unit =
+      val one = socket.filterNot(_.isClosed).getOrElse:
+        val fresh = Socket(loopback, port)
+        fresh.setTcpNoDelay(true)
+        fresh.setSoTimeout(30_000)
+        fresh
+      socket = Some(one)
+      id += 1
+      one.getOutputStream.write(request(id -> ("getMultirotorState", Seq(Str("")))))
+      // A state is one value, and more than a few bytes; all of it is there once the last has come.
+      val in    = one.getInputStream
+      val first = in.read()
+      if first < 0 then throw IOException("closed")
+      Thread.sleep(1)
+      in.skipNBytes(in.available.toLong)
+
+    def phase(name: String, seconds: Int): Unit =
+      lost = 0
+      val waits = scala.collection.mutable.ArrayBuffer.empty[Double]
+      val end   = System.nanoTime() + seconds * 1_000_000_000L
+      while System.nanoTime() < end do
+        val begun = System.nanoTime()
+        try
+          ask()
+          waits += (System.nanoTime() - begun) * 1e-6 - 1
+        catch
+          case _: IOException =>
+            lost += 1
+            socket.foreach(_.close())
+            socket = None
+        Thread.sleep(math.max(0, 50 - (System.nanoTime() - begun) / 1_000_000))
+      val sorted            = waits.sorted
+      def at(share: Double) = if sorted.isEmpty then Double.NaN else sorted(((sorted.size - 1) * share).toInt)
+      println(f"$name%-22s ${sorted.size}%7d ${at(0.5)}%8.2f ${at(0.99)}%8.2f ${at(1)}%8.2f     $lost")
+
+  private def request(calls: (Int, (String, Seq[Msg]))*): Array[Byte] =
+    val writer = new MessageWriter
+    for (id, (method, params)) <- calls do writer.request(id, method, params)
+    writer.take().toArray
+
+final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
+  import LongAttack.{loopback, request}
+  private val held           = ConcurrentLinkedQueue[AutoCloseable]()
+  @volatile private var ends = false
+  private val rounds         = java.util.concurrent.ConcurrentHashMap[String, Long]()
+
+  def told: String =
+    rounds.asScala.toSeq.sorted.map((name, count) => s"$name $count").mkString("rounds: ", ", ", "")
+
+  def end(): Unit =
+    ends = true
+    held.forEach(_.close())
+
+  private def again(name: String, threads: Int = 1)(round: Random => Unit): Unit =
+    for thread <- 1 to threads do
+      Thread.ofPlatform().daemon().start: () =>
+        val random = Random(seed * 1000 + name.hashCode + thread)
+        while !ends do
+          try round(random)
+          catch case _: IOException => Thread.sleep(20)
+          rounds.merge(name, 1L, _ + _): Unit
+      : Unit
+
+  private def connected(port: Int): Socket =
+    val socket = Socket()
+    socket.connect(InetSocketAddress(loopback, port), 2000)
+    socket.setSoTimeout(2000)
+    held.add(socket): Unit
+    socket
+
+  private def using(port: Int)(use: Socket => Unit): Unit =
+    val socket = connected(port)
+    try use(socket)
+    finally
+      socket.close()
+      held.remove(socket): Unit
+
+  /** Sends, and waits for an answer. */
+  private def ask(socket: Socket, calls: (String, Seq[Msg])*): Unit =
+    socket.getOutputStream.write(request(calls.zipWithIndex.map((call, id) => id -> call)*))
+    socket.getInputStream.read(): Unit
+
+  private val long =
+    Seq(Float32(1), Float32(0), Float32(-5), Float32(1e6f), Int32(0), writeMsg(YawMode.Still))
+
+  def begin(): Unit =
+    val nested = Vector("(.*)*" * 60 + "x", "(a?){900}", "((a+)+)+" * 30, ".*" * 400)
+    again("patterns", 2)(random =>
+      using(rpc)(ask(_, "simListSceneObjects" -> Seq(Str(nested(random.nextInt(4))))))
+    )
+    again("grids")(random =>
+      using(rpc)(ask(
+        _,
+        "simCreateVoxelGrid" -> Seq(
+          writeMsg(Vector3r.Zero),
+          Int32(256),
+          Int32(256),
+          Int32(256),
+          Float32(1)
+        ).appended(
+          Str(s"/tmp/${random.nextInt(50)}.binvox")
+        )
+      ))
+    )
+    again("pages", 2): random =>
+      val methods = Seq("POST", "GET", "OPTIONS", "PUT")
+      val ports   = Seq(rpc, hil).filter(_ > 0)
+      using(ports(random.nextInt(ports.size))): page =>
+        val head = s"${methods(random.nextInt(4))} / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".getBytes
+        page.getOutputStream.write(head ++ request(1 -> ("simPause", Seq(Bool(true)))))
+        page.getInputStream.read(): Unit
+    again("silent", 2): _ =>
+      connected(rpc): Unit
+      Thread.sleep(5)
+    again("one word", 2): _ =>
+      ask(connected(rpc), "ping" -> Nil)
+      Thread.sleep(20)
+    again("dripping", 4): _ =>
+      using(rpc): one =>
+        for byte <- request(1 -> ("ping", Nil)) do
+          one.getOutputStream.write(byte)
+          Thread.sleep(700)
+    again("moves, and leaves")(_ =>
+      using(rpc): one =>
+        ask(one, "enableApiControl" -> Seq(Bool(true), Str("")))
+        one.getOutputStream.write(request((1 to 12).map(_ -> ("moveByVelocityZ", long :+ Str("")))*))
+        Thread.sleep(100)
+    )
+    again("moves, and stays")(_ =>
+      using(rpc): one =>
+        one.getOutputStream.write(request((1 to 12).map(_ -> ("moveByVelocityZ", long :+ Str("")))*))
+        Thread.sleep(10_000)
+    )
+    again("spawns paths"): random =>
+      using(rpc): one =>
+        val name    = Str(s"v${random.nextInt(200)}")
+        val pose    = writeMsg(Pose(Vector3r(0, random.nextInt(1000).toFloat, -5), Quaternionr(1, 0, 0, 0)))
+        val path    = Arr(Seq.fill(9000)(writeMsg(Vector3r(0, 0, -5)))*)
+        ask(one, "simAddVehicle"    -> Seq(name, Str("SimpleFlight"), pose, Str("")))
+        ask(one, "enableApiControl" -> Seq(Bool(true), name))
+        val params  =
+          Seq(path, Float32(1), Float32(1e6f), Int32(0), writeMsg(YawMode.Still), Float32(-1), Float32(1))
+        one.getOutputStream.write(request(9 -> ("moveOnPath", params :+ name)))
+        Thread.sleep(300)
+    again("images", 2)(_ =>
+      using(rpc)(ask(
+        _,
+        "simGetImages" -> Seq(
+          Arr(Seq.fill(32)(writeMsg(ImageRequest("0", 0, pixels_as_float = false, compress = true)))*),
+          Str(""),
+          Bool(false)
+        )
+      ))
+    )
+    again("deaf", 2): _ =>
+      using(rpc): one =>
+        one.getOutputStream.write(request((1 to 200).map(_ -> (
+          "simGetImage",
+          Seq(Str("0"), Int32(0), Str(""), Bool(false))
+        ))*))
+        Thread.sleep(3000)
+    again("noise", 2)(random =>
+      using(rpc)(_.getOutputStream.write(Array[Byte](0x94.toByte) ++ random.nextBytes(random.nextInt(3000))))
+    )
+    again("calls", 2)(_ =>
+      using(rpc)(one => ask(one, Seq.fill(200)("getMultirotorState" -> Seq[Msg](Str("")))*))
+    )
+    if hil > 0 then
+      again("autopilots", 2): random =>
+        using(hil): one =>
+          val autopilot = SmallAutopilot()
+          one.getOutputStream.write(autopilot.greeting)
+          val bytes = new Array[Byte](1 << 16)
+          // Answers a few times in lockstep, and then never.
+          for _ <- 1 to random.nextInt(50) do
+            val count = one.getInputStream.read(bytes)
+            if count > 0 then one.getOutputStream.write(autopilot.hear(bytes.take(count)))
+          Thread.sleep(2000)
+      again("mute autopilots")(_ => using(hil)(_ => Thread.sleep(1000)))
+    if udp > 0 then
+      again("datagrams", 2): random =>
+        val socket = DatagramSocket(0, loopback)
+        val writer = FrameWriter(200, 190)
+        val bytes  = (Heartbeat(
+          6, 8, 0, 0, 4, 3
+        ) +: Vector.fill(90)(ParamRequestList(0, 0))).flatMap(writer.write).toArray
+        for _ <- 1 to 5 do
+          socket.send(DatagramPacket(bytes, bytes.length.min(1400), loopback, udp))
+          socket.send(DatagramPacket(random.nextBytes(100), 100, loopback, udp))
+        socket.close()
