@@ -37,7 +37,9 @@ class RewriteJarsSuite extends munit.FunSuite, TemporaryFolders:
         case _                       => None
     yield called
 
-  test("jars that were rewritten once read virtual time without an agent, and their other classes stay as they were"):
+  test(
+    "jars that were rewritten once read virtual time without an agent, and their other classes stay as they were"
+  ):
     val folder = temporaryFolder()
     val scala  = jar(folder.resolve("scala.jar"), deadline, option)
     val agent  = jar(folder.resolve("agent.jar"), s"${classOf[Agent].getName.replace('.', '/')}.class")
