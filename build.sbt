@@ -51,6 +51,17 @@ lazy val root =
     .aggregate(flight, kafka, observe, torture, environment, learn, recognition, blocks, cluster, cli, python)
     .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
+    // The archive and the wheel.
+    .settings(
+      Compile / Keys.`package` / aggregate := false,
+      Compile / Keys.`package`             := {
+        val log   = streams.value.log
+        val wheel = (python / Wheel.wheel).value
+        val file  = Packaging.archive((cli / Packaging.program).value, log)
+        log.info(s"$wheel: ${wheel.length >> 20} MiB")
+        file
+      }
+    )
 
 /** What a part is published as: `skein-core` and so on. */
 def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)
@@ -271,6 +282,17 @@ lazy val cli = project.in(file("app/cli"))
       copied ++ told
     }.taskValue,
     executableScriptName := "skein",
+    Packaging.program    := {
+      val home = (ThisBuild / baseDirectory).value
+      Packaging.build(
+        stage.value,
+        home / "project" / "packaging",
+        Seq("LICENSE", "NOTICE").map(home / _),
+        (vtimeAgent / Compile / packageBin).value,
+        target.value / "package" / s"skein-${version.value}-${Packaging.platform}",
+        streams.value.log
+      )
+    },
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
     // The vector module costs no measurable time at the start.
     bashScriptExtraDefines ++= Seq(
@@ -312,7 +334,7 @@ lazy val python = project.in(file("app/python"))
   .dependsOn(cli, testing % Test)
   .settings(
     publish / skip := true,
-    Wheel.wheel    := Wheel.build(baseDirectory.value, (cli / stage).value, target.value, streams.value.log),
+    Wheel.wheel    := Wheel.build(baseDirectory.value, (cli / Packaging.program).value, target.value, streams.value.log),
     Wheel.testedWheel := Def.taskDyn {
       val (why, log) = (target.value / "no-wheel.txt", streams.value.log)
       IO.delete(Seq(why, target.value / "dist"))

@@ -3,7 +3,7 @@ import scala.sys.process.{Process, ProcessLogger}
 
 /** The Python package as one file: `./sbtw python/wheel`. */
 object Wheel {
-  val wheel: TaskKey[File] = taskKey[File]("Builds the Python package with all the jars that it runs")
+  val wheel: TaskKey[File] = taskKey[File]("Builds the Python package with Skein and a Java runtime")
   val testedWheel: TaskKey[Unit] =
     taskKey[Unit]("Builds what tests install: the wheel of now where one can be built, else why there is none")
 
@@ -25,20 +25,22 @@ object Wheel {
 
   /** @param sources
     *   with `pyproject.toml`
-    * @param stage
-    *   with `bin/skein` and `lib`
+    * @param program
+    *   what [[Packaging.build]] made
     */
-  def build(sources: File, stage: File, target: File, log: Logger): File = {
+  def build(sources: File, program: File, target: File, log: Logger): File = {
     val (copy, out) = (target / "package", target / "dist")
     IO.delete(Seq(copy, out))
     for (name <- Seq("pyproject.toml", "README.md")) IO.copyFile(sources / name, copy / name)
-    val code = sources / "src" / "skein_uav"
-    for (file <- (code ** ("*.py" || "py.typed")).get)
-      IO.copyFile(file, copy / "src" / "skein_uav" / IO.relativize(code, file).get)
+    val code = sources / "src"
+    for (file <- ((code * "*.py") +++ (code / "skein_uav" ** ("*.py" || "py.typed"))).get)
+      IO.copyFile(file, copy / "src" / IO.relativize(code, file).get)
     val home = copy / "src" / "skein_uav" / "skein"
-    IO.copyFile(stage / "bin" / "skein", home / "bin" / "skein")
-    IO.copyDirectory(stage / "lib", home / "lib")
-    val pip    = Seq("python3", "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", out.getPath, copy.getPath)
+    IO.copyDirectory(program, home, overwrite = true, preserveLastModified = true, preserveExecutable = true)
+    IO.delete(home / "lib" / ".timed") // files of a wheel have the time of their installation
+    val tag    = s"--config-settings=--build-option=--plat-name=${Packaging.wheelPlatform}"
+    val pip    =
+      Seq("python3", "-m", "pip", "wheel", "--quiet", "--no-deps", tag, "--wheel-dir", out.getPath, copy.getPath)
     val status = Process(pip, sources, "SOURCE_DATE_EPOCH" -> firstDay).!(log)
     val built  = (out ** "*.whl").get
     if (status != 0 || built.isEmpty) sys.error(s"${pip.mkString(" ")} ended with status $status")

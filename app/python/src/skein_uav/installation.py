@@ -50,7 +50,7 @@ class Installation:
 
 
 def find() -> Installation:
-    """Finds Java and Skein.
+    """Finds Skein, and Java where Skein has none of its own.
 
     Returns
     -------
@@ -61,7 +61,9 @@ def find() -> Installation:
     NotFound
         If either is missing; the message lists where it was looked for.
     """
-    return Installation(find_java(), find_home())
+    home = find_home()
+    runtime = home / "runtime"
+    return Installation(runtime if (runtime / "bin" / "java").exists() else find_java(), home)
 
 
 def find_java() -> Path:

@@ -14,9 +14,10 @@ public final class Agent {
   private Agent() {}
 
   public static void premain(String packages, Instrumentation instrumentation) {
-    var prefixes = new ArrayList<>(List.of("org/apache/pekko/", "scala/concurrent/"));
+    var prefixes = new ArrayList<>(Rewriter.PACKAGES);
     if (packages != null)
       for (var name : packages.split(",")) if (!name.isBlank()) prefixes.add(name.strip().replace('.', '/') + "/");
+    Rewriter.defineDraws();
     instrumentation.addTransformer(new Rewriter(List.copyOf(prefixes), Agent::failed));
   }
 

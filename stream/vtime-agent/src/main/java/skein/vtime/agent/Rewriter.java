@@ -38,6 +38,10 @@ import java.util.random.RandomGenerator;
 final class Rewriter implements ClassFileTransformer {
   private static final ClassDesc REDIRECT = Redirect.class.describeConstable().orElseThrow();
   private static final ClassDesc DRAWS = ClassDesc.of("skein.vtime.agent.Draws");
+
+  /** The class file of {@link #DRAWS}, which no source has. */
+  static final byte[] DRAWS_CLASS;
+
   private static final ClassDesc RANDOM = ClassDesc.of("java.util.concurrent.ThreadLocalRandom");
   private static final ClassDesc JAVA_RANDOM = ClassDesc.of("java.util.Random");
   private static final ClassDesc DURATION = ClassDesc.of("java.time.Duration");
@@ -104,7 +108,7 @@ final class Rewriter implements ClassFileTransformer {
     redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, DURATION));
     redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, CD_long, CD_int));
     redirectInstance(TIME_UNIT, "sleep", MethodTypeDesc.of(CD_void, CD_long));
-    redirectDraws();
+    DRAWS_CLASS = redirectDraws();
   }
 
   private static void redirectStatic(String owner, String name, String target, MethodTypeDesc type) {
@@ -131,9 +135,11 @@ final class Rewriter implements ClassFileTransformer {
   /**
    * {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it: by a static
    * method of a class that is made here, since all do the same.
+   *
+   * @return that class, {@link #DRAWS}
    */
-  private static void redirectDraws() {
-    var bytes = ClassFile.of().build(DRAWS, made -> {
+  private static byte[] redirectDraws() {
+    return ClassFile.of().build(DRAWS, made -> {
       made.withFlags(ClassFile.ACC_PUBLIC | ClassFile.ACC_FINAL);
       for (var draw : RandomGenerator.class.getMethods()) {
         var type = MethodType.methodType(draw.getReturnType(), draw.getParameterTypes()).describeConstable().orElseThrow();
@@ -145,8 +151,12 @@ final class Rewriter implements ClassFileTransformer {
         }
       }
     });
+  }
+
+  /** Defines the class that draws lead to, in this JVM. */
+  static void defineDraws() {
     try {
-      MethodHandles.lookup().defineClass(bytes);
+      MethodHandles.lookup().defineClass(DRAWS_CLASS);
     } catch (IllegalAccessException impossible) {
       throw new AssertionError(impossible);
     }
@@ -174,6 +184,9 @@ final class Rewriter implements ClassFileTransformer {
       Set.of(
           "sendMessage(Lorg/apache/pekko/dispatch/Envelope;)V",
           "sendSystemMessage(Lorg/apache/pekko/dispatch/sysmsg/SystemMessage;)V");
+
+  /** Packages that are always rewritten. */
+  static final List<String> PACKAGES = List.of("org/apache/pekko/", "scala/concurrent/");
 
   private final List<String> packages;
   private final BiConsumer<String, Throwable> failed;

@@ -1,0 +1,141 @@
+import java.util.zip.{ZipEntry, ZipFile, ZipOutputStream}
+import sbt.*
+import sbt.io.Using
+import scala.collection.JavaConverters.*
+import scala.sys.process.Process
+
+/** `./sbtw package`: Skein with a Java runtime of its own, for the platform on which it is made. */
+object Packaging {
+  val program: TaskKey[File] = taskKey[File]("Skein in a folder, with a runtime and an ahead-of-time cache")
+
+  private val modules = Seq(
+    "java.base",
+    "java.desktop",
+    "java.instrument",
+    "java.logging",
+    "java.management",
+    "java.naming",
+    "java.security.sasl",
+    "java.sql",
+    "jdk.incubator.vector",
+    "jdk.management",
+    "jdk.net",
+    "jdk.unsupported"
+  )
+
+  /** Where the vector module is resolved by itself, the JVM is not told to compile it specially. */
+  private val vectors = Seq(
+    "-XX:+UnlockExperimentalVMOptions",
+    "-XX:+EnableVectorSupport",
+    "-XX:+EnableVectorReboxing",
+    "-XX:+EnableVectorAggressiveReboxing"
+  )
+
+  /** The first day that a ZIP archive can tell; UTC. */
+  private val firstDay = 315532800000L
+
+  private val isMac = sys.props("os.name").startsWith("Mac")
+  private val isArm = sys.props("os.arch") == "aarch64"
+
+  /** As archives name it, and as wheels do. */
+  val (platform, wheelPlatform): (String, String) = (isMac, isArm) match {
+    case (false, false) => ("linux-x64", "linux_x86_64")
+    case (false, true)  => ("linux-arm64", "linux_aarch64")
+    case (true, false)  => ("macos-x64", "macosx_11_0_x86_64")
+    case (true, true)   => ("macos-arm64", "macosx_11_0_arm64")
+  }
+
+  /** Whether a file in a jar is a library for this platform, or no library. */
+  private def isWanted(name: String): Boolean = {
+    val path        = name.toLowerCase
+    val (os, other) = if (isMac) (Seq("darwin", "mac", "osx"), Nil) else (Seq("linux"), Seq("android", "musl"))
+    val (cpu, foreign) =
+      if (isArm) (Seq("aarch64", "arm64"), Seq("x86_64", "amd64")) else (Seq("x86_64", "amd64"), Seq("aarch64", "arm64"))
+    val isLibrary = path.matches(""".*\.(so|dll|dylib|jnilib|a)(_[a-z0-9_]+)?""")
+    // macOS has libraries for both of its processors in one file.
+    val fits = cpu.exists(path.contains) || isMac && !foreign.exists(path.contains)
+    !isLibrary || os.exists(path.contains) && fits && !other.exists(path.contains)
+  }
+
+  private val duckdb = "libduckdb_java.so"
+
+  /** Copies a jar without libraries for other platforms. DuckDB's, which it would write to a temporary file at every
+    * start, goes beside its jar, where it looks for it, too.
+    */
+  private def copyJar(from: File, lib: File): Unit = {
+    val zip = new ZipFile(from)
+    val (unwanted, wanted) = zip.entries.asScala.toSeq.partition(entry => !isWanted(entry.getName))
+    val (beside, inside)   = wanted.partition(_.getName.startsWith(duckdb))
+    if (unwanted.isEmpty && beside.isEmpty) IO.copyFile(from, lib / from.getName)
+    else
+      Using.fileOutputStream()(lib / from.getName) { stream =>
+        val out = new ZipOutputStream(stream)
+        for (entry <- inside) {
+          out.putNextEntry(new ZipEntry(entry.getName))
+          IO.transfer(zip.getInputStream(entry), out)
+          out.closeEntry()
+        }
+        out.finish()
+      }
+    for (entry <- beside) IO.transfer(zip.getInputStream(entry), lib / entry.getName)
+    zip.close()
+  }
+
+  /** Makes the folder.
+    *
+    * @param stage
+    *   with `lib`
+    * @param sources
+    *   the folder of what only this needs
+    * @param agent
+    *   rewrites jars for virtual time
+    */
+  def build(stage: File, sources: File, notices: Seq[File], agent: File, home: File, log: Logger): File = {
+    def run(in: File, command: String*): Unit = {
+      val status = Process(command, in).!(log)
+      if (status != 0) sys.error(s"${command.mkString(" ")} ended with status $status")
+    }
+    val (java, lib, runtime) = (s"${sys.props("java.home")}/bin/java", home / "lib", home / "runtime")
+    IO.delete(home)
+    IO.createDirectory(lib)
+    (stage / "lib" * "*.jar").get.foreach(copyJar(_, lib))
+    run(home, java, "-XX:+UseSerialGC", "-cp", agent.getPath, "skein.vtime.agent.RewriteJars", lib.getPath)
+    val exports = Seq("internal", "plugin").flatMap(part => Seq("--add-exports", s"jdk.jlink/jdk.tools.jlink.$part=ALL-UNNAMED"))
+    val link    = Seq("--add-modules", modules.mkString(","), "--strip-debug", "--no-header-files", "--no-man-pages")
+    run(
+      home,
+      (java +: "-XX:+UseSerialGC" +: "--add-modules=jdk.jlink" +: exports) ++
+        ((sources / "LinkRuntime.java").getPath +: link) ++ Seq("--output", runtime.getPath): _*
+    )
+
+    val jars = (lib * "*.jar").get.sortBy(_.getName)
+    jars.foreach(_.setLastModified(firstDay))
+    IO.touch(lib / ".timed")
+    val launcher = home / "bin" / "skein"
+    val words    = Map(
+      "@CONTROL@"   -> Jvm.control.mkString(" "),
+      "@OPTIONS@"   -> (Jvm.nativeAccess ++ vectors).mkString(" "),
+      "@CLASSPATH@" -> jars.map(jar => s"$$lib/${jar.getName}").mkString(":")
+    )
+    IO.write(launcher, words.foldLeft(IO.read(sources / "skein")) { case (text, (word, value)) => text.replace(word, value) })
+    launcher.setExecutable(true, false)
+    notices.foreach(notice => IO.copyFile(notice, home / notice.getName))
+
+    IO.withTemporaryDirectory { folder =>
+      val classPath = jars.map(_.getPath).mkString(":")
+      val options   = Jvm.nativeAccess ++ vectors ++ Jvm.control :+ s"-XX:AOTCacheOutput=${lib / "skein.aot"}"
+      val flight    = Seq("fly", "--clock", "virtual", "--duration", "10s")
+      run(folder, (runtime / "bin" / "java").getPath +: (options ++ Seq("-cp", classPath, "skein.cli.Main") ++ flight): _*)
+    }
+    home
+  }
+
+  /** The archive of that folder. */
+  def archive(home: File, log: Logger): File = {
+    val file   = home.getParentFile / s"${home.getName}.tar.gz"
+    val status = Process(Seq("tar", "-czf", file.getPath, home.getName), home.getParentFile).!(log)
+    if (status != 0) sys.error(s"tar ended with status $status")
+    log.info(s"$file: ${file.length >> 20} MiB")
+    file
+  }
+}
