@@ -287,7 +287,7 @@ lazy val cli = project.in(file("app/cli"))
       Packaging.build(
         stage.value,
         home / "project" / "packaging",
-        Seq("LICENSE", "NOTICE").map(home / _),
+        Seq("LICENSE", "docs/notice.md").map(home / _),
         (vtimeAgent / Compile / packageBin).value,
         target.value / "package" / s"skein-${version.value}-${Packaging.platform}",
         streams.value.log
