@@ -42,11 +42,11 @@ class NoResultSuite extends munit.FunSuite:
   ):
     for
       (clock, why) <- Seq[(Double => Double, String)](
-        (s => if s < 6 then s else 12 - s)  -> "ran back by",
-        (s => s.min(6))                     -> "stood still for",
-        (s => if s < 6 then s else s + 4)   -> "advanced by",
-        (s => if s < 6 then s else s + 1e9) -> "advanced by",
-        (s => s * 0.8)                      -> "advanced by"
+        (s => if s < 6 then s else 12 - s)  -> "the simulator's clock ",
+        (s => s.min(6))                     -> "the simulator's clock ",
+        (s => if s < 6 then s else s + 4)   -> "the simulator's clock ",
+        (s => if s < 6 then s else s + 1e9) -> "the simulator's clock ",
+        (s => s * 0.8)                      -> "the simulator's clock "
       )
     do
       val set = Report.of(Seq(paused, shown(stream)(clock)))
