@@ -42,11 +42,11 @@ class NoResultSuite extends munit.FunSuite:
   ):
     for
       (clock, why) <- Seq[(Double => Double, String)](
-        (s => if s < 6 then s else 12 - s)  -> "ran back by",
-        (s => s.min(6))                     -> "stood still for",
-        (s => if s < 6 then s else s + 4)   -> "advanced by",
-        (s => if s < 6 then s else s + 1e9) -> "advanced by",
-        (s => s * 0.8)                      -> "advanced by"
+        (s => if s < 6 then s else 12 - s, "the simulator's clock "),
+        (s => s.min(6), "the simulator's clock "),
+        (s => if s < 6 then s else s + 4, "the simulator's clock "),
+        (s => if s < 6 then s else s + 1e9, "the simulator's clock "),
+        (s => s * 0.8, "the simulator's clock ")
       )
     do
       val set = Report.of(Seq(paused, shown(stream)(clock)))
@@ -58,9 +58,9 @@ class NoResultSuite extends munit.FunSuite:
   test("a paused flight whose clock runs back, leaps or stands still is no truth"):
     for
       (clock, why) <- Seq[(Double => Double, String)](
-        (s => if s < 6 then s else 12 - s) -> "ran back by",
-        (s => s.min(3))                    -> "stood still",
-        (s => if s < 6 then s else s + 4)  -> "advanced by"
+        (s => if s < 6 then s else 12 - s, "ran back by"),
+        (s => s.min(3), "stood still"),
+        (s => if s < 6 then s else s + 4, "advanced by")
       )
     do
       assertEmpty(Report.of(Seq(shown(paused)(clock), stream)), "paused, no result: clock broken", why)

@@ -14,6 +14,7 @@ import skein.figures.ObservationFigure
 import skein.plot.Mark
 import skein.record.{Event, EventKind, Planned, Recording}
 import skein.scenario.Scenarios
+import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.{brief, fixed}
 
@@ -110,9 +111,10 @@ class TablesSuite extends munit.FunSuite:
       yield
         val north = if vehicle.role.toLowerCase == "pursuer" then distanceM(tick / 10.0) else 0.0
         val state = like.state.value.copy(positionNed = Vector3(north, 3, -20))
+        val since = Span.ofMillis(100.0 * tick)
         like.copy(
           vehicle = vehicle.name,
-          state = like.state.copy(value = state, validAt = sampled + Span.ofMillis(100.0 * tick))
+          state = Stamped(state, sampled + since, like.state.sentAt + since, like.state.receivedAt + since)
         )
     flight.copy(readings = readings)
 

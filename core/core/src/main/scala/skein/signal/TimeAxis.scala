@@ -59,7 +59,7 @@ final case class TimeAxis private (
         )
       case None => before.headOption.map: other =>
           val by = seconds(minus(other.validNanos, one.validNanos))
-          if seen.contains(one.vehicle) then differ(other, one, by)
+          if seen.get(one.vehicle).exists(_.newest.validNanos <= one.validNanos) then differ(other, one, by)
           else
             s"the simulator's clock ran back by $by between readings of ${other.vehicle} and ${one.vehicle}"
 

@@ -29,7 +29,7 @@ object NoResult:
   private def stepped(recording: Recording): Option[String] =
     val period = recording.flight.period
     recording.readings.groupBy(_.vehicle).valuesIterator.flatMap { readings =>
-      val times = readings.map(_.state.validAt).distinct
+      val times = readings.map(_.state.validAt)
       val steps = recording.decisions.count(_.vehicle == readings.head.vehicle)
       val leaps =
         for
