@@ -17,7 +17,7 @@ final case class Hunt(chaserMps: Double = 10) extends Scenario:
     PaperDuel().agents.head,
     Agent("Chaser", Role.Pursuer, MetresPerSecond(chaserMps), Vector3(0, 0, -20), Radians(0), Chase)
   )
-  private val apart = Series("distance", "m")(tracks => tracks.separationM(0, 1, _))
+  private val apart = Series.of("distance", "m", Separation)
 
   override def measures: Vector[Measure] =
     Vector(apart.mean("last 10 s", Window.Last(10)), apart.least("closest"))

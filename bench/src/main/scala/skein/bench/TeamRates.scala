@@ -4,8 +4,10 @@ import java.lang.management.ManagementFactory
 import skein.forward.{DelayTable, Delays, Engagement, LoopTiming}
 import skein.lanes.{ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.score.Judged
+import skein.policy.{Action, AgentPolicy, Fleet, Observation, PaperPursuer}
 import skein.scenario.*
 import skein.simd.WorldRandom
+import skein.units.{MetresPerSecond, Radians}
 
 /** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of one episode, and 256
   * with delays of their own, `stream` over `vpn`, 60 s, the reduced model, one thread; an agent-step is 0.1 s
@@ -30,7 +32,9 @@ object TeamRates:
       (name, draw) <-
         Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles)) ++
           // More are more operations than a formula may have.
-          Option.when(vehicles <= 32)("crossing" -> crossing(vehicles))
+          Option.when(vehicles <= 32)("crossing" -> crossing(vehicles)) ++
+          Option.when(vehicles == 2)("paper's duel" -> duel(PaperPursuer())) ++
+          Option.when(vehicles == 2)("README's chase" -> duel(Chase))
       shared <- Seq(true, false)
     do
       val candidates    = Vector.tabulate(Candidates)(draw)
@@ -62,6 +66,22 @@ object TeamRates:
 
   def crossing(vehicles: Int)(number: Int): TeamCandidate =
     candidate(Crossing(vehicles, marginM = 0.5 + 0.005 * number), Vector(Separation))
+
+  private def duel(by: AgentPolicy)(number: Int): TeamCandidate =
+    val Vector(evader, pursuer) = PaperDuel().agents: @unchecked
+    val speed                   = MetresPerSecond(8 + 0.01 * number)
+    TeamCandidate(
+      Engagement.of(Fleet(Vector(evader, pursuer.copy(speed = speed, policy = by))), DurationS),
+      Vector(Judged(Separation, Reduction.Mean, DurationS - 10))
+    )
+
+  /** As examples/chase has it. */
+  private case object Chase extends AgentPolicy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
+      val way = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
+      (Action.heading(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
 
   private def candidate(scenario: Scenario, by: Vector[Quantity]) =
     TeamCandidate(

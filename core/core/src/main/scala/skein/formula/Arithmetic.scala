@@ -1,22 +1,29 @@
 package skein.formula
 
 import java.lang.classfile.Opcode
+import scala.collection.mutable
 import skein.formula.Value.*
 
 /** What instructions compute of numbers, and the functions of formulas. A whole number or a truth that
   * depends on what is observed is a double, or 1 and 0, as far as that goes; the rest is refused.
   */
-private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing):
+private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refuse: String => Nothing):
   import Arithmetic.*
+
+  /** Seconds by the number of nanoseconds that was made of them. */
+  private val secondsOf = mutable.HashMap.empty[Node, Node]
 
   def ofTwo(opcode: Opcode, a: Value, b: Value): Value = opcode match
     case Opcode.DADD                      => Number(trace.add(number(a), number(b)))
     case Opcode.DSUB                      => Number(trace.sub(number(a), number(b)))
-    case Opcode.DMUL                      => Number(trace.mul(number(a), number(b)))
+    case Opcode.DMUL                      => Number(product(number(a), number(b)))
     case Opcode.DDIV                      => Number(trace.div(number(a), number(b)))
     case Opcode.DREM                      => refuse("% on doubles; StrictMath.IEEEremainder wraps angles")
     case Opcode.DCMPG                     => Compared(number(a), number(b), 1)
     case Opcode.DCMPL                     => Compared(number(a), number(b), -1)
+    case Opcode.LCMP if isTime(a, b)      => Compared(seconds(a), seconds(b), 1)
+    case Opcode.LADD if isTime(a, b)      => Time(trace.add(seconds(a), seconds(b)))
+    case Opcode.LSUB if isTime(a, b)      => Time(trace.sub(seconds(a), seconds(b)))
     case Opcode.LCMP                      => Whole(trace.const(long(a).compare(long(b))))
     case Opcode.LADD                      => Long(long(a) + long(b))
     case Opcode.LSUB                      => Long(long(a) - long(b))
@@ -28,6 +35,51 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
     case Opcode.LXOR                      => Long(long(a) ^ long(b))
     case _ if opcode.name.startsWith("F") => noFloats()
     case _                                => Whole(wholes(opcode, whole(a), whole(b)))
+
+  /** A number of nanoseconds times what makes seconds or milliseconds of it is not made of nanoseconds. */
+  private def product(a: Node, b: Node): Node =
+    if a.isConst && secondsOf.contains(b) then product(b, a)
+    else
+      secondsOf.get(a) match
+        case Some(seconds) if b.is(1e-9) => seconds
+        case Some(seconds) if b.is(1e-6) => trace.mul(seconds, trace.const(1e3))
+        case _                           => trace.mul(a, b)
+
+  /** Whether one of them is a length of time that depends on what is observed. */
+  private def isTime(values: Value*): Boolean = values.exists:
+    settled(_) match
+      case _: Time           => true
+      case OneOf(_, yes, no) => isTime(yes, no)
+      case _                 => false
+
+  /** Of a length of time. */
+  private def seconds(value: Value): Node = settled(value) match
+    case Time(seconds)         => seconds
+    case Long(nanos)           => trace.const(nanos * 1e-9)
+    case OneOf(holds, yes, no) => trace.where(holds, seconds(yes), seconds(no))
+    case other                 => throw IllegalStateException(s"a length of time was expected, came $other")
+
+  private def nanosOf(value: Value): Node = settled(value) match
+    case Time(seconds) =>
+      val nanos = trace.mul(seconds, trace.const(1e9))
+      secondsOf(nanos) = seconds
+      nanos
+    case OneOf(_, yes, no) if isTime(yes, no) => nanosOf(Time(seconds(value)))
+    case other                                => trace.const(long(other).toDouble)
+
+  /** As `Long.compare` orders two lengths of time, and `Double.compare` two numbers but for what is none and
+    * the signs of zeros: −1, 0 or 1.
+    */
+  def order(a: Node, b: Node): Value =
+    val others = trace.where(trace.lt(b, a), trace.const(1), trace.const(0))
+    Whole(trace.where(trace.lt(a, b), trace.const(-1), others))
+
+  def orderOf(a: Value, b: Value): Value =
+    if isTime(a, b) then order(seconds(a), seconds(b)) else Whole(trace.const(long(a).compare(long(b))))
+
+  /** The negative of a long. */
+  def opposite(value: Value): Value =
+    if isTime(value) then Time(trace.neg(seconds(value))) else Long(-long(value))
 
   /** The negative of a whole number. */
   def negated(a: Node): Node =
@@ -74,7 +126,7 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
     case Opcode.I2D                          => Number(whole(value))
     case Opcode.I2L                          => Long(known(value, "a long"))
     case Opcode.L2I                          => Whole(trace.const(long(value).toInt))
-    case Opcode.L2D                          => Number(trace.const(long(value).toDouble))
+    case Opcode.L2D                          => Number(nanosOf(value))
     case Opcode.D2I if number(value).isConst => Whole(trace.const(number(value).value.toInt))
     case Opcode.D2L if number(value).isConst => Long(number(value).value.toLong)
     case Opcode.D2I | Opcode.D2L             =>
@@ -121,39 +173,76 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
       case ("(DD)D", _, Some(op)) =>
         if !Exact(op) then strict()
         Some(Number(trace.binary(op, number(args(0)), number(args(1)))))
-      case _ if Composed(name)      => None
-      case ("(II)I" | "(I)I", _, _) => None
-      case _                        => refuse(
+      case ("(D)J", _, _) if name == "round" && number(args(0)).isConst =>
+        Some(Long(Math.round(number(args(0)).value)))
+      case _ if Composed(name)                         => None
+      case ("(II)I" | "(I)I" | "(JJ)J" | "(J)J", _, _) => None
+      case _                                           => refuse(
           s"$name is not among the functions of formulas " +
             s"(${(Unary.keys ++ Binary.keys).toSeq.sorted.mkString(", ")})"
         )
 
-  def number(value: Value): Node = decided(value) match
-    case Number(node) => node
-    case other        => throw IllegalStateException(s"a number was expected, came $other")
+  def number(value: Value): Node = settled(value) match
+    case Number(node)          => node
+    case OneOf(holds, yes, no) => trace.where(holds, number(yes), number(no))
+    case other                 => throw IllegalStateException(s"a number was expected, came $other")
 
-  def whole(value: Value): Node = decided(value) match
-    case Whole(node) => node
-    case _: Compared => refuse("it keeps the order of two numbers instead of asking for it")
-    case other       => throw IllegalStateException(s"a whole number was expected, came $other")
+  def whole(value: Value): Node = settled(value) match
+    case Whole(node)           => node
+    case OneOf(holds, yes, no) => trace.where(holds, whole(yes), whole(no))
+    case _: Compared           => refuse("it keeps the order of two numbers instead of asking for it")
+    case other                 => throw IllegalStateException(s"a whole number was expected, came $other")
 
   def long(value: Value): scala.Long = decided(value) match
     case Long(number) => number
-    case other        => throw IllegalStateException(s"a long was expected, came $other")
+    case _: Time      => refuse(
+        "it computes with a length of time that depends on what is observed; of those, formulas know sums, " +
+          "differences, comparisons and toSeconds"
+      )
+    case other => throw IllegalStateException(s"a long was expected, came $other")
 
   def known(value: Value, what: String): Int =
     val node = whole(value)
     if node.isConst then node.value.toInt else refuse(s"$what that depends on what is observed")
 
-  def decided(value: Value): Value =
-    if value == Undecided then refuse("which of two objects it is depends on what is observed") else value
+  /** The value that it is where what is assumed holds. */
+  def settled(value: Value): Value = value match
+    case OneOf(condition, yes, no) => assumed(condition) match
+        case Some(holds) => settled(if holds then yes else no)
+        case None        => value
+    case Unreadable(reason, _) => refuse(reason)
+    case _                     => value
+
+  /** The same, which must be one. */
+  def decided(value: Value): Value = settled(value) match
+    case _: OneOf => refuse("which of two objects it is depends on what is observed")
+    case one      => one
+
+  /** Whether something holds of a value. */
+  def asked(value: Value)(holds: Value => Node): Node = settled(value) match
+    case OneOf(condition, yes, no) =>
+      val (ofYes, ofNo) = (asked(yes)(holds), asked(no)(holds))
+      if ofYes == ofNo then ofYes
+      else trace.or(trace.and(condition, ofYes), trace.and(trace.not(condition), ofNo))
+    case one => holds(one)
+
+  /** One of two values that are numbers, or each other's equal. */
+  def either(condition: Node, a: Value, b: Value): Value = (a, b) match
+    case _ if a == b                                      => a
+    case (Number(x), Number(y))                           => Number(trace.where(condition, x, y))
+    case (Whole(x), Whole(y))                             => Whole(trace.where(condition, x, y))
+    case (_: Time, _: (Time | Long)) | (_: Long, _: Time) =>
+      Time(trace.where(condition, seconds(a), seconds(b)))
+    case (Boxed(x), Boxed(y)) => Boxed(either(condition, x, y))
+    case _                    => OneOf(condition, a, b)
 
   def truth(holds: Boolean): Value  = Whole(trace.const(if holds then 1 else 0))
   def truthOf(holds: Boolean): Node = if holds then trace.always else trace.never
 
-  def unboxed(value: Value): Value = decided(value) match
-    case Boxed(inner) => inner
-    case _            => refuse("a number was expected in an object")
+  def unboxed(value: Value): Value = settled(value) match
+    case Boxed(inner)          => inner
+    case OneOf(holds, yes, no) => either(holds, unboxed(yes), unboxed(no))
+    case _                     => refuse("a number was expected in an object")
 
 private object Arithmetic:
   private val Unary = Map(

@@ -11,6 +11,7 @@ import skein.formula.Value.*
   * and what the JDK and Scala do to numbers, boxes and arrays is done here.
   *
   * @param enter runs a method
+  * @param either one or another, as a condition decides
   */
 private[formula] final class Calls(
     files: ClassFiles,
@@ -18,10 +19,11 @@ private[formula] final class Calls(
     numbers: Arithmetic,
     objects: Objects,
     enter: (MethodCode, Vector[Value]) => Value,
+    either: (Node, => Value, => Value) => Value,
     refuse: String => Nothing
 ):
   import Calls.*
-  import numbers.{asNumber, decided, known, number, unboxed}
+  import numbers.{asNumber, decided, known, number, settled, unboxed}
   import objects.*
 
   def invoked(
@@ -33,9 +35,15 @@ private[formula] final class Calls(
   ): Value =
     intrinsic(owner, name, desc.descriptorString, args).getOrElse:
       val dispatches = kind == Opcode.INVOKEVIRTUAL || kind == Opcode.INVOKEINTERFACE
-      val receiver   = if kind == Opcode.INVOKESTATIC then None else Some(decided(args.head))
+      val receiver   = if kind == Opcode.INVOKESTATIC then None else Some(settled(args.head))
       if receiver.contains(Null) then refuse(s"it calls $name of nothing")
       receiver match
+        case Some(OneOf(condition, yes, no)) =>
+          either(
+            condition,
+            invoked(owner, name, desc, kind, yes +: args.tail),
+            invoked(owner, name, desc, kind, no +: args.tail)
+          )
         case Some(Made(id)) if dispatches && thing(id).isInstanceOf[Closure] =>
           val closure = thing(id).asInstanceOf[Closure]
           if closure.method == name then
@@ -101,9 +109,10 @@ private[formula] final class Calls(
     fit(answer, answers)
 
   private def fit(value: Value, to: ClassDesc): Value = value match
-    case Boxed(inner) if to.isPrimitive                => inner
-    case _: (Number | Whole | Long) if !to.isPrimitive => Boxed(value)
-    case _                                             => value
+    case Boxed(inner) if to.isPrimitive                       => inner
+    case _: (Number | Whole | Long | Time) if !to.isPrimitive => Boxed(value)
+    case OneOf(condition, yes, no) => numbers.either(condition, fit(yes, to), fit(no, to))
+    case _                         => value
 
   private def intrinsic(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
     (owner, name) match
@@ -112,6 +121,7 @@ private[formula] final class Calls(
       case (thrown, "<init>") if classOf[Throwable].isAssignableFrom(files.load(thrown)) => Some(Null)
       case ("java/lang/Object", "<init>")                                                => Some(Null)
       case ("java/lang/System", "arraycopy")                                             => copied(args)
+      case ("scala/Array$", "copy")                                                      => copied(args.tail)
       case ("scala/reflect/ClassTag$", "apply")                                          => args(1) match
           case Known(of: Class[?], _) => Some(Known(scala.reflect.ClassTag(of), None))
           case _                      => None
@@ -123,6 +133,15 @@ private[formula] final class Calls(
         Some(Null)
       case (array, "clone") if array.startsWith("[") =>
         Some(make(Elements(Vector.tabulate(lengthOf(args(0)))(element(args(0), _)))))
+      case ("java/lang/Double", "compare")     => Some(numbers.order(number(args(0)), number(args(1))))
+      case ("java/lang/Long", "compare")       => Some(numbers.orderOf(args(0), args(1)))
+      case ("java/util/Objects", "equals")     => Some(Whole(asNumber(equal(args(0), args(1)))))
+      case ("java/util/Arrays", "copyOf")      => Some(part(args(0), 0, known(args(1), "a length")))
+      case ("java/util/Arrays", "copyOfRange") =>
+        Some(part(args(0), known(args(1), "an index"), known(args(2), "an index")))
+      case ("java/lang/Double" | "java/lang/Integer" | "java/lang/Boolean" | "java/lang/Long", unboxing)
+          if unboxing.endsWith("Value") && desc.startsWith("()") =>
+        Some(unboxed(args(0)))
       case ("java/lang/Integer" | "java/lang/Long", _) if desc.forall("IJ()".contains(_)) =>
         Some(ofKnown(owner, name, desc, args))
       case ("java/lang/Double", "isNaN") =>
@@ -131,9 +150,6 @@ private[formula] final class Calls(
       case ("java/lang/Double" | "java/lang/Integer" | "java/lang/Boolean" | "java/lang/Long", "valueOf")
           if desc.length > 3 && desc(2) == ')' =>
         Some(Boxed(args(0)))
-      case ("java/lang/Double", "doubleValue") | ("java/lang/Integer", "intValue") |
-          ("java/lang/Boolean", "booleanValue") =>
-        Some(unboxed(args(0)))
       case ("scala/runtime/BoxesRunTime", "boxToDouble" | "boxToInteger" | "boxToBoolean" | "boxToLong") =>
         Some(Boxed(args(0)))
       case (
@@ -142,6 +158,28 @@ private[formula] final class Calls(
           ) =>
         Some(unboxed(args.last))
       case _ => None
+
+  private def equal(a: Value, b: Value): Node =
+    numbers.asked(a): one =>
+      numbers.asked(b): other =>
+        if one == other then trace.always
+        else if one == Null || other == Null then trace.never
+        else
+          val answer = invoked("java/lang/Object", "equals", Equals, Opcode.INVOKEVIRTUAL, Vector(one, other))
+          trace.not(trace.equal(numbers.whole(answer), trace.const(0)))
+
+  /** A new array with some elements of another, and nothing behind them. */
+  private def part(array: Value, from: Int, until: Int): Value =
+    val length = lengthOf(array)
+    def none   = if length == 0 then Null else zeroLike(element(array, 0))
+    make(Elements(Vector.tabulate(until - from): i =>
+      if from + i < length then element(array, from + i) else none))
+
+  private def zeroLike(value: Value): Value = value match
+    case _: Number => Number(trace.const(0))
+    case _: Whole  => Whole(trace.const(0))
+    case _: Long   => Long(0)
+    case _         => Null
 
   /** A static method of whole numbers that are known. */
   private def ofKnown(owner: String, name: String, desc: String, args: Vector[Value]): Value =
@@ -152,8 +190,10 @@ private[formula] final class Calls(
     val method = Class.forName(owner.replace('/', '.')).getMethod(name, types.parameterArray*)
     method.invoke(null, numbers*) match
       case number: java.lang.Long => Long(number)
-      case number                 => Whole(trace.const(Objects.wholeOf(number)))
+      case number                 => Whole(trace.const(Value.wholeOf(number)))
 
 private object Calls:
+  private val Equals = MethodTypeDesc.ofDescriptor("(Ljava/lang/Object;)Z")
+
   /** Classes of the JDK whose methods may be gone into. */
   private val Arithmetical = Set("java/lang/Math", "java/lang/StrictMath", "java/lang/Object")

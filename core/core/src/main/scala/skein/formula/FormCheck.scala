@@ -65,9 +65,10 @@ private final class PathWalk(paths: Vector[Path]):
     while i < steps.length do
       val from = if before(i) < 0 then root else found(before(i))
       found(i) = steps(i) match
-        case PathStep.Itself    => root
-        case _ if from == null  => null
-        case PathStep.Of(field) =>
+        case PathStep.Itself      => root
+        case PathStep.Argument(_) => throw IllegalArgumentException("an argument is no part of the object")
+        case _ if from == null    => null
+        case PathStep.Of(field)   =>
           if field.getDeclaringClass.isInstance(from) then field.get(from) else null
         case PathStep.At(index) =>
           if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)

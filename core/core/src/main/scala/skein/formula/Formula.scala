@@ -157,6 +157,45 @@ object Formula:
       case refused: Untraceable => Left(refused)
       case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.${method.getName}: $other"))
 
+  /** What an object's method computes of arguments that are like examples.
+    *
+    * @param descriptor of the method, as class files have it
+    * @param loader of all classes that it uses
+    * @param read what counts of the answer
+    * @return and what was read, or why it cannot be traced
+    */
+  def ofExamples[A](
+      target: AnyRef,
+      method: String,
+      descriptor: String,
+      arguments: Seq[Example],
+      loader: ClassLoader
+  )(read: (Trace, Answer) => (Vector[(String, Node)], A)): Either[Untraceable, (Formula, A)] =
+    try
+      val files  = ClassFiles(loader)
+      val trace  = Trace()
+      val lifter = Lifter(files, trace)
+      val names  = Vector.newBuilder[String]
+      var count  = 0
+      val args   = arguments.map: argument =>
+        lifter.argument(
+          argument,
+          path =>
+            names += path.toString
+            count += 1
+            trace.input(count - 1)
+        )
+      val code = files
+        .method(ClassFiles.nameOf(target.getClass), method, descriptor)
+        .getOrElse(throw Untraceable(s"${target.getClass.getName} has no method $method"))
+      val answer = lifter.call(code, Known(target, Some(Path(None, PathStep.Itself))) +: args.toVector)
+      val (outputs, came) = read(trace, skein.formula.Answer(answer, lifter))
+      val made = Formula(trace, names.result(), outputs, lifter.parameters, lifter.guards, target.getClass)
+      Right((made, came))
+    catch
+      case refused: Untraceable => Left(refused)
+      case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.$method: $other"))
+
   private val Answer = "answer"
 
   private def methodsOf(of: Class[?]): Vector[Method] =

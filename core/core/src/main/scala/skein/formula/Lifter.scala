@@ -2,6 +2,7 @@ package skein.formula
 
 import java.lang.classfile.{Opcode, TypeKind}
 import java.lang.classfile.instruction.*
+import java.lang.constant.MethodTypeDesc
 import scala.collection.mutable
 import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
@@ -18,13 +19,19 @@ import skein.formula.Value.*
 private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   import Lifter.*
 
-  private val numbers: Arithmetic  = Arithmetic(trace, refuse)
+  private val assumptions          = Assumptions()
+  private val numbers: Arithmetic  = Arithmetic(trace, assumptions, refuse)
   private val objects: Objects     = Objects(files, trace, numbers, refuse)
-  private val invocations: Calls   = Calls(files, trace, numbers, objects, call, refuse)
+  private val invocations: Calls   = Calls(files, trace, numbers, objects, call, bothCalls, refuse)
   private var steps                = 0
   private var calls: List[Calling] = Nil
+
+  // Where what was called answered last, until the method itself has answered.
+  private var answeredAt = ""
+  private var isDone     = false
   import numbers.*
-  export objects.{guards, make, parameters, thing}
+  export objects.{argument, element, fieldOf, guards, lengthOf, make, parameters, thing}
+  export numbers.settled
 
   /** What the method answers to these arguments, its object first unless it is static. */
   def call(code: MethodCode, args: Vector[Value]): Value =
@@ -39,12 +46,50 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       case End.Returned(value) => value
       case End.Reached         => throw IllegalStateException(s"${code.name} ended without returning")
     calls = calls.tail
+    isDone |= calls.isEmpty
     answer
 
-  /** Refuses, naming the innermost place that is not a library's. */
+  /** Calls a method of an object without arguments. */
+  def get(of: Value, name: String, answers: String): Value =
+    invocations.invoked(
+      "java/lang/Object",
+      name,
+      MethodTypeDesc.ofDescriptor(s"()$answers"),
+      Opcode.INVOKEVIRTUAL,
+      Vector(of)
+    )
+
+  /** The class of an object. */
+  def classOf(value: Value): Option[String] = objects.classOfThing(value)
+
+  /** A number, in an object or not. */
+  def numberOf(value: Value): Node = flat(value) match
+    case node: Number => node.node
+    case _            => refuse("it answers with something else than a number")
+
+  /** The same of an integer or a truth. */
+  def wholeOf(value: Value): Node = flat(value) match
+    case Whole(node) => node
+    case _           => refuse("it answers with something else than a whole number")
+
+  private def flat(value: Value): Value = settled(value) match
+    case Boxed(inner)              => flat(inner)
+    case OneOf(condition, yes, no) => either(condition, flat(yes), flat(no))
+    case one                       => one
+
+  /** Whether a value is this one. */
+  def isKnown(value: Value, what: AnyRef): Boolean = flat(value) match
+    case Known(other, _) => other == what
+    case Whole(node)     => node.isConst && what != null && node.value == Value.wholeOf(what)
+    case Long(number)    => what == java.lang.Long.valueOf(number)
+    case _               => false
+
+  /** Refuses, naming the innermost place that is not a library's; behind the end of the method, the place
+    * where it answered.
+    */
   def refuse(reason: String): Nothing =
     val own = calls.find(call => !ClassFiles.isLibrary(call.code.owner))
-    throw Untraceable(reason, own.fold("")(call => call.code.where(call.at)))
+    throw Untraceable(reason, own.fold(answeredAt)(call => call.code.where(call.at)))
 
   private def run(frame: Frame, from: Int, stop: Int): End =
     val code = frame.calling.code
@@ -68,6 +113,8 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
               end = both(frame, taken, target, at, meet)
               at = meet
           case returning: ReturnInstruction =>
+            if !isDone && calls.sizeIs > 1 && !ClassFiles.isLibrary(code.owner) then
+              answeredAt = code.where(at)
             end = Some(End.Returned(if returning.typeKind == TypeKind.VOID then Null else frame.pop()))
           case switch: TableSwitchInstruction =>
             at = code.at(target(frame, switch.defaultTarget, switch.cases.asScala))
@@ -91,11 +138,11 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       refuse("a loop whose end depends on what is observed: give it a fixed number of rounds")
     val before    = objects.now
     val (yes, no) = (frame.copy, frame.copy)
-    val ended     = run(yes, target, meet)
+    val ended     = assumptions.under(taken, holds = true)(run(yes, target, meet))
     val after     = objects.now
     objects.backTo(before)
     frame.calling.at = at
-    val otherwise = run(no, at + 1, meet)
+    val otherwise = assumptions.under(taken, holds = false)(run(no, at + 1, meet))
     frame.calling.open -= at
     frame.calling.at = at
     val merged = objects.Merge(taken, before, after)
@@ -110,6 +157,18 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
         merged.things()
         None
       case _ => throw IllegalStateException(s"ways of ${frame.calling.code.name} do not meet")
+
+  /** What one call or another one answers. */
+  private def bothCalls(condition: Node, yes: => Value, no: => Value): Value =
+    val before = objects.now
+    val ofYes  = assumptions.under(condition, holds = true)(yes)
+    val after  = objects.now
+    objects.backTo(before)
+    val ofNo   = assumptions.under(condition, holds = false)(no)
+    val merged = objects.Merge(condition, before, after)
+    val answer = merged.value(ofYes, ofNo)
+    merged.things()
+    answer
 
   private def step(frame: Frame, instruction: java.lang.classfile.Instruction): Unit = instruction match
     case load: LoadInstruction           => frame.push(frame.locals(load.slot))
@@ -145,15 +204,16 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       frame.push(make(Elements(Vector.fill(length(frame))(zero))))
     case _: NewReferenceArrayInstruction => frame.push(make(Elements(Vector.fill(length(frame))(Null))))
     case _: ArrayLoadInstruction         =>
-      val index = known(frame.pop(), "an index")
-      frame.push(objects.element(frame.pop(), index))
+      val index = whole(frame.pop())
+      frame.push(objects.elementAt(frame.pop(), index))
     case _: ArrayStoreInstruction =>
       val value = frame.pop()
       val index = known(frame.pop(), "an index")
       objects.update(frame.pop(), index, value)
     case check: TypeCheckInstruction =>
       if check.opcode == Opcode.INSTANCEOF then
-        frame.push(truth(objects.isA(frame.pop(), check.`type`.asInternalName)))
+        val kind = check.`type`.asInternalName
+        frame.push(Whole(asNumber(asked(frame.pop())(each => truthOf(objects.isA(each, kind))))))
     case _: NopInstruction => ()
     case other => refuse(s"${other.opcode.name.toLowerCase(java.util.Locale.ROOT)} is not arithmetic")
 
@@ -172,7 +232,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     case Opcode.ARRAYLENGTH => frame.push(Whole(trace.const(objects.lengthOf(frame.pop()))))
     case Opcode.DNEG        => frame.push(Number(trace.neg(number(frame.pop()))))
     case Opcode.INEG        => frame.push(Whole(negated(whole(frame.pop()))))
-    case Opcode.LNEG        => frame.push(Long(-long(frame.pop())))
+    case Opcode.LNEG        => frame.push(opposite(frame.pop()))
     case Opcode.LSHL | Opcode.LSHR | Opcode.LUSHR =>
       val by    = known(frame.pop(), "a shift")
       val value = long(frame.pop())
@@ -189,14 +249,16 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   private def condition(frame: Frame, opcode: Opcode): Node =
     opcode match
       case Opcode.GOTO | Opcode.GOTO_W         => trace.always
-      case Opcode.IFNULL                       => truthOf(decided(frame.pop()) == Null)
-      case Opcode.IFNONNULL                    => truthOf(decided(frame.pop()) != Null)
+      case Opcode.IFNULL                       => asked(frame.pop())(each => truthOf(each == Null))
+      case Opcode.IFNONNULL                    => asked(frame.pop())(each => truthOf(each != Null))
       case Opcode.IF_ACMPEQ | Opcode.IF_ACMPNE =>
-        val (b, a) = (decided(frame.pop()), decided(frame.pop()))
-        val same   = (a, b) match
-          case (Known(x, _), Known(y, _)) => x eq y
-          case _                          => a == b
-        truthOf(same == (opcode == Opcode.IF_ACMPEQ))
+        val (b, a) = (frame.pop(), frame.pop())
+        asked(a): one =>
+          asked(b): other =>
+            val same = (one, other) match
+              case (Known(x, _), Known(y, _)) => x eq y
+              case _                          => one == other
+            truthOf(same == (opcode == Opcode.IF_ACMPEQ))
       case Opcode.IFEQ | Opcode.IFNE | Opcode.IFLT | Opcode.IFGE | Opcode.IFGT | Opcode.IFLE =>
         frame.pop() match
           case Compared(a, b, nan) => ofComparison(opcode, a, b, nan)
@@ -262,4 +324,8 @@ private[formula] object Lifter:
       top
     def pop(count: Int): Vector[Value] = Vector.fill(count)(pop()).reverse
 
-  private def isWide(value: Value) = value.isInstanceOf[Number] || value.isInstanceOf[Long]
+  private def isWide(value: Value): Boolean = value match
+    case _: (Number | Long | Time) => true
+    case OneOf(_, one, _)          => isWide(one)
+    case Unreadable(_, isWide)     => isWide
+    case _                         => false

@@ -16,12 +16,16 @@ private[formula] final class Objects(
     refuse: String => Nothing
 ):
   import Objects.*
-  import numbers.{decided, known, noFloats}
+  import numbers.{decided, known, noFloats, settled}
 
   private var heap   = Map.empty[Int, Thing]
   private var made   = 0
   private val params = mutable.LinkedHashMap.empty[Path, Node]
   private val alike  = mutable.LinkedHashMap.empty[Guard, Unit]
+
+  // Of the arguments' examples: what stands for their numbers, and what is not to be read of them.
+  private val inputs  = mutable.HashMap.empty[Path, Node]
+  private val unknown = mutable.HashMap.empty[String, String]
 
   /** What was changed after it was made, each time. */
   private val changed = mutable.ArrayBuffer.empty[Int]
@@ -38,6 +42,15 @@ private[formula] final class Objects(
     made += 1
     heap += made -> thing
     Made(made)
+
+  /** An argument by its example.
+    *
+    * @param input makes the input for a number
+    */
+  def argument(of: Example, input: Path => Node): Value =
+    for leaf <- of.shape.leaves do inputs(leaf.path) = input(leaf.path)
+    unknown ++= of.refused
+    held(of.value, Some(of.root), classOf[Object])
 
   private def change(id: Int, thing: Thing): Unit =
     heap += id -> thing
@@ -73,12 +86,9 @@ private[formula] final class Objects(
             case (one, other)             => one.orElse(other).get)
         .toMap
 
-    def value(a: Value, b: Value): Value = (a, b) match
-      case _ if a == b            => a
-      case (Number(x), Number(y)) => Number(trace.where(condition, x, y))
-      case (Whole(x), Whole(y))   => Whole(trace.where(condition, x, y))
-      case (Boxed(x), Boxed(y))   => Boxed(value(x, y))
-      case _                      => pairs.getOrElseUpdate((a, b), ofThings(a, b))
+    def value(a: Value, b: Value): Value = numbers.either(condition, a, b) match
+      case _: OneOf => pairs.getOrElseUpdate((a, b), ofThings(a, b))
+      case one      => one
 
     private def ofThings(a: Value, b: Value): Value = (thingOf(a, yes), thingOf(b, no)) match
       case (Some(one), Some(other)) =>
@@ -90,13 +100,13 @@ private[formula] final class Objects(
             make(Thing.Either(of, fields(x, y)))
           case (Elements(x, _), Elements(y, _)) if x.size == y.size =>
             make(Elements(x.zip(y).map(value), isFrozen = true))
-          case _ => Undecided
-      case _ => Undecided
+          case _ => OneOf(condition, a, b)
+      case _ => OneOf(condition, a, b)
 
     /** What was made; or, of a case class of doubles that was there before, the same. */
     private def thingOf(of: Value, in: Map[Int, Thing]): Option[Thing] = of match
-      case Made(id)                                        => Some(in(id))
-      case Known(what, path) if isOfDoubles(what.getClass) =>
+      case Made(id)                                                                        => Some(in(id))
+      case Known(what, path) if !path.exists(_.isOfArgument) && isOfDoubles(what.getClass) =>
         val fields = doublesOf(what.getClass).map: field =>
           val way = path.map(before => Path(Some(before), PathStep.Of(field)))
           field.getName -> held(open(field).get(what), way, field.getType)
@@ -134,8 +144,9 @@ private[formula] final class Objects(
       refuse(s"it reads the variable $name, which everybody shares")
     held(open(field).get(null), None, field.getType)
 
-  def fieldOf(of: Value, name: String, kind: ClassDesc): Value = decided(of) match
-    case Made(id) => heap(id) match
+  def fieldOf(of: Value, name: String, kind: ClassDesc): Value = settled(of) match
+    case OneOf(condition, yes, no) => one(condition, fieldOf(yes, name, kind), fieldOf(no, name, kind))
+    case Made(id)                  => heap(id) match
         case Record(_, fields)       => fields.getOrElse(name, zeroOf(kind))
         case Thing.Either(_, fields) => fields.getOrElse(name, zeroOf(kind))
         case _                       => refuse(s"it reads $name of an array or a closure")
@@ -146,10 +157,20 @@ private[formula] final class Objects(
         )
       then
         refuse(s"it reads the variable $name; a formula's object has values alone")
-      val value = open(field).get(what)
-      held(value, path.map(way => Path(Some(way), PathStep.Of(field))), field.getType)
+      val refused =
+        path.filter(_.isOfArgument).flatMap(_ =>
+          unknown.get(s"${field.getDeclaringClass.getSimpleName}.$name")
+        )
+      refused match
+        case Some(reason) => Unreadable(reason, field.getType == classOf[scala.Long])
+        case None         =>
+          val value = open(field).get(what)
+          held(value, path.map(way => Path(Some(way), PathStep.Of(field))), field.getType)
     case Null => refuse(s"it reads $name of nothing")
     case _    => refuse(s"it reads $name of a number")
+
+  /** One of two values of now. */
+  private def one(condition: Node, a: Value, b: Value): Value = Merge(condition, now, now).value(a, b)
 
   private def zeroOf(kind: ClassDesc): Value = kind.descriptorString match
     case "D"                      => Number(trace.const(0))
@@ -176,7 +197,27 @@ private[formula] final class Objects(
 
   /** What an object that was there before holds. */
   private def held(value: AnyRef, path: Option[Path], kind: Class[?]): Value =
-    def alikeIn(expected: Any): Unit = path.foreach(way => alike(Guard(way, expected)) = ())
+    def alikeIn(expected: Any): Unit = path.foreach(way => guard(way, expected))
+    path.flatMap(inputs.get).fold(heldItself(value, path, kind, alikeIn)): node =>
+      val number = value match
+        case _: java.lang.Double  => Number(node)
+        case _: java.lang.Long    => Time(node)
+        case _: java.lang.Boolean =>
+          val isSet = trace.not(trace.equal(node, trace.const(0)))
+          Whole(numbers.asNumber(isSet))
+        case _ => Whole(node)
+      if kind.isPrimitive then number else Boxed(number)
+
+  /** Of an argument its example says already what is alike. */
+  private def guard(way: Path, expected: Any): Unit =
+    if !way.isOfArgument then alike(Guard(way, expected)) = ()
+
+  private def heldItself(
+      value: AnyRef,
+      path: Option[Path],
+      kind: Class[?],
+      alikeIn: Any => Unit
+  ): Value =
     value match
       case null                     => alikeIn(null); Null
       case number: java.lang.Double =>
@@ -198,8 +239,17 @@ private[formula] final class Objects(
       case text: String => alikeIn(text); Known(text, None)
       case other        => alikeIn(other.getClass); Known(other, path)
 
-  def element(array: Value, index: Int): Value = decided(array) match
-    case Made(id) => heap(id) match
+  /** The element of an index that is known, or chosen among known ones. */
+  def elementAt(array: Value, index: Node): Value =
+    if index.isConst then element(array, index.value.toInt)
+    else if index.op == Op.Where then
+      val Vector(condition, yes, no) = index.args
+      one(condition, elementAt(array, yes), elementAt(array, no))
+    else refuse("an index that depends on what is observed")
+
+  def element(array: Value, index: Int): Value = settled(array) match
+    case OneOf(condition, yes, no) => one(condition, element(yes, index), element(no, index))
+    case Made(id)                  => heap(id) match
         case Elements(values, _) if values.indices.contains(index) => values(index)
         case Elements(values, _) => refuse(s"index $index of an array of ${values.size}")
         case _                   => refuse("an element of what is no array")
@@ -213,25 +263,31 @@ private[formula] final class Objects(
   def update(array: Value, index: Int, value: Value): Unit = decided(array) match
     case Made(id) => heap(id) match
         case Elements(values, false) if values.indices.contains(index) =>
-          val fitting = (values(index), value) match
-            case (_: (Number | Whole | Long), Boxed(inner)) => inner
-            case _                                          => value
-          change(id, Elements(values.updated(index, fitting)))
+          change(id, Elements(values.updated(index, fitting(values(index), value))))
         case Elements(values, false) => refuse(s"index $index of an array of ${values.size}")
         case _                       => refuse("it changes one of two arrays, as a condition decides")
     case _ => refuse("it changes an array that was there before; a formula changes nothing")
 
-  def inObject(value: Value): Value = value match
-    case _: (Number | Whole | Long) => Boxed(value)
-    case _                          => value
+  /** A value as an array holds it in the place of another. */
+  private def fitting(before: Value, value: Value): Value = (before, value) match
+    case (_: (Number | Whole | Long | Time), Boxed(inner)) => inner
+    case (_: (Number | Whole | Long | Time), _)            => value
+    case _                                                 => inObject(value)
 
-  def lengthOf(array: Value): Int = decided(array) match
+  def inObject(value: Value): Value = value match
+    case _: (Number | Whole | Long | Time) => Boxed(value)
+    case _                                 => value
+
+  def lengthOf(array: Value): Int = settled(array) match
+    case OneOf(_, yes, no) =>
+      val length = lengthOf(yes)
+      if lengthOf(no) == length then length else refuse("a length that depends on what is observed")
     case Made(id) => heap(id) match
         case Elements(values, _) => values.size
         case _                   => refuse("the length of what is no array")
     case Known(what, path) if what.getClass.isArray =>
       val size = java.lang.reflect.Array.getLength(what)
-      path.foreach(way => alike(Guard(way, Guard.Length(size))) = ())
+      path.foreach(way => guard(way, Guard.Length(size)))
       size
     case _ => refuse("the length of what is no array")
 
@@ -244,6 +300,7 @@ private[formula] final class Objects(
     case Known(what, _)   => Some(ClassFiles.nameOf(what.getClass))
     case Boxed(Number(_)) => Some("java/lang/Double")
     case Boxed(Whole(_))  => Some("java/lang/Integer")
+    case Boxed(_)         => Some("java/lang/Long")
     case _                => None
 
   def isA(value: Value, name: String): Boolean = decided(value) match
@@ -257,13 +314,13 @@ private[formula] final class Objects(
     case other          =>
       classOfThing(other).exists(own => files.load(name).isAssignableFrom(files.load(own)))
 
-  /** What `System.arraycopy` does. */
+  /** What `System.arraycopy` does, and Scala's `Array.copy`, which puts numbers into objects. */
   def copied(args: Vector[Value]): Option[Value] =
     val Vector(fromAt, toAt, count) = Vector(1, 3, 4).map(i => known(args(i), "an index"))
     decided(args(2)) match
       case Made(id) => heap(id) match
           case Elements(values, false) =>
-            val copy = Vector.tabulate(count)(i => element(args(0), fromAt + i))
+            val copy = Vector.tabulate(count)(i => fitting(values(toAt + i), element(args(0), fromAt + i)))
             change(id, Elements(values.patch(toAt, copy, count)))
             Some(Null)
           case _ => refuse("it changes one of two arrays, as a condition decides")
@@ -283,12 +340,6 @@ private[formula] object Objects:
   private def isOfDoubles(kind: Class[?]): Boolean =
     classOf[Product].isAssignableFrom(kind) && kind.getSuperclass == classOf[Object] &&
       doublesOf(kind).forall(each => each.getType == classOf[Double] || isOfDoubles(each.getType))
-
-  def wholeOf(simple: AnyRef): Int = simple match
-    case number: java.lang.Number       => number.intValue
-    case truth: java.lang.Boolean       => if truth then 1 else 0
-    case character: java.lang.Character => character.charValue.toInt
-    case other                          => throw IllegalArgumentException(other.toString)
 
 /** What an object must have at the end of a way: a class, a number, nothing, or a [[Guard.Length]]. */
 private[formula] final case class Guard(path: Path, expected: Any)

@@ -12,8 +12,11 @@ private[formula] object Value:
   /** An int or smaller, or a boolean as 1 or 0; known if its node is a constant. */
   final case class Whole(node: Node) extends Value
 
-  /** A long, which must be known. */
+  /** A long that is known. */
   final case class Long(value: scala.Long) extends Value
+
+  /** A long that depends on what is observed: a length of time in nanoseconds, by its seconds. */
+  final case class Time(seconds: Node) extends Value
 
   /** What `dcmpg` and `dcmpl` leave.
     *
@@ -34,8 +37,21 @@ private[formula] object Value:
   final case class Boxed(value: Value) extends Value
   case object Null                     extends Value
 
-  /** One of two objects that cannot be made one. */
-  case object Undecided extends Value
+  /** What may be passed on, and not looked at.
+    *
+    * @param isWide whether it is a long or a double
+    */
+  final case class Unreadable(reason: String, isWide: Boolean) extends Value
+
+  /** One of two values that cannot be made one, as a condition decides. */
+  final case class OneOf(condition: Node, yes: Value, no: Value) extends Value
+
+  /** An int or smaller, or a truth as 1 or 0. */
+  def wholeOf(simple: AnyRef): Int = simple match
+    case number: java.lang.Number       => number.intValue
+    case truth: java.lang.Boolean       => if truth then 1 else 0
+    case character: java.lang.Character => character.charValue.toInt
+    case other                          => throw IllegalArgumentException(other.toString)
 
 /** What was made while tracing. */
 private[formula] enum Thing:
@@ -54,12 +70,17 @@ private[formula] object Thing:
 
 /** A way from an object to a number or object inside of it. */
 private[formula] final case class Path(before: Option[Path], step: PathStep):
+  /** Whether it begins at an argument's example, not at the object whose method is traced. */
+  val isOfArgument: Boolean = before.fold(step.isInstanceOf[PathStep.Argument])(_.isOfArgument)
+
   override def toString: String = before.fold("")(_.toString) + (step match
-    case PathStep.At(index) => s"($index)"
-    case PathStep.Of(field) => (if before.isEmpty then "" else ".") + field.getName
-    case PathStep.Itself    => "")
+    case PathStep.At(index)      => s"($index)"
+    case PathStep.Of(field)      => (if before.isEmpty then "" else ".") + field.getName
+    case PathStep.Argument(name) => name
+    case PathStep.Itself         => "")
 
 private[formula] enum PathStep:
   case Itself
+  case Argument(name: String)
   case Of(field: Field)
   case At(index: Int)

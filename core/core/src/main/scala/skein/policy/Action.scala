@@ -42,6 +42,30 @@ object Action:
       down
     )
 
+  /** Slower than this, a velocity has no direction, m/s. */
+  val LeastMps: Double = 1e-9
+
+  extension (action: Action)
+    /** Rad: where it flies, or else where it looks; the heading before where it says neither. It is what
+      * others know as the heading commanded last.
+      */
+    def headingRad(beforeRad: Double): Double = action match
+      case Action.Velocity(velocity, _)         => along(velocity.x, velocity.y, beforeRad)
+      case Action.VelocityAt(north, east, _, _) => along(north, east, beforeRad)
+      case Action.Turn(Yaw.Towards(heading))    => heading.value
+      case Action.Attitude(_, _, yaw, _)        => yaw.value
+      case Action.Position(_, _, _) | Action.Turn(_) | Action.Hover | Action.Land => beforeRad
+
+    /** Horizontal; 0 where it says none. */
+    def speed: MetresPerSecond = MetresPerSecond(action match
+      case Action.Velocity(velocity, _)         => StrictMath.hypot(velocity.x, velocity.y)
+      case Action.VelocityAt(north, east, _, _) => StrictMath.hypot(north, east)
+      case _                                    => 0)
+
+  private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
+    if StrictMath.hypot(northMps, eastMps) < LeastMps then beforeRad
+    else StrictMath.atan2(eastMps, northMps)
+
 /** What an action does with the vehicle's yaw. */
 enum Yaw:
   /** Keeps it. */

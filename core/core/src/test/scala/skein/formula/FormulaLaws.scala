@@ -19,6 +19,7 @@ class FormulaLaws extends munit.FunSuite:
     "counting"    -> (x => Operators.counting(x(0), x(1))),
     "loops"       -> (x => Operators.loops(x(0), x(1))),
     "objects"     -> (x => Operators.objects(x(0), x(1))),
+    "chosen"      -> (x => Operators.chosen(x(0), x(1))),
     "early"       -> (x => Operators.early(x(0), x(1)))
   )
 
@@ -73,6 +74,12 @@ class FormulaLaws extends munit.FunSuite:
       assert(refused.where.contains("FormulaLaws.scala:"), refused.getMessage)
 
 object FormulaLaws:
+  enum Shape:
+    case Round(radius: Double)
+    case Square(side: Double)
+    case Flat
+  import Shape.*
+
   object Operators:
     def arithmetic(a: Double, b: Double): Double = (a + b) * (a - b) / (b + 3) - -a * 1.0
     def roots(a: Double, b: Double): Double      = math.sqrt(math.abs(a)) + StrictMath.hypot(a, b)
@@ -106,6 +113,15 @@ object FormulaLaws:
       val near   = if a > b then far * 0.5 else Vector3(b, a, 0)
       val (x, y) = (near.x - far.y, near.norm)
       Some(x).map(_ + y).get
+    def chosen(a: Double, b: Double): Double =
+      val found  = if a > 0 then Some(a) else None
+      val shape  = if b > a then Round(b) else if b > 0 then Square(a) else Flat
+      val of     = Vector(a, b, a - b)(if a > b then 2 else 0)
+      val scaled = shape match
+        case Round(radius) => radius * 3
+        case Square(side)  => side * side
+        case Flat          => -1
+      found.getOrElse(b) + scaled + of
     def early(a: Double, b: Double): Double =
       if a < 0 then return b
       if b < 0 then return a
@@ -121,7 +137,10 @@ object FormulaLaws:
       var x = a
       while x > 1 do x /= 2
       x
-    def index(a: Double): Double  = Array(1.0, 2.0)(if a > 0 then 1 else 0)
+    def index(a: Double): Double =
+      var above = 0
+      for bound <- 0 until 3 do if a > bound then above += 1
+      Array(1.0, 2.0, 3.0, 4.0)(above)
     def clock(a: Double): Double  = a * System.nanoTime
     def prints(a: Double): Double =
       println("a")

@@ -1,28 +1,12 @@
 package skein.loop
 
-import skein.policy.{Action, Fleet, Yaw}
+import skein.policy.{Action, Fleet}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint}
 
-/** What of an action stands for it where headings and speeds are asked for, and what the flight controller
-  * makes of it.
-  */
+/** What the flight controller makes of an action. */
 private object Acting:
   import PositionGuidance.turned
-
-  /** Rad: where it flies, or else where it looks; the heading before where it says neither. */
-  def headingRad(action: Action, beforeRad: Double): Double = action match
-    case Action.Velocity(velocity, _)         => along(velocity.x, velocity.y, beforeRad)
-    case Action.VelocityAt(north, east, _, _) => along(north, east, beforeRad)
-    case Action.Turn(Yaw.Towards(heading))    => heading.value
-    case Action.Attitude(_, _, yaw, _)        => yaw.value
-    case Action.Position(_, _, _) | Action.Turn(_) | Action.Hover | Action.Land => beforeRad
-
-  /** Horizontal. */
-  def speed(action: Action): MetresPerSecond = MetresPerSecond(action match
-    case Action.Velocity(velocity, _)         => StrictMath.hypot(velocity.x, velocity.y)
-    case Action.VelocityAt(north, east, _, _) => StrictMath.hypot(north, east)
-    case _                                    => 0)
 
   /** The command as a model of the vehicle takes it, for a prediction. */
   def guidance(action: Action): Guidance = action match
@@ -53,9 +37,6 @@ private object Acting:
       val agent    = fleet.agents(decision.vehicle)
       val velocity = agent.velocityNed(decision.heading.value, decision.speed)
       Action.VelocityAt(velocity.x, velocity.y, Metres(agent.startPositionNed.z))
-
-  private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
-    if StrictMath.hypot(northMps, eastMps) < 1e-9 then beforeRad else StrictMath.atan2(eastMps, northMps)
 
   /** AirSim's. */
   private val LandingMps = 0.2

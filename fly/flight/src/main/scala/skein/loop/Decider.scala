@@ -45,8 +45,8 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
             memory,
             view,
             now,
-            Acting.headingRad(action, memory.headingRad),
-            Some(Acting.speed(action))
+            action.headingRad(memory.headingRad),
+            Some(action.speed)
           )
         (next.copy(held = held), decision.copy(action = Some(action)))
 

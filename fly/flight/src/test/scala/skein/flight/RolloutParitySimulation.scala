@@ -4,6 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.forward.{Engagement, LoopObserver, Rollout, VelocityResponses}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.record.ReadingRow
+import skein.policy.*
 import skein.scenario.{Crossing, Formation, PaperDuel, Scenario, Surround}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
@@ -182,8 +183,83 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):
       check(loop, LatencyProfile.vpn, 1, PaperDuel(pairs = 2))
 
+  for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
+    test(s"${loop.label} over vpn, policies of four kinds, with memories, who know what others are told"):
+      check(loop, LatencyProfile.vpn, 2, AnyPolicies(), Span.ofSeconds(8))
+
+  test("paused, policies of four kinds"):
+    check(LoopKind.Paused, LatencyProfile.none, 2, AnyPolicies(), Span.ofSeconds(8))
+
+  // Where delays are equal in both directions, a flight knows the ages of its readings as they are.
+  for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
+    test(s"${loop.label} over 100 ms, a policy that goes by ages"):
+      check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))
+
   test("stream over vpn as published: spread questions, answers in order, a decision at each"):
     check(LoopKind.Stream, LatencyProfile.vpn, 3, PaperDuel(asPublished = true))
 
   private def profile(name: String): LatencyProfile =
     LatencyProfile.parse(name, Left(_)).fold(error => fail(error.message), identity)
+
+/** Policies of every kind in one team. */
+final case class AnyPolicies(byAges: Boolean = false) extends Scenario:
+  import AnyPolicies.*
+  private def agent(i: Int, role: Role, policy: AgentPolicy) =
+    Agent(s"V$i", role, MetresPerSecond(5 + i), Vector3(14 * i, 7 * (i % 2), -20), Radians(0.3 * i), policy)
+
+  def agents: Vector[Agent] = Vector(
+    agent(0, Role.Evader, Weaving(0.4)),
+    agent(1, Role.Pursuer, if byAges then Ages else Mirror),
+    agent(2, Role.Pursuer, Trailing),
+    agent(3, Role.Pursuer, Surrounding(0, 7, 8)),
+    agent(4, Role.Pursuer, LeadPursuit(0.5))
+  )
+
+object AnyPolicies:
+  private def towards(seen: Observation, vehicle: Int) =
+    seen.vehicles(vehicle).kinematics.positionNed - seen.own.kinematics.positionNed
+
+  private def heading(seen: Observation, way: Vector3, by: Double) =
+    Action.heading(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
+
+  final case class Phase(angle: Double, isLeft: Boolean)
+
+  /** Flees to the left and to the right in turn. */
+  final case class Weaving(rate: Double) extends AgentPolicy:
+    type Memory = Phase
+    def start: Phase                                              = Phase(0.25, true)
+    def choose(seen: Observation, memory: Phase): (Action, Phase) =
+      val angle = memory.angle + rate * seen.elapsed.toSeconds * (if memory.isLeft then 1 else -1)
+      val next  =
+        if angle.abs > 0.5 then Phase(angle.min(0.5).max(-0.5), !memory.isLeft) else memory.copy(angle)
+      (heading(seen, towards(seen, seen.opponent) * -1, next.angle), next)
+
+  /** Goes by what it and its opponent were told last. */
+  case object Mirror extends AgentPolicy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
+      val (other, own) = (seen.headings(seen.opponent).value, seen.headings(seen.self).value)
+      val way          = towards(seen, seen.opponent)
+      val north        = way.x / 5 + 2 * StrictMath.cos(other) + StrictMath.cos(own)
+      val east         = way.y / 5 + 2 * StrictMath.sin(other) + StrictMath.sin(own)
+      (Action.VelocityAt(north, east, seen.startDown), ())
+
+  /** Remembers three bearings of the first vehicle. */
+  case object Trailing extends AgentPolicy:
+    type Memory = Vector[Double]
+    def start: Vector[Double]                                                       = Vector(0.0, 0.0, 0.0)
+    def choose(seen: Observation, memory: Vector[Double]): (Action, Vector[Double]) =
+      val way  = towards(seen, 0)
+      val next = memory.tail :+ StrictMath.atan2(way.y, way.x)
+      val mean = next.map(_ - next.last).sum / next.size
+      (heading(seen, way, 0.2 * mean.max(-1).min(1)), next)
+
+  /** Leads by the age of what it knows. */
+  case object Ages extends PlanarPolicy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def planar(seen: Observation, memory: Unit): (Planar, Unit) =
+      val other = seen.vehicles(seen.opponent)
+      val way   = towards(seen, seen.opponent) + other.kinematics.velocityNed * other.age.toSeconds
+      (Planar(Radians(StrictMath.atan2(way.y, way.x)), None), ())

@@ -5,34 +5,9 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** What an action is taken for where headings and speeds are asked for, and what is foreseen of its vehicle.
-  */
+/** What is foreseen of a vehicle that is told an action. */
 class ActingSuite extends munit.FunSuite:
-  private val down  = Metres(-20)
-  private val place = Action.Position(Vector3(1, 2, -20), MetresPerSecond(4))
-  private val still = Seq(
-    Action.Velocity(Vector3(0, 0, -2)),
-    Action.VelocityAt(0, 0, down),
-    place,
-    Action.Turn(Yaw.Still),
-    Action.Hover,
-    Action.Land
-  )
-
-  test(
-    "its heading is where it flies, however slowly, or else where " +
-      "it looks; what says neither keeps the one before"
-  ):
-    assertEquals(Acting.headingRad(Action.Velocity(Vector3(0, 0.5, -3)), 0.7), math.Pi / 2)
-    assertEquals(Acting.headingRad(Action.VelocityAt(-0.01, 0, down), 0.7), math.Pi)
-    assertEquals(Acting.headingRad(Action.Turn(Yaw.Towards(Radians(0.3))), 0.7), 0.3)
-    assertEquals(Acting.headingRad(Action.Attitude(Radians(0.1), Radians(0.2), Radians(0.3), 0.5), 0.7), 0.3)
-    for action <- still do assertEquals(Acting.headingRad(action, 0.7), 0.7, action.toString)
-
-  test("only what flies with a velocity has a speed: the horizontal one"):
-    assertEquals(Acting.speed(Action.Velocity(Vector3(3, 4, -12))), MetresPerSecond(5))
-    assertEquals(Acting.speed(Action.VelocityAt(3, -4, down)), MetresPerSecond(5))
-    for action <- still do assertEquals(Acting.speed(action), MetresPerSecond(0), action.toString)
+  private val down = Metres(-20)
 
   test("a vehicle that hovers or turns is foreseen to stay, one that lands to sink as AirSim sinks"):
     val stays = Setpoint.velocity(0, 0, 0)

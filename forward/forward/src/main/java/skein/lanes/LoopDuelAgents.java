@@ -1,6 +1,5 @@
 package skein.lanes;
 
-import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.SPECIES;
@@ -14,7 +13,6 @@ import skein.forward.RolloutAgent;
 import skein.lanes.loop.LaneAgents;
 import skein.lanes.loop.LaneOffers;
 import skein.lanes.loop.LaneVectors;
-import skein.lanes.loop.LaneViews;
 import skein.lanes.loop.LoopEye;
 import skein.lanes.loop.LoopLanes;
 import skein.lanes.policy.Directions;
@@ -118,41 +116,9 @@ final class LoopDuelAgents extends LaneAgents {
       observation.see(what, opponents.seen(), from, seen(), from);
     }
     if (policy.needsAges()) age(1 - self, readAt, observation.opponentAge);
-    if (!together) know(opponents, vectors, offers.joinedAt);
+    // What the opponent sends after the offer was made is not known in it.
+    if (!together) opponents.knownAt(vectors, offers.joinedAt, opponents.sent, opponents.sentBefore, known);
     policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
-  }
-
-  /** What the opponent sends after the offer was made is not known in it. */
-  private void know(LaneAgents opponents, LaneVectors vectors, int[] joinedAt) {
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      VectorMask<Float> isKnown =
-          IntVector.fromArray(INTS, opponents.sentAt, i)
-              .sub(now)
-              .compare(LE, IntVector.fromArray(INTS, joinedAt, i))
-              .cast(SPECIES);
-      FloatVector.fromArray(SPECIES, opponents.sentBefore.cos, i)
-          .blend(FloatVector.fromArray(SPECIES, opponents.sent.cos, i), isKnown)
-          .intoArray(known.cos, i);
-      FloatVector.fromArray(SPECIES, opponents.sentBefore.sin, i)
-          .blend(FloatVector.fromArray(SPECIES, opponents.sent.sin, i), isKnown)
-          .intoArray(known.sin, i);
-    }
-  }
-
-  private void age(int vehicle, int[][] readAt, float[] into) {
-    if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
-    else age(readAt[vehicle], into);
-  }
-
-  private void age(int[] readAt, float[] into) {
-    for (int i = 0; i < WORLDS; i += INTS.length())
-      ((FloatVector)
-              IntVector.fromArray(INTS, decides, i)
-                  .sub(IntVector.fromArray(INTS, readAt, i))
-                  .convertShape(VectorOperators.I2F, SPECIES, 0))
-          .mul(LaneViews.GRAIN_S)
-          .intoArray(into, i);
   }
 
   @Override

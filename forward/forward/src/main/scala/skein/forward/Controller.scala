@@ -1,15 +1,26 @@
 package skein.forward
 
 import skein.forecast.Forecast
-import skein.policy.{ObservingPolicy, PlanarObservation, Policy, TeamObservation, TeamPolicy}
-import skein.units.{Instant, OwnFailure}
+import skein.policy.{
+  Observation,
+  ObservingPolicy,
+  PlanarObservation,
+  Policy,
+  Seen,
+  TeamObservation,
+  TeamPolicy
+}
+import skein.signal.Kinematics
+import skein.units.{Instant, Metres, MetresPerSecond, OwnFailure, Radians, Span}
 
 /** What a decision is made from: a reading of each vehicle, and the headings sent to them until then.
   * Mutable.
   *
   * @see `skein.loop.TeamView`, which the live loops hold
   */
-private[skein] final class RolloutView(count: Int) extends Grounds:
+private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
+  private val count               = world.count
+  private val keepsAll            = world.keepsKinematics
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
 
   /** Headings sent last, rad. */
@@ -24,6 +35,9 @@ private[skein] final class RolloutView(count: Int) extends Grounds:
 
   val validAtNs: Array[Long] = Array.ofDim[Long](count)
 
+  /** All that the readings tell, in worlds that keep it. */
+  val kinematics: Array[Kinematics] = Array.ofDim[Kinematics](if keepsAll then count else 0)
+
   /** What the readings are to be replaced by when it is decided. */
   var forecast: Option[Forecast] = None
 
@@ -34,12 +48,14 @@ private[skein] final class RolloutView(count: Int) extends Grounds:
       sent(vehicle) = other.sent(vehicle); sentDecision(vehicle) = other.sentDecision(vehicle)
       step(vehicle) = other.step(vehicle); reading(vehicle) = other.reading(vehicle)
       validAtNs(vehicle) = other.validAtNs(vehicle)
+      if keepsAll then kinematics(vehicle) = other.kinematics(vehicle)
     forecast = other.forecast
 
-  def take(world: RolloutWorld, vehicle: Int, question: Int): Unit =
+  def take(vehicle: Int, question: Int): Unit =
     val slot = world.slot(vehicle, question)
     x(vehicle) = world.x(slot); y(vehicle) = world.y(slot)
     vx(vehicle) = world.vx(slot); vy(vehicle) = world.vy(slot)
+    if keepsAll then kinematics(vehicle) = world.seen(vehicle, question)
     step(vehicle) = world.stepOf(vehicle, question)
     reading(vehicle) = question
     validAtNs(vehicle) = world.validAtNs(slot)
@@ -69,7 +85,7 @@ private[skein] final class Controller(
   private val policy     = world.agents(agent).policy
   private val minNs      = Nanos.of(steering.minIntervalS)
   private val handoverNs = Nanos.of(steering.handoverS)
-  private val held       = RolloutView(world.count)
+  private val held       = RolloutView(world)
 
   private var outstanding   = 0
   private var mayCommandAt  = 0L
@@ -82,6 +98,11 @@ private[skein] final class Controller(
   private var sent          = 0.0
   private var sentNumber    = 0
   private var made, unused  = 0
+
+  /** Asks policies of neither kind that is asked by numbers alone. */
+  private val choosing                = Choosing(world.agents(agent), world.regardsYaw)
+  private var chosenNorth, chosenEast = 0.0
+  private var isChosen                = false
 
   /** What the policy remembers. */
   private var memory: Any = ()
@@ -111,6 +132,8 @@ private[skein] final class Controller(
     lastDecidedAt = Controller.Never
     decided = world.agents(agent).startHeadingRad
     memory = ObservingPolicy.initialOf(policy)
+    isChosen = false
+    if world.isAsked(agent) then choosing.start()
     speed = world.agents(agent).speed
     sent = decided; sentNumber = 0
     made = 0; unused = 0; turned = 0
@@ -148,10 +171,15 @@ private[skein] final class Controller(
   /** And how fast it is to fly, m/s. */
   def decidedSpeed: Double = speed
 
+  /** And with which velocity, m/s. */
+  def decidedNorth: Double = if isChosen then chosenNorth else speed * StrictMath.cos(decided)
+  def decidedEast: Double  = if isChosen then chosenEast else speed * StrictMath.sin(decided)
+
   def decide(observation: RolloutView): Unit =
-    val now     = world.nowNs
-    val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
-    val before  = decided
+    val now       = world.nowNs
+    val elapsedNs = if lastDecidedAt == Controller.Never then 0L else now - lastDecidedAt
+    val elapsed   = elapsedNs * 1e-9
+    val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
     policy match
       case duel: Policy     => decided = heading(duel, observation, elapsed)
@@ -159,10 +187,39 @@ private[skein] final class Controller(
         val course = asked(team.course(seen(observation, elapsed)))
         decided = course.headingRad
         speed = course.speedMps
+      case _ =>
+        val chosen = choosing.choose(observed(observation, elapsedNs))
+        decided = chosen.headingRad
+        speed = chosen.speedMps
+        chosenNorth = chosen.northMps
+        chosenEast = chosen.eastMps
+        isChosen = true
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
     made += 1
     world.decided(agent, elapsed, observation)
+
+  /** What any policy decides upon, as `skein.loop.Decider` has it. */
+  private def observed(observation: RolloutView, elapsedNs: Long): Observation =
+    upon = observation
+    val now = world.nowNs
+    val own = world.agents(agent)
+    Observation(
+      agent,
+      Vector.tabulate(world.count): vehicle =>
+        val age = Span.ofNanos(now - observation.validAtNs(vehicle))
+        Seen(observation.kinematics(vehicle), age, isPredicted = observation.forecast.isDefined)
+      ,
+      world.assignment.opponentOf(agent, distance),
+      Vector.tabulate(world.count)(each =>
+        Radians(if each == agent then decided else observation.sent(each))
+      ),
+      Span.ofNanos(elapsedNs),
+      made,
+      MetresPerSecond(own.speed),
+      Metres(own.altitudeDownM),
+      actsIn = observation.forecast.fold(Span.Zero)(actsIn)
+    )
 
   private def heading(policy: Policy, observation: RolloutView, elapsedS: Double): Double =
     upon = observation
@@ -196,9 +253,11 @@ private[skein] final class Controller(
         )
 
   /** From now until a command acts that is sent now. */
-  private def actsInS(forecast: Forecast): Double =
+  private def actsInS(forecast: Forecast): Double = actsIn(forecast).toSeconds
+
+  private def actsIn(forecast: Forecast): Span =
     val now = Instant.ofNanos(world.nowNs)
-    forecast.whenActing(now).get(agent).predictedFor.since(now).toSeconds.max(0)
+    forecast.whenActing(now).get(agent).predictedFor.since(now).max(Span.Zero)
 
   private def ageS(observation: RolloutView, vehicle: Int) =
     (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
@@ -248,6 +307,7 @@ private[skein] final class Controller(
     val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
     for vehicle <- 0 until world.count do
       val kinematics = estimates(vehicle).kinematics
+      observation.kinematics(vehicle) = kinematics
       observation.x(vehicle) = kinematics.positionNed.x; observation.y(vehicle) = kinematics.positionNed.y
       observation.vx(vehicle) = kinematics.velocityNed.x; observation.vy(vehicle) = kinematics.velocityNed.y
 
@@ -261,12 +321,13 @@ private[skein] final class Controller(
     mayCommandAt = world.nowNs + minNs
     outstanding += 1
     sentNow()
-    onSent.sent(agent, world.send(agent, decided, speed, step), decided, speed)
+    val (north, east) = (decidedNorth, decidedEast)
+    onSent.sent(agent, world.send(agent, decided, speed, north, east, step), north, east)
     goOn()
 
 private[skein] object Controller:
   /** Is told of every command sent. */
   trait OnSent:
-    def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit
+    def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit
 
   private val Never = Long.MinValue

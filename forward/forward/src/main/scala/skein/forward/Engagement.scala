@@ -42,10 +42,18 @@ object Engagement:
   /** Vehicles that one world holds. */
   val Most = 64
 
-  /** The agents of a scenario, under its own assignment. */
+  /** The agents of a scenario, under its own assignment.
+    *
+    * @throws IllegalArgumentException if a policy may do what forward simulation does not fly: something else
+    *   than a horizontal velocity at the altitude of the start
+    */
   def of(fleet: Fleet, durationS: Double = 60.0): Engagement =
+    val agents = fleet.agents.map(RolloutAgent.of)
+    for (agent, self) <- agents.zipWithIndex do
+      for reason <- Level.refusal(agent.policy, self, fleet.assignment, agent.altitudeDownM) do
+        throw IllegalArgumentException(s"vehicle ${fleet.agents(self).name}: $reason")
     Engagement(
-      fleet.agents.map(RolloutAgent.of),
+      agents,
       fleet.agents.map(_.role),
       fleet.assignment,
       durationS

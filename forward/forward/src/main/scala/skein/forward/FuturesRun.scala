@@ -5,7 +5,7 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val most                   = world.count * timing.asking.window
-  private val observation            = RolloutView(world.count)
+  private val observation            = RolloutView(world)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
@@ -47,7 +47,7 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
       var read = vehicle
       var its  = question
       while read >= 0 do
-        observation.take(world, read, its)
+        observation.take(read, its)
         its = before(world.slot(read, its))
         read -= 1
       observation.takeSent(controllers)

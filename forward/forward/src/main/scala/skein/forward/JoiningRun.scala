@@ -9,7 +9,7 @@ private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: Rollo
   private val patienceNs = Nanos.of(timing.patienceS)
 
   /** The view. */
-  protected val observation: RolloutView = RolloutView(world.count)
+  protected val observation: RolloutView = RolloutView(world)
 
   /** Whose reading was not renewed since the view before. */
   protected val waiting: Array[Boolean] = Array.ofDim(world.count)
@@ -23,7 +23,7 @@ private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: Rollo
 
   protected def renewed(vehicle: Int, question: Int): Unit =
     waiting(vehicle) = false
-    observation.take(world, vehicle, question)
+    observation.take(vehicle, question)
     if !known.contains(false) then
       if !waiting.contains(true) || patienceNs <= 0 then join()
       else if patienceEnds == NoEnd then

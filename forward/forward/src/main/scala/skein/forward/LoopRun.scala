@@ -37,7 +37,7 @@ private[skein] trait LoopRun extends Controller.OnSent:
   /** It is time for what was scheduled as `Due`. */
   def due(number: Int): Unit = ()
 
-  def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit = ()
+  def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit = ()
 
   /** A command was answered because a newer one has replaced it. */
   def replaced(agent: Int, number: Int): Unit = ()

@@ -4,7 +4,7 @@ package skein.forward
 private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val observation            = RolloutView(world.count)
+  private val observation            = RolloutView(world)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
 
@@ -12,12 +12,19 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val wo
 
   def tick(vehicle: Int, number: Int): Unit =
     for vehicle <- world.vehicles.indices do
-      observation.take(world, vehicle, world.readNow(vehicle, number))
+      observation.take(vehicle, world.readNow(vehicle, number))
     observation.takeSent(controllers)
     for agent <- world.vehicles.indices do
-      controllers(agent).decide(observation)
-      controllers(agent).sentNow()
-      world.commandNow(agent, controllers(agent).decidedHeading, controllers(agent).decidedSpeed)
+      val controller = controllers(agent)
+      controller.decide(observation)
+      controller.sentNow()
+      world.commandNow(
+        agent,
+        controller.decidedHeading,
+        controller.decidedSpeed,
+        controller.decidedNorth,
+        controller.decidedEast
+      )
     world.schedule((number + 1) * periodNs, RolloutWorld.Tick, 0, number + 1)
 
   def answered(vehicle: Int, question: Int): Unit = ()

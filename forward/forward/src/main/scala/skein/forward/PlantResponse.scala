@@ -13,6 +13,8 @@ final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
 
   def create(): Vehicle = PlantVehicle(plant)
 
+  override def regardsYaw: Boolean = false
+
   override def predictor: VehicleModel[?] = plant match
     case observed: ObservedPlant[?] => PlantModel(observed)
     case _                          => ConstantVelocity

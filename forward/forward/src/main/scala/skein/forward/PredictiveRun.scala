@@ -13,7 +13,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = false, this))
 
-  private val observation = RolloutView(world.count)
+  private val observation = RolloutView(world)
   private var forecast    = Forecast(Vector.empty)
 
   override def start(): Unit =
@@ -49,12 +49,8 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
       observation.forecast = Some(forecast)
       for controller <- controllers do controller.offer(observation)
 
-  override def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit =
-    val setpoint = Setpoint.velocityZ(
-      speedMps * StrictMath.cos(headingRad),
-      speedMps * StrictMath.sin(headingRad),
-      world.agents(agent).altitudeDownM
-    )
+  override def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit =
+    val setpoint = Setpoint.velocityZ(northMps, eastMps, world.agents(agent).altitudeDownM)
     forecast = forecast.withEvent(
       ForecastEvent.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))
     )

@@ -20,7 +20,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     link,
     model,
     LoopTiming.askingOf(timing),
-    keepsKinematics = timing.isInstanceOf[LoopTiming.Predictive],
+    keepsAll = timing.isInstanceOf[LoopTiming.Predictive],
     standsStill = timing.isInstanceOf[LoopTiming.Paused],
     ringOf(timing, engagement.agents.size)
   )

@@ -1,7 +1,7 @@
 package skein.forward
 
 import skein.fusion.SensorModel
-import skein.policy.{Agent, Policy, TeamPolicy}
+import skein.policy.{Agent, AgentPolicy}
 
 /** One vehicle of a duel or of a team, as a rollout flies it.
   *
@@ -10,8 +10,7 @@ import skein.policy.{Agent, Policy, TeamPolicy}
   * @param startY east, m
   * @param altitudeDownM z of the whole flight, world NED, m
   * @param startHeadingRad which it is taken to have been commanded before its first decision, from north
-  * @param policy see [[skein.policy.Policy]], and [[skein.policy.TeamPolicy]] for engagements; must be a pure
-  *   function
+  * @param policy any that decides for horizontal velocities at that altitude; must be a pure function
   * @param eye by which alone it knows of its one opponent, if it is not told
   */
 final case class RolloutAgent(
@@ -20,22 +19,26 @@ final case class RolloutAgent(
     startY: Double,
     altitudeDownM: Double,
     startHeadingRad: Double,
-    policy: Policy | TeamPolicy,
+    policy: AgentPolicy,
     eye: Option[SensorModel] = None
 )
 
 object RolloutAgent:
-  /** An agent of a scenario. */
-  def of(agent: Agent): RolloutAgent = RolloutAgent(
-    agent.speed.value,
-    agent.startPositionNed.x,
-    agent.startPositionNed.y,
-    agent.startPositionNed.z,
-    agent.startHeading.value,
-    agent.policy match
-      case planar: (Policy | TeamPolicy) => planar
-      case _                             =>
-        throw IllegalArgumentException(
-          s"vehicle ${agent.name}: forward simulation flies headings, not this policy"
-        )
-  )
+  /** An agent of a scenario.
+    *
+    * @throws IllegalArgumentException if its policy reads sensors, which forward simulation has not
+    */
+  def of(agent: Agent): RolloutAgent =
+    require(
+      agent.policy.sensors.isEmpty,
+      s"vehicle ${agent.name}: its policy reads ${agent.policy.sensors.toSeq.sorted.mkString(", ")}, and " +
+        "forward simulation has no sensors"
+    )
+    RolloutAgent(
+      agent.speed.value,
+      agent.startPositionNed.x,
+      agent.startPositionNed.y,
+      agent.startPositionNed.z,
+      agent.startHeading.value,
+      agent.policy
+    )

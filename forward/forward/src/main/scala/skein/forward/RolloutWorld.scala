@@ -1,11 +1,12 @@
 package skein.forward
 
-import skein.policy.Assignment
+import skein.policy.{Assignment, Policy, TeamPolicy}
 import skein.signal.{Kinematics, Stamped}
 
 /** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their
   * way to and from the vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
   *
+  * @param keepsAll keeps all that readings tell, not just places and velocities
   * @param standsStill while it is decided
   * @param ring [[RolloutWorld.ringOf]]
   */
@@ -14,14 +15,25 @@ private[skein] final class RolloutWorld(
     link: Delays,
     model: VelocityResponse,
     asking: Asking,
-    keepsKinematics: Boolean,
+    keepsAll: Boolean,
     val standsStill: Boolean,
     val ring: Int
 ):
   import RolloutWorld.*
 
-  val agents: Array[RolloutAgent]    = engagement.agents.toArray
-  val assignment: Assignment         = engagement.assignment
+  val agents: Array[RolloutAgent] = engagement.agents.toArray
+  val assignment: Assignment      = engagement.assignment
+
+  /** By vehicle: whether its policy is asked as any is, and not by numbers alone. */
+  val isAsked: Array[Boolean] = agents.map(_.policy match
+    case _: (Policy | TeamPolicy) => false
+    case _                        => true)
+
+  /** Whether all that readings tell is kept. */
+  val keepsKinematics: Boolean = keepsAll || isAsked.contains(true)
+
+  /** Whether a vehicle flies otherwise when it is told to turn. */
+  val regardsYaw: Boolean            = model.regardsYaw
   val count: Int                     = agents.length
   val vehicles: Array[Vehicle]       = Array.fill(count)(model.create())
   private val queue                  = EventQueue(MostWaiting * agents.length)
@@ -40,7 +52,7 @@ private[skein] final class RolloutWorld(
   private val asked         = Array.ofDim[Int](count)
 
   // Commands by vehicle and number.
-  private val headings, speeds = Array.ofDim[Double](count * ring)
+  private val norths, easts    = Array.ofDim[Double](count * ring)
   private val commandSteps     = Array.ofDim[Int](count * ring)
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
@@ -142,11 +154,18 @@ private[skein] final class RolloutWorld(
     *
     * @return its number
     */
-  def send(agent: Int, headingRad: Double, speedMps: Double, step: Int): Int =
+  def send(
+      agent: Int,
+      headingRad: Double,
+      speedMps: Double,
+      northMps: Double,
+      eastMps: Double,
+      step: Int
+  ): Int =
     val number = commanded(agent)
     commanded(agent) += 1
-    headings(slot(agent, number)) = headingRad
-    speeds(slot(agent, number)) = speedMps
+    norths(slot(agent, number)) = northMps
+    easts(slot(agent, number)) = eastMps
     commandSteps(slot(agent, number)) = step
     observer.commanded(agent, number, time, headingRad, speedMps)
     commandAt(agent) =
@@ -167,22 +186,22 @@ private[skein] final class RolloutWorld(
 
   def acts(agent: Int, number: Int): Unit =
     observer.acts(agent, number, time)
-    command(agent, headings(slot(agent, number)), speeds(slot(agent, number)))
+    command(agent, norths(slot(agent, number)), easts(slot(agent, number)))
 
   /** Commands a vehicle without any message. */
-  def commandNow(agent: Int, headingRad: Double, speedMps: Double): Unit =
+  def commandNow(agent: Int, headingRad: Double, speedMps: Double, northMps: Double, eastMps: Double): Unit =
     observer.commanded(agent, commanded(agent), time, headingRad, speedMps)
     observer.acts(agent, commanded(agent), time)
     commanded(agent) += 1
-    command(agent, headingRad, speedMps)
+    command(agent, northMps, eastMps)
 
   /** A decision was made. */
   def decided(agent: Int, elapsedS: Double, upon: Grounds): Unit =
     observer.decided(agent, time, elapsedS, upon)
 
-  private def command(agent: Int, headingRad: Double, speedMps: Double): Unit =
+  private def command(agent: Int, northMps: Double, eastMps: Double): Unit =
     vehicles(agent).advance(nowS)
-    vehicles(agent).command(speedMps * StrictMath.cos(headingRad), speedMps * StrictMath.sin(headingRad))
+    vehicles(agent).command(northMps, eastMps)
 
 private[skein] object RolloutWorld:
   // Kinds of events.

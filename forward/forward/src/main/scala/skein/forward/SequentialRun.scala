@@ -4,7 +4,7 @@ package skein.forward
 private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val observation            = RolloutView(world.count)
+  private val observation            = RolloutView(world)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
@@ -15,7 +15,7 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protecte
 
   def answered(vehicle: Int, question: Int): Unit =
     val step = world.stepOf(vehicle, question)
-    observation.take(world, vehicle, question)
+    observation.take(vehicle, question)
     if vehicle + 1 < world.count then
       val _ = world.ask(0, vehicle + 1, step)
     else

@@ -52,5 +52,8 @@ trait VelocityResponse:
   /** From the arrival of a command until it acts in the place of another, s. The first acts at once. */
   def handoverS: Double = 0.0
 
+  /** Whether it flies otherwise when it is told to turn. */
+  def regardsYaw: Boolean = true
+
   /** What carries readings of such a vehicle forward best. */
   def predictor: VehicleModel[?] = QuadrotorModel.AirSim

@@ -3,7 +3,6 @@ package skein.lanes
 import skein.forward.RolloutAgent
 import skein.lanes.policy.TeamLanes
 import skein.lanes.score.ScoreLanes
-import skein.policy.TeamPolicy
 
 /** What teams have in common that fly side by side.
   *
@@ -14,7 +13,9 @@ private[lanes] final case class TeamForm(
     scores: ScoreLanes,
     durationS: Double,
     altitudesDownM: Vector[Double]
-)(val vehicles: LaneDynamics)
+)(val vehicles: LaneDynamics):
+  /** Whether decisions are to be told more than readings and their own times. */
+  def asksMore: Boolean = team.asksMore.contains(true)
 
 /** A candidate with the numbers that it differs by from others of its form.
   *
@@ -29,9 +30,8 @@ private[lanes] final class PreparedTeam(
   lazy val isStepped: Boolean        = steps
   def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
-  val ofPolicies: Vector[Array[Double]] = form.toVector.flatMap: form =>
-    vehicles.zipWithIndex.map((agent, self) =>
-      form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy])
-    )
+  val ofPolicies: Vector[MemberNumbers] = form.toVector.flatMap: form =>
+    vehicles.zipWithIndex.map: (agent, self) =>
+      MemberNumbers(form.team.parametersOf(self, agent.policy), form.team.startOf(self, agent.policy))
   val ofQuantities: Vector[Array[Double]] = form.toVector.flatMap: form =>
     candidate.judged.zipWithIndex.map((each, number) => form.scores.parametersOf(number, each.quantity))

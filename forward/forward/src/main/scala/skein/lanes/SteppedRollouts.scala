@@ -57,6 +57,7 @@ private final class SteppedRollouts private (
   private final class Places(world: Int) extends VelocityResponse:
     private var next                                      = world * each
     override def handoverS: Double                        = model.handoverS
+    override def regardsYaw: Boolean                      = model.regardsYaw
     override def predictor: skein.vehicle.VehicleModel[?] = model.predictor
     def create(): Vehicle                                 =
       next += 1

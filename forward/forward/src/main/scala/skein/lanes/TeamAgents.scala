@@ -40,8 +40,11 @@ private[lanes] final class TeamViews(val lanes: TeamLanes):
 private object TeamViews:
   private val Nothing = -1
 
-/** How one vehicle of a team decides in many worlds, each with a start and a policy of its own. Mutable. */
-private[lanes] final class TeamDecisions(self: Int, team: TeamViews):
+/** How one vehicle of a team decides in many worlds, each with a start and a policy of its own. Mutable.
+  *
+  * @param altitudesDownM of all vehicles
+  */
+private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDownM: Vector[Double]):
   import TeamDecisions.Never
   import TeamLanes.Source
   import TimetableAgents.WORLDS
@@ -50,39 +53,77 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews):
   private val bound              = lanes.functions(self)
   private val parameters         = Array.ofDim[Float](lanes.parameters(self) * WORLDS)
   private val startCos, startSin = Array.ofDim[Float](WORLDS)
+  private val cruise, startDown  = Array.ofDim[Float](WORLDS)
 
   // Of the heading before and of the decided one.
   private var cos, sin, newCos, newSin   = Array.ofDim[Float](WORLDS)
   private var asksCos, asksSin, asksTime = Never
 
+  // What is remembered, by number, then by world: at first, before, and after the decision.
+  private val memories          = lanes.memories(self)
+  private val initial           = Array.ofDim[Float](memories * WORLDS)
+  private var memory, newMemory = Array.ofDim[Float](memories * WORLDS)
+  private val asksMemory        = Array.fill(memories)(Never)
+
+  /** By vehicle: how old its reading is, s; for those of which it is asked. */
+  val agesS: Array[Array[Float]] = Array.ofDim(lanes.count)
+
+  /** By vehicle: what is known of the heading that it was told last, where it is asked for. */
+  val known: Array[Directions]           = Array.ofDim(lanes.count)
+  private val asksKnownCos, asksKnownSin = Array.fill(lanes.count)(Never)
+
+  /** Until the command acts, s; null where nobody asks. */
+  var actsInS: Array[Float] = null
+
   /** Reads what the vehicle decides upon. */
   val call: ViewCall = ViewCall(bound, lanes.reading)
 
   for (input, place) <- bound.inputs.zipWithIndex if lanes.reading(input).isEmpty do
+    def stands(array: Array[Float], from: Int = 0): Unit = call.call.input(place, array, from)
     lanes.source(input) match
       case Source.Cos               => asksCos = place
       case Source.Sin               => asksSin = place
       case Source.Elapsed           => asksTime = place
-      case Source.Parameter(number) => call.call.input(place, parameters, number * WORLDS)
-      case Source.Shared(number)    => call.call.input(place, team.values, number * WORLDS)
+      case Source.Cruise            => stands(cruise)
+      case Source.StartDown         => stands(startDown)
+      case Source.Memory(number)    => asksMemory(number) = place
+      case Source.Altitude(vehicle) => stands(Array.fill(WORLDS)(altitudesDownM(vehicle).toFloat))
+      case Source.Age(vehicle)      =>
+        agesS(vehicle) = Array.ofDim[Float](WORLDS)
+        stands(agesS(vehicle))
+      case Source.ActsIn =>
+        actsInS = Array.ofDim[Float](WORLDS)
+        stands(actsInS)
+      case Source.KnownCos(vehicle) => asksKnownCos(vehicle) = place
+      case Source.KnownSin(vehicle) => asksKnownSin(vehicle) = place
+      case Source.Parameter(number) => stands(parameters, number * WORLDS)
+      case Source.Shared(number)    => stands(team.values, number * WORLDS)
+  for vehicle <- known.indices if asksKnownCos(vehicle) >= 0 || asksKnownSin(vehicle) >= 0 do
+    known(vehicle) = Directions(WORLDS)
 
-  /** Takes which way a world's vehicle heads at first, and the numbers of its policy, which must be of the
-    * form.
-    */
-  def take(world: Int, headingRad: Double, numbers: Array[Double]): Unit =
-    startCos(world) = StrictMath.cos(headingRad).toFloat
-    startSin(world) = StrictMath.sin(headingRad).toFloat
-    for number <- numbers.indices do parameters(number * WORLDS + world) = numbers(number).toFloat
+  /** Takes how a world's vehicle starts, and the numbers of its policy, which must be of the form. */
+  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
+    startCos(world) = StrictMath.cos(agent.startHeadingRad).toFloat
+    startSin(world) = StrictMath.sin(agent.startHeadingRad).toFloat
+    cruise(world) = agent.speed.toFloat
+    startDown(world) = agent.altitudeDownM.toFloat
+    import numbers.{parameters as own, memory as first}
+    for number <- own.indices do parameters(number * WORLDS + world) = own(number).toFloat
+    for number <- first.indices do initial(number * WORLDS + world) = first(number).toFloat
 
-  /** The same. */
+  /** Back to the start of an episode, of which the first worlds count. */
   def start(worlds: Int): Unit =
     team.start(worlds)
     call.call.use(worlds)
     System.arraycopy(startCos, 0, cos, 0, WORLDS)
     System.arraycopy(startSin, 0, sin, 0, WORLDS)
+    System.arraycopy(initial, 0, memory, 0, initial.length)
 
   /** Cosine and sine of the heading decided last, by world. */
   def direction: (Array[Float], Array[Float]) = (cos, sin)
+
+  /** Whether it asks what another vehicle was told. */
+  def asksHeading(vehicle: Int): Boolean = known(vehicle) != null
 
   /** Decides upon what [[call]] reads.
     *
@@ -97,13 +138,27 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews):
     call.call.output(1, into.sin, at)
     call.call.output(2, newCos, 0)
     call.call.output(3, newSin, 0)
+    var number = 0
+    while number < memories do
+      if asksMemory(number) >= 0 then call.call.input(asksMemory(number), memory, number * WORLDS)
+      call.call.output(4 + number, newMemory, number * WORLDS)
+      number += 1
     call.call.apply()
+
+  /** What is known of another vehicle's heading stands here. */
+  def knows(vehicle: Int, headings: Directions, at: Int): Unit =
+    if asksKnownCos(vehicle) >= 0 then call.call.input(asksKnownCos(vehicle), headings.cos, at)
+    if asksKnownSin(vehicle) >= 0 then call.call.input(asksKnownSin(vehicle), headings.sin, at)
 
   /** All worlds' decisions become commands. */
   def commit(): Unit =
     val (oldCos, oldSin) = (cos, sin)
     cos = newCos; sin = newSin
     newCos = oldCos; newSin = oldSin
+    if memories > 0 then
+      val before = memory
+      memory = newMemory
+      newMemory = before
 
   /** Those do whose time comes before another. */
   def commitBefore(times: Array[Int], before: Int): Unit =
@@ -112,32 +167,69 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews):
       if times(world) < before then
         cos(world) = newCos(world)
         sin(world) = newSin(world)
+        var number = world
+        while number < memory.length do
+          memory(number) = newMemory(number)
+          number += WORLDS
       world += 1
 
 private object TeamDecisions:
   private val Never = -1
 
+/** What one vehicle's policy flies by in a world.
+  *
+  * @param parameters of its form
+  * @param memory before its first decision
+  */
+private[lanes] final case class MemberNumbers(parameters: Array[Double], memory: Array[Double])
+
 /** One vehicle of a team in many worlds. */
 private[lanes] trait TeamMember:
   /** Takes where a world's vehicle starts, and the numbers of its policy, which must be of the form. */
-  def take(world: Int, agent: RolloutAgent, numbers: Array[Double]): Unit
+  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit
 
-/** One that meets the same delays in all worlds. */
-private[lanes] class TeamAgents(self: Int, agent: RolloutAgent, model: LaneDynamics, team: TeamViews)
-    extends TimetableAgents(model.vehicles(agent.copy(speed = 1))),
+/** One that meets the same delays in all worlds.
+  *
+  * @param altitudesDownM of all vehicles
+  */
+private[lanes] class TeamAgents(
+    self: Int,
+    agent: RolloutAgent,
+    model: LaneDynamics,
+    team: TeamViews,
+    altitudesDownM: Vector[Double]
+) extends TimetableAgents(model.vehicles(agent.copy(speed = 1))),
       TeamMember:
   import TimetableAgents.WORLDS
 
-  private val decisions = TeamDecisions(self, team)
-  private val elapsedS  = Array.ofDim[Float](WORLDS)
+  private val decisions            = TeamDecisions(self, team, altitudesDownM)
+  private val elapsedS             = Array.ofDim[Float](WORLDS)
+  private val asksMore             = team.lanes.asksMore(self)
+  private var timetable: Timetable = null
 
-  def take(world: Int, agent: RolloutAgent, numbers: Array[Double]): Unit =
+  /** The headings of decisions, by their places; null where nobody asks. */
+  private var told: Directions = null
+
+  /** From now on the headings that this vehicle was told are kept. */
+  private def keepHeadings(): Unit = if told == null then told = Directions(0)
+
+  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
     vehicles.place(world, agent)
-    decisions.take(world, agent.startHeadingRad, numbers)
+    decisions.take(world, agent, numbers)
 
   override def start(timetable: Timetable, worlds: Int): Unit =
     super.start(timetable, worlds)
+    this.timetable = timetable
     decisions.start(worlds)
+    if told != null then
+      told.reserve(timetable.headings * WORLDS)
+      // The timetable keeps the first heading at place 0.
+      note(0)
+
+  private def note(at: Int): Unit =
+    val (cos, sin) = decisions.direction
+    System.arraycopy(cos, 0, told.cos, at, WORLDS)
+    System.arraycopy(sin, 0, told.sin, at, WORLDS)
 
   /** Cosine and sine of the heading decided last, by world. */
   private[lanes] def direction: (Array[Float], Array[Float]) = decisions.direction
@@ -157,8 +249,32 @@ private[lanes] class TeamAgents(self: Int, agent: RolloutAgent, model: LaneDynam
     team.show(all, views, view)
     decisions.call.look(all, views, view)
     Arrays.fill(elapsedS, times(number))
+    if asksMore then learn(all, known / WORLDS)
     decisions.decide(elapsedS, headings, after)
     decisions.commit()
+    if told != null then note(after)
+
+  /** Takes what the timetable tells of a decision besides. */
+  private def learn(all: Array[TimetableAgents], decision: Int): Unit =
+    val more    = timetable.more
+    var vehicle = 0
+    while vehicle < all.length do
+      val ages = decisions.agesS(vehicle)
+      if ages != null then Arrays.fill(ages, more.ageS(decision, vehicle))
+      if decisions.asksHeading(vehicle) then
+        val other = all(vehicle).asInstanceOf[TeamAgents]
+        decisions.knows(vehicle, other.told, more.heading(decision, vehicle) * WORLDS)
+      vehicle += 1
+    if decisions.actsInS != null then Arrays.fill(decisions.actsInS, more.actsInS(decision))
+
+private[lanes] object TeamAgents:
+  /** All of a team, by number. */
+  def of(team: Vector[RolloutAgent], model: LaneDynamics, views: TeamViews): Array[TeamAgents] =
+    val all = Array.tabulate(team.size): self =>
+      TeamAgents(self, team(self), model, views, team.map(_.altitudeDownM))
+    for asking <- all; other <- all.indices if asking.decisions.asksHeading(other) do
+      all(other).keepHeadings()
+    all
 
 /** One whose worlds have delays of their own. */
 private[lanes] final class LoopTeamAgents private (
@@ -166,22 +282,36 @@ private[lanes] final class LoopTeamAgents private (
     agent: RolloutAgent,
     loop: LoopLanes,
     model: LaneDynamics,
-    team: TeamViews
+    team: TeamViews,
+    altitudesDownM: Vector[Double]
 ) extends LaneAgents(self, loop, model.deadTimeS, model.flights(agent.copy(speed = 1), loop)),
       TeamMember:
 
-  private val decisions = TeamDecisions(self, team)
+  private val decisions = TeamDecisions(self, team, altitudesDownM)
+  private val asksMore  = team.lanes.asksMore(self)
+  private val asksAges  = team.lanes.asksAges(self)
+
+  /** The headings that it was told last, and before; null where nobody asks. */
+  private var told, toldBefore: Directions = null
+
   loop.carryForward(self, agent.copy(speed = 1), vehicles)
 
-  def take(world: Int, agent: RolloutAgent, numbers: Array[Double]): Unit =
+  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
     vehicles.place(world, agent)
-    decisions.take(world, agent.startHeadingRad, numbers)
+    decisions.take(world, agent, numbers)
 
   override def start(): Unit =
     super.start()
     decisions.start(TimetableAgents.WORLDS)
+    if told != null then
+      val (cos, sin) = decisions.direction
+      for each <- Seq(told, toldBefore) do
+        System.arraycopy(cos, 0, each.cos, 0, cos.length)
+        System.arraycopy(sin, 0, each.sin, 0, sin.length)
 
   override def needsVelocity: Boolean = team.lanes.needsVelocity
+
+  override def needsAges: Boolean = asksAges
 
   override def choose(
       all: Array[LaneAgents],
@@ -191,10 +321,35 @@ private[lanes] final class LoopTeamAgents private (
   ): Unit =
     // What is predicted for one decision is not what is for another.
     team.show(if forecast == null then offers.beat else offers.beat * all.length + self)
+    if asksMore then learn(all, offers, vectors, readAt)
     decisions.decide(elapsedS, decidedNow, 0)
+
+  private def learn(
+      all: Array[LaneAgents],
+      offers: LaneOffers,
+      vectors: LaneVectors,
+      readAt: Array[Array[Int]]
+  ): Unit =
+    var vehicle = 0
+    while vehicle < all.length do
+      val ages = decisions.agesS(vehicle)
+      if ages != null then age(vehicle, readAt, ages)
+      if decisions.asksHeading(vehicle) then
+        val other = all(vehicle).asInstanceOf[LoopTeamAgents]
+        val known = decisions.known(vehicle)
+        if together then decisions.knows(vehicle, other.told, 0)
+        else
+          other.knownAt(vectors, offers.joinedAt, other.told, other.toldBefore, known)
+          decisions.knows(vehicle, known, 0)
+      vehicle += 1
+    if decisions.actsInS != null && forecast != null then
+      System.arraycopy(forecast.actsS, 0, decisions.actsInS, 0, decisions.actsInS.length)
 
   override def remember(vectors: LaneVectors, endGrains: Int): Unit =
     decisions.commitBefore(decides, LaneOffers.NONE)
+    if told != null then
+      val (cos, sin) = decisions.direction
+      tell(vectors, cos, sin, told, toldBefore)
 
 private[lanes] object LoopTeamAgents:
   /** All of a team, by number. */
@@ -204,7 +359,12 @@ private[lanes] object LoopTeamAgents:
       model: LaneDynamics,
       views: TeamViews
   ): Array[LoopTeamAgents] =
-    val all = Array.tabulate(team.size)(self => LoopTeamAgents(self, team(self), loop, model, views))
+    val all = Array.tabulate(team.size): self =>
+      LoopTeamAgents(self, team(self), loop, model, views, team.map(_.altitudeDownM))
     for (vehicle, self) <- all.zipWithIndex; call <- views.call +: all.map(_.decisions.call) do
       call.show(self, vehicle.seen, vehicle.seenFrom)
+    for asking <- all; other <- all.indices if asking.decisions.asksHeading(other) && all(other).told == null
+    do
+      all(other).told = Directions(TimetableAgents.WORLDS)
+      all(other).toldBefore = Directions(TimetableAgents.WORLDS)
     all

@@ -7,7 +7,6 @@ import skein.lanes.loop.{BySlowest, LaneAgents, LoopKernel, LoopLanes}
 import skein.lanes.policy.TeamLanes
 import skein.lanes.score.{ScoreLanes, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, Timetables}
-import skein.policy.TeamPolicy
 import skein.simd.{LaneFunction, LaneMath}
 import skein.units.Expect
 
@@ -40,7 +39,7 @@ final class TeamBatch(
   private val isAccelerated = accelerated.exists(_.isRight)
 
   private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
-    Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles)
+    Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles, tellsMore = form.asksMore)
 
   /** Which engine flies such a team, and why, in a line for the user.
     *
@@ -51,18 +50,26 @@ final class TeamBatch(
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(candidate) match
       case Left(reason) => steppedOf(candidate).getOrElse(s"scalar: $reason")
-      case Right(_) if shares(shareEpisodes) && isAccelerated => accelerator.get.engine
-      case Right(form)                                        =>
+      case Right(form) if shares(shareEpisodes) && isAccelerated && form.team.isPlain =>
+        accelerator.get.engine
+      case Right(form) =>
         val worlds = if shares(shareEpisodes) then "candidates of an episode" else "worlds"
         LaneSupport.told(
           s"${LaneMath.LANES} $worlds at a time",
           links.map(refusal(form, shares(shareEpisodes), _)),
           steppedOf(candidate)
-        ) + Accelerator.instead(accelerated)
+        ) + Accelerator.instead(
+          if form.team.isPlain then accelerated
+          else
+            accelerated.map(_ =>
+              Left("the GPU flies teams without memory that look at the newest readings alone")
+            )
+        )
 
   /** How many such candidates that share episodes take no longer than one. */
   def sideBySide(candidate: TeamCandidate, link: Delays): Int =
-    if isAccelerated && fliesByLanes(candidate, shareEpisodes = true, Seq(link)) then
+    val isKnown = lanesOf(candidate).exists(_.team.isPlain)
+    if isAccelerated && isKnown && fliesByLanes(candidate, shareEpisodes = true, Seq(link)) then
       accelerator.get.sideBySide
     else LaneFunction.COUNT
 
@@ -82,16 +89,26 @@ final class TeamBatch(
 
   private def lanesOf(candidate: TeamCandidate): Either[String, TeamForm] =
     val engagement = candidate.engagement
-    val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
       _        <- LaneSupport.present
       _        <- Expect.that(!isReference)("the reference was asked for")
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
-      _        <- Expect.that(policies.size == engagement.agents.size):
-        "a policy plays against one opponent; the lanes fly such policies in duels alone"
-      team   <- TeamLanes.of(policies).left.map(refused => s"a policy is no formula: ${refused.getMessage}")
+      team     <- TeamLanes
+        .of(
+          engagement.agents.map(_.policy),
+          engagement.assignment,
+          timing.isInstanceOf[LoopTiming.Predictive]
+        )
+        .left
+        .map(refused => s"a policy is no formula: ${refused.getMessage}")
+      _ <- team.leaves(engagement.agents).toLeft(())
+      _ <- Expect.that(!team.looksUp || !model.regardsYaw):
+        "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"
+      _ <- Expect.that(
+        !team.turns || !model.regardsYaw
+      )("a policy may turn its vehicle, and this one keeps its yaw")
       scores <- ScoreLanes
-        .of(candidate.judged, policies.size)
+        .of(candidate.judged, engagement.agents.size)
         .left
         .map(refused => s"a quantity is no formula: ${refused.getMessage}")
     yield TeamForm(
@@ -215,13 +232,13 @@ final class TeamBatch(
   /** All worlds meet the same episode. */
   private final class EpisodeTeam(form: TeamForm, first: TeamCandidate) extends Team(form):
     private val count              = form.team.count
-    val members: Array[TeamAgents] = Array.tabulate(count): self =>
-      TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
-    private val kernel = TimetableKernel(members.map(identity[TimetableAgents]), scores)
+    val members: Array[TeamAgents] = TeamAgents.of(first.engagement.agents, form.vehicles, views)
+    private val kernel             = TimetableKernel(members.map(identity[TimetableAgents]), scores)
 
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
       val (link, key) = (links(0), keys(0))
-      val made        = timetables.getOrMake((link, key, count, form.durationS))(timetable(link, key, form))
+      val made        =
+        timetables.getOrMake((link, key, count, form.durationS, form.asksMore))(timetable(link, key, form))
       kernel.fly(made, filled)
 
   /** Each world has delays of its own. */

@@ -52,13 +52,15 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
       val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
       val key     = WorldRandom.key(2, 0, 0)
       val model   = LaneDynamics.of(plant, drawn.head.agents).fold(fail(_), identity)
-      val lanes   = TeamLanes.of(policies(drawn.head)).fold(throw _, identity)
+      val lanes   =
+        TeamLanes.of(policies(drawn.head), drawn.head.assignment, isPredicted = false).fold(throw _, identity)
       val team    = TeamViews(lanes)
       val agents  = Array.tabulate(lanes.count)(self => Logged(self, drawn.head.agents(self), model, team))
       val numbers =
         drawn.map(each => policies(each).zipWithIndex.map((policy, self) => lanes.parametersOf(self, policy)))
       for world <- 0 until worlds; self <- 0 until lanes.count do
-        agents(self).take(world, drawn(world).agents(self), numbers(world)(self))
+        val own = MemberNumbers(numbers(world)(self), Array.emptyDoubleArray)
+        agents(self).take(world, drawn(world).agents(self), own)
       TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
         .fly(Timetable.of(lanes.count, 6, timing, DelayTable.vpn, key, model), worlds)
       val forms     = Vector.tabulate(lanes.count)(self => Form(lanes, self))
@@ -119,7 +121,7 @@ object TeamAgreementSimulation:
               case Source.Sin               => sin
               case Source.Elapsed           => elapsed
               case Source.Parameter(number) => own(number)
-              case Source.Shared(_)         => throw IllegalStateException("nothing is shared here")
+              case other                    => throw IllegalStateException(s"$other is not asked for here")
 
     /** Where a decision differs by more than the bound of the way that doubles take.
       *
@@ -170,7 +172,7 @@ object TeamAgreementSimulation:
       decisions(vehicle) += 1
 
   final class Logged(self: Int, agent: RolloutAgent, model: LaneDynamics, team: TeamViews)
-      extends TeamAgents(self, agent, model, team):
+      extends TeamAgents(self, agent, model, team, Vector.fill(team.lanes.count)(agent.altitudeDownM)):
     val made: ArrayBuffer[Made] = ArrayBuffer.empty
 
     override def decide(

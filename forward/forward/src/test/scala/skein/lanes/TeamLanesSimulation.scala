@@ -122,15 +122,17 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val all    = Vector.fill(worlds)(engagement(draw(random), durationS))
     val key    = WorldRandom.key(3, 1, 0)
     val model  = LaneDynamics.under(timing, plant, all.head.agents).fold(fail(_), identity)
-    val lanes  = TeamLanes.of(policies(all.head)).fold(throw _, identity)
+    val lanes  = TeamLanes
+      .of(all.head.agents.map(_.policy), all.head.assignment, isPredicted = false)
+      .fold(throw _, identity)
     val count  = lanes.count
     val team   = TeamViews(lanes)
-    val agents = Array.tabulate(count)(self => TeamAgents(self, all.head.agents(self), model, team))
+    val agents = TeamAgents.of(all.head.agents, model, team)
     val places = PlacesByWorld(count)
     for (each, world) <- all.zipWithIndex do
-      assert(lanes.fits(policies(each)))
       for (agent, self) <- agents.zipWithIndex do
-        agent.take(world, each.agents(self), lanes.parametersOf(self, policies(each)(self)))
+        val own = each.agents(self)
+        agent.take(world, own, MemberNumbers(lanes.parametersOf(self, own.policy), Array.emptyDoubleArray))
     TimetableKernel(agents.map(identity[TimetableAgents]), places)
       .fly(Timetable.of(count, durationS, timing, link, key, model), worlds)
     for world <- 0 until worlds by every do
@@ -373,8 +375,6 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def assertFliesByLanes(batch: TeamBatch, team: TeamCandidate): Unit =
     val engine = batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn))
     assert(batch.fliesByLanes(team, shareEpisodes = true, Seq(DelayTable.vpn)), engine)
-
-  private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
 
 /** How often it turns depends on what it sees. */
 object Zigzag extends TeamPolicy:

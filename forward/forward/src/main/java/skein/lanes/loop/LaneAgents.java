@@ -393,6 +393,54 @@ public abstract class LaneAgents {
     return free;
   }
 
+  /** What was told last, by cosine and sine, as far as it was known when something was joined. */
+  public final void knownAt(
+      LaneVectors vectors, int[] joinedAt, Directions told, Directions toldBefore, Directions into) {
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> isKnown =
+          IntVector.fromArray(INTS, sentAt, i)
+              .sub(now)
+              .compare(LE, IntVector.fromArray(INTS, joinedAt, i))
+              .cast(SPECIES);
+      FloatVector.fromArray(SPECIES, toldBefore.cos, i)
+          .blend(FloatVector.fromArray(SPECIES, told.cos, i), isKnown)
+          .intoArray(into.cos, i);
+      FloatVector.fromArray(SPECIES, toldBefore.sin, i)
+          .blend(FloatVector.fromArray(SPECIES, told.sin, i), isKnown)
+          .intoArray(into.sin, i);
+    }
+  }
+
+  /** Where something is sent now, it is what was told last. */
+  protected final void tell(
+      LaneVectors vectors, float[] cos, float[] sin, Directions told, Directions toldBefore) {
+    IntVector none = IntVector.broadcast(INTS, NONE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> goes = IntVector.fromArray(INTS, sends, i).compare(LT, none).cast(SPECIES);
+      FloatVector lastCos = FloatVector.fromArray(SPECIES, told.cos, i),
+          lastSin = FloatVector.fromArray(SPECIES, told.sin, i);
+      FloatVector.fromArray(SPECIES, toldBefore.cos, i).blend(lastCos, goes).intoArray(toldBefore.cos, i);
+      FloatVector.fromArray(SPECIES, toldBefore.sin, i).blend(lastSin, goes).intoArray(toldBefore.sin, i);
+      lastCos.blend(FloatVector.fromArray(SPECIES, cos, i), goes).intoArray(told.cos, i);
+      lastSin.blend(FloatVector.fromArray(SPECIES, sin, i), goes).intoArray(told.sin, i);
+    }
+  }
+
+  /** How old a vehicle's reading is when it is decided upon, s. */
+  protected final void age(int vehicle, int[][] readAt, float[] into) {
+    if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
+    else
+      for (int i = 0; i < WORLDS; i += LANES)
+        ((FloatVector)
+                IntVector.fromArray(INTS, decides, i)
+                    .sub(IntVector.fromArray(INTS, readAt[vehicle], i))
+                    .convertShape(VectorOperators.I2F, SPECIES, 0))
+            .mul(LaneViews.GRAIN_S)
+            .intoArray(into, i);
+  }
+
   /** Nobody decides in the other vectors. */
   private void forget(LaneVectors vectors) {
     int next = 0;

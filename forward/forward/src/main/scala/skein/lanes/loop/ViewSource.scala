@@ -105,7 +105,7 @@ private[lanes] object ViewSource:
       link,
       StandingStill.Response(),
       timing.asking,
-      keepsKinematics = false,
+      keepsAll = false,
       standsStill = false,
       // With a question that takes long, those asked meanwhile, and as many for the one told last, whose
       // answer may have come as it was asked.

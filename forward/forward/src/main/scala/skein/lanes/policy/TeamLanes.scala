@@ -1,18 +1,21 @@
 package skein.lanes.policy
 
+import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
-import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
-import skein.policy.{TeamPolicy, TeamObservation}
+import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
+import skein.forward.{Engagement, RolloutAgent}
+import skein.policy.{Action, AgentPolicy, Assignment, PolicyInput}
+import skein.policy.PolicyFormula.Motion
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
-/** How the policies of a team decide in many worlds at once, compiled from their methods
-  * [[TeamPolicy.course]]. Teams of one form differ in numbers alone.
+/** How the policies of a team decide in many worlds at once, compiled from their own methods
+  * ([[MemberFormula]]). Teams of one form differ in numbers alone.
   *
   * What several vehicles compute of one view is computed once for all of them: of the bearings that each
   * pursuer wants to know, say.
   */
-private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
+private[lanes] final class TeamLanes private (formulas: Vector[MemberFormula]):
   import TeamLanes.*
 
   /** How many vehicles fly. */
@@ -21,25 +24,74 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   private val view  = 4 * count
   private val trace = Trace(MostOperations)
 
+  /** By vehicle, whose headings are asked for: the own one of before, or what is known of another's. */
+  private val headings = Vector.tabulate(count): self =>
+    val formula = formulas(self)
+    val nodes   = formula.memory ++ (formula.motion match
+      case Motion.Along(heading, speed) => Vector(heading, speed)
+      case Motion.With(north, east)     => Vector(north, east))
+    Trace
+      .needed(nodes)
+      .collect { case node if node.op == Op.Input => formula.input(node.index) }
+      .collect { case PolicyInput.Heading(vehicle) => vehicle }
+      .toSet
+
   private val angles: Vector[Angles] = Vector.tabulate(count): self =>
-    def own(number: Int) = trace.input(ownInput(self, number))
+    val input                                 = formulas(self).input
+    def own(number: Int)                      = trace.input(ownInput(self, number))
+    def direction(vehicle: Int): (Node, Node) =
+      if vehicle == self then (own(Own.Cos), own(Own.Sin))
+      else (own(Own.KnownCos + vehicle), own(Own.KnownSin + vehicle))
     Angles(
       formulas(self).trace,
       trace,
-      input =>
-        if input < view then trace.input(input)
-        else if input == view then trace.binary(Op.Atan2, own(Own.Sin), own(Own.Cos))
-        else own(Own.Elapsed),
-      input => Option.when(input == view)((own(Own.Cos), own(Own.Sin))),
+      input(_) match
+        case PolicyInput.Position(vehicle, 2)    => own(Own.Altitude + vehicle)
+        case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
+        case PolicyInput.Velocity(_, 2)          => trace.const(0)
+        case PolicyInput.Velocity(vehicle, axis) => trace.input((2 + axis) * count + vehicle)
+        case PolicyInput.Heading(vehicle)        =>
+          val (cos, sin) = direction(vehicle)
+          trace.binary(Op.Atan2, sin, cos)
+        case PolicyInput.Age(vehicle)   => own(Own.Age + vehicle)
+        case PolicyInput.Elapsed        => own(Own.Elapsed)
+        case PolicyInput.ActsIn         => own(Own.ActsIn)
+        case PolicyInput.Cruise         => own(Own.Cruise)
+        case PolicyInput.StartDown      => own(Own.StartDown)
+        case PolicyInput.Memory(number) => own(Own.Memory + number)
+      ,
+      input(_) match
+        case PolicyInput.Heading(vehicle) => Some(direction(vehicle))
+        case _                            => None
+      ,
       number => own(Own.Parameters + number)
     )
 
-  /** By vehicle: the velocity commanded, north and east, and the cosine and sine of its heading. */
+  /** By vehicle: the velocity commanded, north and east; cosine and sine of its heading, or anything where
+    * nobody asks; and what is remembered.
+    */
   val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
-    val Vector((_, headingRad), (_, speedMps)) = formulas(self).outputs: @unchecked
-    val (cos, sin)                             = angles(self).cosSin(angles(self).factored(headingRad))
-    val speed                                  = angles(self).convert(speedMps)
-    Vector(trace.mul(speed, cos), trace.mul(speed, sin), cos, sin)
+    val by     = angles(self)
+    val course = formulas(self).motion match
+      case Motion.Along(headingRad, speedMps) =>
+        val (cos, sin) = by.cosSin(by.factored(headingRad))
+        val speed      = by.convert(speedMps)
+        Vector(trace.mul(speed, cos), trace.mul(speed, sin), cos, sin)
+      case Motion.With(northMps, eastMps) =>
+        val (north, east) = (by.convert(by.factored(northMps)), by.convert(by.factored(eastMps)))
+        val (cos, sin)    = if headings.exists(_(self)) then directionOf(self, north, east) else (north, east)
+        Vector(north, east, cos, sin)
+    course ++ formulas(self).memory.map(by.convert)
+
+  /** Of a velocity; where there is hardly one, that of before. */
+  private def directionOf(self: Int, north: Node, east: Node): (Node, Node) =
+    val speed  = trace.binary(Op.Hypot, north, east)
+    val isSlow = trace.lt(speed, trace.const(Action.LeastMps))
+    val by     = trace.where(isSlow, trace.const(1), speed)
+    (
+      trace.where(isSlow, trace.input(ownInput(self, Own.Cos)), trace.div(north, by)),
+      trace.where(isSlow, trace.input(ownInput(self, Own.Sin)), trace.div(east, by))
+    )
 
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
@@ -63,36 +115,92 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   /** What another input is. */
   def source(input: Int): Source =
     if input >= FirstShared then Source.Shared(input - FirstShared)
-    else
-      (input - view) % Stride match
-        case Own.Cos     => Source.Cos
-        case Own.Sin     => Source.Sin
-        case Own.Elapsed => Source.Elapsed
-        case number      => Source.Parameter(number - Own.Parameters)
+    else Own.source((input - view) % Stride)
+
+  private val sources = functions.map(_.inputs.toVector.filter(reading(_).isEmpty).map(source))
 
   /** Whether anybody looks at velocities. */
   val needsVelocity: Boolean =
     (shared +: functions).exists(_.inputs.exists(reading(_).exists((_, field) => field >= 2)))
 
+  /** Whether a vehicle asks how old readings are, what others were told, or when its command acts. */
+  val asksMore: Vector[Boolean] = sources.map(_.exists:
+    case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn => true
+    case _                                                                   => false)
+
+  /** Whether a vehicle asks how old readings are. */
+  val asksAges: Vector[Boolean] = sources.map(_.exists(_.isInstanceOf[Source.Age]))
+
+  /** Whether somebody looks at how high vehicles are. */
+  val looksUp: Boolean = sources.exists(_.exists(_.isInstanceOf[Source.Altitude]))
+
+  /** Whether somebody may ask its vehicle to turn. */
+  val turns: Boolean = formulas.exists(_.turns)
+
+  /** Whether all decide by positions, velocities, time and the own heading alone, as [[TeamPolicy]] does. */
+  val isPlain: Boolean = formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
+    case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
+    case _                                                                                => false
+
+  /** How many numbers a vehicle's policy remembers. */
+  def memories(self: Int): Int = formulas(self).memory.size
+
   /** How many numbers a vehicle's policy differs by from another of its form. */
   def parameters(self: Int): Int = derived(self).size
 
-  def parametersOf(self: Int, policy: TeamPolicy): Array[Double] =
+  def parametersOf(self: Int, policy: AgentPolicy): Array[Double] =
     numbers(self)(Array.emptyDoubleArray, formulas(self).parametersOf(policy))
 
-  /** Whether a team is of this form. */
-  def fits(policies: Vector[TeamPolicy]): Boolean =
-    policies.size == count && policies.indices.forall(self => formulas(self).fits(policies(self)))
+  /** What a vehicle's policy remembers before its first decision. */
+  def startOf(self: Int, policy: AgentPolicy): Array[Double] = formulas(self).startOf(policy)
+
+  /** Why one of a team does not keep the altitude of its start. */
+  def leaves(agents: Vector[RolloutAgent]): Option[String] =
+    agents.indices.iterator
+      .flatMap(self => formulas(self).leaves(agents(self).policy, agents(self).altitudeDownM))
+      .nextOption()
+
+  private def fits(team: Team): Boolean =
+    team.policies.size == count && team.policies.indices.forall(self =>
+      formulas(self).fits(team.policies(self))
+    )
 
   private def ownInput(self: Int, number: Int) = view + self * Stride + number
 
 private[lanes] object TeamLanes:
-  /** Inputs that each vehicle has for itself. */
+  /** Inputs that each vehicle has for itself; some of them for each other one. */
   private object Own:
     final val Cos        = 0
     final val Sin        = 1
     final val Elapsed    = 2
-    final val Parameters = 3
+    final val ActsIn     = 3
+    final val Cruise     = 4
+    final val StartDown  = 5
+    final val Age        = 6
+    final val KnownCos   = Age + Engagement.Most
+    final val KnownSin   = KnownCos + Engagement.Most
+    final val Altitude   = KnownSin + Engagement.Most
+    final val Memory     = Altitude + Engagement.Most
+    final val Parameters = Memory + MostMemories
+
+    def source(number: Int): Source =
+      if number >= Parameters then Source.Parameter(number - Parameters)
+      else if number >= Memory then Source.Memory(number - Memory)
+      else if number >= Altitude then Source.Altitude(number - Altitude)
+      else if number >= KnownSin then Source.KnownSin(number - KnownSin)
+      else if number >= KnownCos then Source.KnownCos(number - KnownCos)
+      else if number >= Age then Source.Age(number - Age)
+      else
+        number match
+          case Cos     => Source.Cos
+          case Sin     => Source.Sin
+          case Elapsed => Source.Elapsed
+          case ActsIn  => Source.ActsIn
+          case Cruise  => Source.Cruise
+          case _       => Source.StartDown
+
+  /** Numbers that one policy may remember. */
+  private final val MostMemories = 1024
 
   /** More parameters than a policy of as many operations as a trace holds may have. */
   private final val Stride      = 1 << 18
@@ -104,26 +212,45 @@ private[lanes] object TeamLanes:
   private def sharedInput(number: Int) = FirstShared + number
 
   enum Source:
-    case Cos, Sin, Elapsed
+    case Cos, Sin, Elapsed, ActsIn, Cruise, StartDown
+    case Age(vehicle: Int)
+    case KnownCos(vehicle: Int)
+    case KnownSin(vehicle: Int)
+    case Altitude(vehicle: Int)
+    case Memory(number: Int)
     case Parameter(number: Int)
     case Shared(number: Int)
 
-  private val known = Forms[Vector[TeamPolicy], TeamLanes](_.fits(_)): policies =>
-    Expect
-      .each(policies.zipWithIndex)((policy, self) => formulaOf(policy, self, policies.size))
-      .map(TeamLanes(_))
+  private final case class Team(policies: Vector[AgentPolicy], assignment: Assignment, isPredicted: Boolean)
 
-  /** How a team flies by lanes, or why it does not. Compiled once for each form. */
-  def of(policies: Vector[TeamPolicy]): Either[Untraceable, TeamLanes] = known(policies)
+  /** By what is not in a policy. */
+  private val known = ConcurrentHashMap[(Assignment, Boolean), Forms[Team, TeamLanes]]()
 
-  /** What a policy computes as one of so many. */
-  def formulaOf(policy: TeamPolicy, self: Int, count: Int): Either[Untraceable, Formula] = Formula.of(
-    policy,
-    "course",
-    Seq("northM", "eastM", "northMps", "eastMps").map(field => s"seen.$field" -> count).toMap,
-    Some(Seq(classOf[TeamObservation])),
-    Map("seen.self" -> self)
-  )
+  /** How a team flies by lanes, or why it does not. Compiled once for each form.
+    *
+    * @param isPredicted whether readings are carried forward
+    */
+  def of(
+      policies: Vector[AgentPolicy],
+      assignment: Assignment,
+      isPredicted: Boolean
+  ): Either[Untraceable, TeamLanes] =
+    val forms = known.computeIfAbsent(
+      (assignment, isPredicted),
+      _ =>
+        Forms[Team, TeamLanes](_.fits(_)): team =>
+          Expect
+            .each(team.policies.zipWithIndex): (policy, self) =>
+              MemberFormula.of(policy, self, assignment, isPredicted)
+            .flatMap: formulas =>
+              val most = formulas.map(_.memory.size).max
+              Expect
+                .that(most <= MostMemories)(
+                  Untraceable(s"it remembers $most numbers, more than $MostMemories")
+                )
+                .map(_ => TeamLanes(formulas))
+    )
+    forms(Team(policies, assignment, isPredicted))
 
 /** What several expressions have in common, of all that depends on the first inputs alone.
   *

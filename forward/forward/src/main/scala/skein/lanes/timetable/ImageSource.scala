@@ -72,7 +72,7 @@ private[lanes] object ImageSource:
       link,
       StandingStill.Response(),
       Asking(),
-      keepsKinematics = false,
+      keepsAll = false,
       standsStill = false,
       // Nobody is asked.
       ring = 1

@@ -34,6 +34,7 @@ private[lanes] object Note:
     * @param opponentAgeS the same of the opponent's
     * @param aheadS of one who sees: for how long what is believed is carried on, or −1 where nothing is
     *   predicted
+    * @param more of a team that asks for it
     */
   final case class Decide(
       vehicle: Int,
@@ -44,8 +45,17 @@ private[lanes] object Note:
       opponent: Int,
       ownAgeS: Double,
       opponentAgeS: Double,
-      aheadS: Option[Double]
+      aheadS: Option[Double],
+      more: Option[More]
   ) extends Note
+
+  /** What a decision is told besides.
+    *
+    * @param known by vehicle, the number of the decision that was sent last
+    * @param agesS by vehicle, of its reading
+    * @param actsInS until the command acts; 0 where nothing is predicted
+    */
+  final class More(val known: Array[Int], val agesS: Array[Double], val actsInS: Double)
 
   /** The command of a decision begins to act. */
   final case class Act(vehicle: Int, atS: Double, decision: Int) extends Note

@@ -27,6 +27,8 @@ import skein.vehicle.ConstantVelocity
   * @param propagations by which readings are carried forward, in loops that predict
   * @param readings places that the readings of one vehicle need at a time
   * @param headings the same for the headings of one vehicle
+  * @param more what decisions are told besides, if that was asked for; then a decision's third place is its
+  *   number there
   */
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
@@ -36,13 +38,16 @@ private[skein] final class Timetable private[lanes] (
     val views: Array[Int],
     val propagations: Array[Propagation],
     val readings: Int,
-    val headings: Int
+    val headings: Int,
+    val more: Timetable.More = Timetable.More.None
 ):
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
   lazy val bytes: Long =
-    4L * (operations.length + times.length + views.length) + propagations.iterator.map(_.bytes).sum
+    more.bytes + 4L * (operations.length + times.length + views.length) + propagations.iterator.map(
+      _.bytes
+    ).sum
 
 private[skein] object Timetable:
   val Fields: Int = 6
@@ -56,6 +61,7 @@ private[skein] object Timetable:
   /** The timetable of a world of this key, for so many vehicles of this kind.
     *
     * @param eyes of vehicles that see, in a duel
+    * @param tellsMore see [[Timetable.more]]; not in a duel by [[skein.lanes.DuelBatch]]
     */
   def of(
       vehicles: Int,
@@ -64,9 +70,10 @@ private[skein] object Timetable:
       link: Delays,
       key: Int,
       model: TimetableDynamics,
-      eyes: Map[Int, SensorModel] = Map.empty
+      eyes: Map[Int, SensorModel] = Map.empty,
+      tellsMore: Boolean = false
   ): Timetable =
-    val notes = TimetableNotes(vehicles, model, eyes)
+    val notes = TimetableNotes(vehicles, model, eyes, tellsMore)
     Rollout(
       StandingStill.engagement(vehicles, durationS, eyes),
       unpredicted(timing),
@@ -79,6 +86,20 @@ private[skein] object Timetable:
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
+
+  /** What decisions are told of the vehicles, by number of the decision and of the vehicle.
+    *
+    * @param headings places of the headings that each was told last, as far as known
+    * @param agesS of the readings, s
+    * @param actsInS by decision: until its command acts, s
+    */
+  final class More(vehicles: Int, headings: Array[Int], agesS: Array[Float], val actsInS: Array[Float]):
+    def heading(decision: Int, vehicle: Int): Int = headings(decision * vehicles + vehicle)
+    def ageS(decision: Int, vehicle: Int): Float  = agesS(decision * vehicles + vehicle)
+    private[timetable] def bytes: Long            = 4L * (headings.length + agesS.length + actsInS.length)
+
+  object More:
+    val None: More = More(0, Array.emptyIntArray, Array.emptyFloatArray, Array.emptyFloatArray)
 
 /** Puts events in the order of their times, chooses places for readings and headings, each until its last
   * use, and tells each vehicle when what happens to it.
@@ -115,6 +136,11 @@ private final class TimetableCompiler(
   private val views        = Array.newBuilder[Int]
   private var count        = 0
 
+  // What decisions are told besides.
+  private val knownHeadings  = Array.newBuilder[Int]
+  private val agesS, actsInS = Array.newBuilder[Float]
+  private var toldDecisions  = 0
+
   private val operations = Array.ofDim[Int](end * Fields)
   private val numbers    = Timetable.LeastNumbers.max(clocks.map(_.numbers).max)
   private val times      = Array.ofDim[Float](end * numbers)
@@ -141,7 +167,8 @@ private final class TimetableCompiler(
       views.result(),
       propagations.result(),
       readings.map(_.size).max,
-      headings.map(_.size).max
+      headings.map(_.size).max,
+      Timetable.More(vehicles, knownHeadings.result(), agesS.result(), actsInS.result())
     )
 
   private def findLastUses(note: Note, at: Int): Unit = note match
@@ -151,7 +178,9 @@ private final class TimetableCompiler(
       val seen = notes.views(decide.view)
       for each <- 0 until vehicles do decidedUpon(each)(seen(each)) = true
       headings(vehicle).usedAt(before, at)
-      if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
+      decide.more match
+        case Some(more) => for each <- 0 until vehicles do headings(each).usedAt(more.known(each), at)
+        case None       => if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
       // Its effort is counted even where nobody uses it.
       headings(vehicle).usedAt(before + 1, at)
     case Note.Act(vehicle, _, decision)         => headings(vehicle).usedAt(decision, at)
@@ -203,7 +232,11 @@ private final class TimetableCompiler(
       DECIDE,
       vehicle,
       tell(note.view),
-      if vehicles == 2 then headings(1 - vehicle).place(note.opponent) else 0,
+      note.more match
+        case Some(more)            => tellMore(more)
+        case None if vehicles == 2 => headings(1 - vehicle).place(note.opponent)
+        case None                  => 0
+      ,
       headings(vehicle).place(before),
       // Taken before the one before is given back: its effort is counted from there.
       headings(vehicle).take(before + 1)
@@ -216,8 +249,19 @@ private final class TimetableCompiler(
     )
     releaseView(note.view, at)
     headings(vehicle).release(before, at)
-    if vehicles == 2 then headings(1 - vehicle).release(note.opponent, at)
+    note.more match
+      case Some(more) => for each <- 0 until vehicles do headings(each).release(more.known(each), at)
+      case None       => if vehicles == 2 then headings(1 - vehicle).release(note.opponent, at)
     headings(vehicle).release(before + 1, at)
+
+  /** @return the decision's number among those that are told more */
+  private def tellMore(more: Note.More): Int =
+    for each <- 0 until vehicles do
+      knownHeadings += headings(each).place(more.known(each))
+      agesS += more.agesS(each).toFloat
+    actsInS += more.actsInS.toFloat
+    toldDecisions += 1
+    toldDecisions - 1
 
   private def predict(note: Note.Predict, at: Int): Unit =
     import note.{from, vehicle}

@@ -12,7 +12,8 @@ import skein.units.Instant
 private[lanes] final class TimetableNotes(
     vehicles: Int,
     model: TimetableDynamics,
-    eyes: Map[Int, SensorModel]
+    eyes: Map[Int, SensorModel],
+    tellsMore: Boolean
 ) extends LoopObserver:
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
@@ -106,7 +107,9 @@ private[lanes] final class TimetableNotes(
       opponent.fold(0)(upon.sentDecision),
       opponent.fold(0.0)(_ => ageS(vehicle)),
       opponent.fold(0.0)(ageS),
-      Option.when(eyes.contains(vehicle))(aheadS)
+      Option.when(eyes.contains(vehicle))(aheadS),
+      Option.when(tellsMore):
+        Note.More(upon.sentDecision.clone, Array.tabulate(vehicles)(ageS), aheadS.max(0))
     )
     decisions(vehicle) += 1
 

@@ -78,6 +78,7 @@ private[lanes] final class GpuTeamKernel(
                 case Source.Elapsed          => now.time(0)
                 case Source.Parameter(which) => number(first(self) + Starts + which)
                 case Source.Shared(which)    => code.loadOwn(shared, which)
+                case other                   => throw IllegalStateException(s"a GPU does not know $other")
         ,
         which => throw IllegalStateException(s"a team's functions have no parameter $which")
       )

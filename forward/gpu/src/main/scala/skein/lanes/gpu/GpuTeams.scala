@@ -32,7 +32,7 @@ private[lanes] final class GpuTeams(
     val each                   = worlds.episodesOfEach
     def candidate(number: Int) = prepared(number * each)
     val (known, unknown)       =
-      Array.range(0, GpuEpisodes.candidatesOf(worlds)).partition(candidate(_).form.isDefined)
+      Array.range(0, GpuEpisodes.candidatesOf(worlds)).partition(candidate(_).form.exists(_.team.isPlain))
     val flown = GpuParts(known, each, onProgress, isCancelled)
       .fly(candidate(_).form.get, form => form.team.count * form.durationS / periodS):
         (form, some, numbers) =>
@@ -67,5 +67,7 @@ private[lanes] final class GpuTeams(
       GpuTeamKernel(gpu, candidates(0).vehicles, vehicle, prediction, form.team, form.scores, layout)
     )
     val numbers =
-      candidates.map(each => GpuTeamKernel.numbersOf(each.vehicles, each.ofPolicies, each.ofQuantities))
+      candidates.map(each =>
+        GpuTeamKernel.numbersOf(each.vehicles, each.ofPolicies.map(_.parameters), each.ofQuantities)
+      )
     kernel.fly(episodes, candidates.length, Vector((numbers.flatten, candidates.indices.toArray)), 0)

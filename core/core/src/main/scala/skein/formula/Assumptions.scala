@@ -1,0 +1,32 @@
+package skein.formula
+
+/** Which conditions hold on the way that is followed while a method is traced. Mutable. */
+private[formula] final class Assumptions:
+  private var known = Map.empty[Node, Boolean]
+
+  /** Whether a condition holds; none where that is not known. */
+  def apply(condition: Node): Option[Boolean] = condition.op match
+    case Op.Always => Some(true)
+    case Op.Not    => apply(condition.args(0)).map(!_)
+    case _         => known.get(condition)
+
+  /** Goes a way on which a condition holds, or does not. */
+  def under[A](condition: Node, holds: Boolean)(way: => A): A =
+    val before = known
+    assume(condition, holds)
+    try way
+    finally known = before
+
+  private def assume(condition: Node, holds: Boolean): Unit =
+    if condition.op == Op.Not then assume(condition.args(0), !holds)
+    else if !known.contains(condition) then
+      known += condition -> holds
+      // What was known of two conditions may tell the other one now.
+      for (both, each) <- known if both.op == Op.And || both.op == Op.Or do tellParts(both, each)
+
+  private def tellParts(both: Node, holds: Boolean): Unit =
+    val Vector(a, b) = both.args
+    // Of `and` that holds, and of `or` that does not, both parts are alike.
+    if (both.op == Op.And) == holds then for part <- both.args do assume(part, holds)
+    else
+      for (one, other) <- Seq((a, b), (b, a)) if apply(one).contains(!holds) do assume(other, holds)

@@ -1,0 +1,31 @@
+package skein.policy
+
+import skein.units.*
+
+/** What an action is taken for where headings and speeds are asked for. */
+class ActionSuite extends munit.FunSuite:
+  private val down  = Metres(-20)
+  private val place = Action.Position(Vector3(1, 2, -20), MetresPerSecond(4))
+  private val still = Seq(
+    Action.Velocity(Vector3(0, 0, -2)),
+    Action.VelocityAt(0, 0, down),
+    place,
+    Action.Turn(Yaw.Still),
+    Action.Hover,
+    Action.Land
+  )
+
+  test(
+    "its heading is where it flies, however slowly, or else where " +
+      "it looks; what says neither keeps the one before"
+  ):
+    assertEquals(Action.Velocity(Vector3(0, 0.5, -3)).headingRad(0.7), math.Pi / 2)
+    assertEquals(Action.VelocityAt(-0.01, 0, down).headingRad(0.7), math.Pi)
+    assertEquals(Action.Turn(Yaw.Towards(Radians(0.3))).headingRad(0.7), 0.3)
+    assertEquals(Action.Attitude(Radians(0.1), Radians(0.2), Radians(0.3), 0.5).headingRad(0.7), 0.3)
+    for action <- still do assertEquals(action.headingRad(0.7), 0.7, action.toString)
+
+  test("only what flies with a velocity has a speed: the horizontal one"):
+    assertEquals(Action.Velocity(Vector3(3, 4, -12)).speed, MetresPerSecond(5))
+    assertEquals(Action.VelocityAt(3, -4, down).speed, MetresPerSecond(5))
+    for action <- still do assertEquals(action.speed, MetresPerSecond(0), action.toString)
