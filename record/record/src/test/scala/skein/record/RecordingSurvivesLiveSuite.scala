@@ -38,10 +38,10 @@ class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhur
     println(f"kill -9: ${events.size} of ${offered + 1} rows kept, the last $lostMs%.0f ms old")
     lostMs
 
-  folder.test("a kill -9 leaves a readable file without at most the last 100 ms"): folder =>
+  folder.test("a kill -9 leaves a readable file without at most the last 200 ms"): folder =>
     // A busy disk may delay a commit; it does not do so each time.
     val lostMs = Iterator.range(0, 3).map(attempt => killed(folder.resolve(s"flight$attempt.duckdb")))
-    assert(lostMs.exists(_ <= 100), "more than 100 ms were lost three times in a row")
+    assert(lostMs.exists(_ <= 200), "more than 200 ms were lost three times in a row")
 
   folder.test(
     "a disk that takes no more ends the recording with a clear error and leaves what was committed"
