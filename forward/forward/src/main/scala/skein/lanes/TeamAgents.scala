@@ -167,11 +167,11 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       if times(world) < before then
         cos(world) = newCos(world)
         sin(world) = newSin(world)
-        var number = world
-        while number < memory.length do
-          memory(number) = newMemory(number)
-          number += WORLDS
       world += 1
+    var number = 0
+    while number < memory.length do
+      if times(number % WORLDS) < before then memory(number) = newMemory(number)
+      number += 1
 
 private object TeamDecisions:
   private val Never = -1
