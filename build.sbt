@@ -233,7 +233,7 @@ lazy val torture = project.in(file("fly/torture"))
 /** Any program's loop, measured from between it and its simulator. */
 lazy val observe = project.in(file("fly/observe"))
   .settings(artifact("observe", "Any program's control loop, measured from outside"))
-  .dependsOn(flight % "compile->compile;test->test")
+  .dependsOn(flight % "compile->compile;test->test", link % "test->test")
   .settings(underAgent, libraryDependencies ++= munit)
 
 /** Episodes step by step, for learners. */

@@ -53,7 +53,7 @@ const tried = await page.evaluate(async targets => {
   for (const { name, port, body } of targets) {
     const bytes = Uint8Array.from(atob(body), letter => letter.charCodeAt(0)), url = `http://127.0.0.1:${port}/`;
     const ways = {
-      read: () => read(url), flights: () => read(`${url}flights`), metrics: () => read(`${url}metrics`),
+      read: () => read(url), flights: () => read(`${url}flights`),
       post: () => read(url, { method: "POST", mode: "no-cors", body: new Blob([bytes]) }).then(said => said === "" ? "refused" : said),
       hover: () => read(`${url}hover`, { method: "POST", headers: { "X-Skein-Token": "right" } }),
       beacon: async () => { navigator.sendBeacon(url, new Blob([bytes])); return "refused"; },
@@ -67,7 +67,7 @@ const tried = await page.evaluate(async targets => {
   return all;
 }, targets);
 // A name of another site that leads here: the browser takes the answers for that site's own.
-for (const { name, port } of targets) for (const path of ["", "flights", "metrics"]) {
+for (const { name, port } of targets) for (const path of ["", "flights"]) {
   const rebound = await context.newPage();
   try {
     const answer = await rebound.goto(`http://rebound.example:${port}/${path}`, { timeout: 5000 });

@@ -82,7 +82,7 @@ class ArchitectureSuite extends munit.FunSuite:
         "nanoTime",
         "currentTimeMillis"
       )
-    val found   =
+    val found =
       for
         source <- house.sources if source.module == "core" || source.module == "forward"
         if !source.path.endsWith("units/Clock.scala")

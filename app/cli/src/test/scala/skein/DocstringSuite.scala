@@ -72,8 +72,8 @@ class DocstringSuite extends munit.FunSuite:
 
   private val Short = 40
 
-  /** Words with several meanings here, and how often docstrings may still say them. Rewrite a docstring rather
-    * than raise a number; lower it when there are fewer.
+  /** Words with several meanings here, and how often docstrings may still say them. Rewrite a docstring
+    * rather than raise a number; lower it when there are fewer.
     */
   private val mostOf = Vector(
     "the same" -> 359,
@@ -90,10 +90,13 @@ class DocstringSuite extends munit.FunSuite:
 
   private val mostShort = 1432
 
-  test("docstrings that are too short to say more than a name, and words with several meanings, grow no more"):
+  test(
+    "docstrings that are too short to say more than a name, and words with several meanings, grow no more"
+  ):
     val all   = sources.flatMap(path => texts(Files.readString(path)))
     val short = all.count(_.length <= Short)
-    val grown = mostOf.map((word, most) => (word, count(word, all), most)).filter((_, now, most) => now > most)
+    val grown =
+      mostOf.map((word, most) => (word, count(word, all), most)).filter((_, now, most) => now > most)
     assert(short <= mostShort, s"$short docstrings of at most $Short characters, expected $mostShort at most")
     assertEquals(grown, Vector.empty, "word, how often docstrings say it, how often they may")
 

@@ -81,7 +81,11 @@ object House:
         folder <- folders
         main = folder.resolve("src/main") if Files.isDirectory(main)
         path <- Files.walk(main).iterator.asScala if isSource(path)
-      yield read(path, if folder.getParent.endsWith("bench") then s"bench-${folder.getFileName}" else folder.getFileName.toString)
+      yield read(
+        path,
+        if folder.getParent.endsWith("bench") then s"bench-${folder.getFileName}"
+        else folder.getFileName.toString
+      )
     )
 
   private val noRooms = Set("docs", "examples", "project", "target")

@@ -72,7 +72,7 @@ object BudgetFigure:
       height
     )
     val contours = contoursOf(map).map((a, b) => Mark.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit))
-    val marks = map.marks.filter(map.isOnMap).flatMap: link =>
+    val marks    = map.marks.filter(map.isOnMap).flatMap: link =>
       val at = panel.at(link.roundTrip.mean.toMillis / per, link.roundTrip.jitter.toMillis / per)
       Vector(
         Mark.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),

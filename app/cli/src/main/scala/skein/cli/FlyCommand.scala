@@ -4,7 +4,7 @@ import java.nio.file.Path
 import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
-import skein.flight.{FlightResult, OutsideRequests, VirtualFlights, WarmUp}
+import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.{Address, TcpTransport}
 import skein.loop.{AnyLoop, FlightOutcome, LoopTimings}
 import skein.record.{ClockKind, DuckDbRecorder}

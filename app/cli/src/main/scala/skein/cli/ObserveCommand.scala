@@ -16,7 +16,9 @@ final case class ObserveOptions(
     listen: String = "127.0.0.1:41452",
     @arg(doc = "the simulator: AirSim, one of its forks, or ./skein serve")
     simulator: String = "127.0.0.1:41451",
-    @arg(doc = "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …")
+    @arg(doc =
+      "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …"
+    )
     link: String = "none",
     @arg(doc = "seed of every random choice of the emulated network")
     seed: Long = 1,
@@ -90,7 +92,8 @@ object ObserveCommand
       val program = ProcessBuilder(command*).inheritIO().start()
       Edge.untilInterrupted(() => program.destroy()):
         val status = program.waitFor()
-        if status != 0 then Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
+        if status != 0 then
+          Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
       if !program.waitFor(GraceS, TimeUnit.SECONDS) then program.destroyForcibly(): Unit
       Right(())
     catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
@@ -99,7 +102,8 @@ object ObserveCommand
     tables.map(table => Section(table.title, table.note, Some(TextTable(table.header, table.rows))))
 
   private def text(observed: skein.observe.Observed): String =
-    val tables   = Section.text(sections(ObservedTables.sections(observed).filterNot(_.title == ObservedTables.Findings)))
+    val tables =
+      Section.text(sections(ObservedTables.sections(observed).filterNot(_.title == ObservedTables.Findings)))
     val findings = ObservedTables.findings(observed).flatMap(Paragraph.lines(_, 100))
     (tables +: "" +: findings).mkString("\n")
 

@@ -238,8 +238,9 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         case "searches/…/scenario.conf"                                 => scenario.toString
         // What one command of a guide writes, a later one reads.
         case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
-        case model if model.startsWith("mujoco:examples/") => model.replace("examples/", s"${Documentation.root}/examples/")
-        case word                                          => word
+        case model if model.startsWith("mujoco:examples/")                    =>
+          model.replace("examples/", s"${Documentation.root}/examples/")
+        case word => word
       // The usual port may be taken here.
       val words          = asked ++ (if asked.contains("--view") then Seq("--view-port", "0") else Nil)
       val (status, told) = words.head match

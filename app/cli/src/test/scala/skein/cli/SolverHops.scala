@@ -45,7 +45,8 @@ import skein.scenario.Scenarios
       s"${solver.answers} answers, added ${spread(solver.roundTripsMs)}, ${solver.missed} missed"
     s"${summary.name}: $hop; age at command ${spread(summary.commandAgesMs)}; result $headline"
 
-  val broker = KafkaBroker.start(folder.resolve("broker"), Address("127.0.0.1", 9092)).fold(sys.error, identity)
+  val broker =
+    KafkaBroker.start(folder.resolve("broker"), Address("127.0.0.1", 9092)).fold(sys.error, identity)
   for (kind, at) <- Seq("tcp" -> "tcp://127.0.0.1:7400", "kafka" -> s"kafka://${broker.address}/skein") do
     val log    = folder.resolve(s"$kind-decide.log")
     val solver = started(log, "decide", "--at", at)

@@ -75,10 +75,11 @@ object ConfigurationReference:
       parameters.getOrElse(name, throw java.util.NoSuchElementException(s"no @param $name: $text"))
 
   private def docstring(scenario: String): Docstring =
-    val source = Seq("core/core/src/main/scala/skein/scenario", "learn/recognition/src/main/scala/skein/recognition")
-      .map(folder => Documentation.root.resolve(s"$folder/$scenario.scala"))
-      .find(Files.exists(_))
-      .fold(throw java.util.NoSuchElementException(s"no source of $scenario"))(Files.readString)
+    val source =
+      Seq("core/core/src/main/scala/skein/scenario", "learn/recognition/src/main/scala/skein/recognition")
+        .map(folder => Documentation.root.resolve(s"$folder/$scenario.scala"))
+        .find(Files.exists(_))
+        .fold(throw java.util.NoSuchElementException(s"no source of $scenario"))(Files.readString)
     val before  = source.take(source.indexOf(s"final case class $scenario("))
     val comment = before.substring(before.lastIndexOf("/**") + 3, before.lastIndexOf("*/"))
     val words   = comment.linesIterator.map(_.trim.stripPrefix("*").trim).mkString(" ").trim

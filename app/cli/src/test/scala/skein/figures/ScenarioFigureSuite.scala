@@ -22,8 +22,13 @@ class ScenarioFigureSuite extends munit.FunSuite:
         (Instant.ofNanos(step * 100_000_000L), Vector3(step * 0.5, 0, -upM), Vector3(5, 0, 0))
       )
     )
-    val tracks = Tracks.of(Vector(track("One", 5), track("Two", 7))).get
-    ScenarioFlights(Vector(ScenarioFlights.Flown(summary, Result.of(Capped(ceilingM), tracks))))
+    val tracks   = Tracks.of(Vector(track("One", 5), track("Two", 7))).get
+    val scenario = Capped(ceilingM)
+    ScenarioFlights(
+      scenario,
+      Vector(ScenarioFlights.Flown(summary, Result.of(scenario, tracks))),
+      withoutResult = Vector.empty
+    )
 
   private def texts(drawing: Drawing) = drawing.shapes.collect { case text: Mark.Text => text.content }
 

@@ -104,12 +104,12 @@ object PolicyFormula:
     val count = assignment.rivals.size
     val seen  = Tagged(self, count, assignment.rivals(self), isPredicted)
     for
-      _ <- Either.cond(policy.sensors.isEmpty, (), Untraceable("it reads sensors, which no model has"))
+      _    <- Either.cond(policy.sensors.isEmpty, (), Untraceable("it reads sensors, which no model has"))
       kept <- startOf(policy)
       (memory, starts) = kept
-      target = Deciding.of(policy, assignment)
-      read   = Reading(seen, memory)
-      loader = Option(policy.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
+      target           = Deciding.of(policy, assignment)
+      read             = Reading(seen, memory)
+      loader           = Option(policy.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
       traced <-
         Formula.ofExamples(target, "decide", Deciding.Descriptor, Seq(seen.example, memory), loader)(read.of)
     yield

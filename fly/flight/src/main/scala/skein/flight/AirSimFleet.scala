@@ -168,7 +168,8 @@ private[flight] final class AirSimFleet(
 /** How long AirSim is waited for, and what of its client a recording keeps. */
 object AirSimFleet:
   /** Of every question of a loop. While the simulator stands still nothing ages, so `paused` waits. */
-  private def timeout(loop: AnyLoop): Span = if loop == LoopKind.Paused then Span.ofSeconds(3) else LoopTimings.AskTimeout
+  private def timeout(loop: AnyLoop): Span =
+    if loop == LoopKind.Paused then Span.ofSeconds(3) else LoopTimings.AskTimeout
 
   /** Asks a simulator for its vehicles, over a connection of its own.
     *

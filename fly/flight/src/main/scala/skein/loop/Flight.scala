@@ -57,8 +57,8 @@ object Flight:
     * @param loop one of ours, or a user's own
     * @param time what lets the simulator's time pass; only `paused` needs it
     * @param onTime how it has ended when its time is over
-    * @param on what one of our loops runs on, else what the system's other streams do. Its own can be asked for
-    *   the graph, whatever the others do: one that ends before it answers keeps the answers of all
+    * @param on what one of our loops runs on, else what the system's other streams do. Its own can be asked
+    *   for the graph, whatever the others do: one that ends before it answers keeps the answers of all
     */
   def start(
       loop: AnyLoop,

@@ -21,10 +21,10 @@ object LoopInstance:
     import system.dispatcher
     if loop == LoopKind.Paused then Future.successful(None)
     else
-      val ports   = fleet.agents.map(agent => Silent(agent.policy.sensors))
-      val team    = Team(fleet, ports, Clock.system, Forgetting, settings)
-      val own     = Materializer(system)
-      val flight  =
+      val ports  = fleet.agents.map(agent => Silent(agent.policy.sensors))
+      val team   = Team(fleet, ports, Clock.system, Forgetting, settings)
+      val own    = Materializer(system)
+      val flight =
         Flight.start(loop, team, None, Span.ofSeconds(600), Clock.system, Forgetting, on = Some(own))
       flight.outcome.onComplete(_ => own.shutdown())
       val running = RunningGraph(team.meters, flight.streams)

@@ -32,7 +32,7 @@ final class Conversation(connection: Int):
 
   /** One direction. */
   private final class Side:
-    private val framer = Framer(Listening, KeptBytes)
+    private val framer = new Framer(Listening, KeptBytes)
     private var isLost = false
 
     def length: Long = framer.valueBytes

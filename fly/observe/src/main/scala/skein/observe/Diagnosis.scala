@@ -10,7 +10,8 @@ import skein.units.Decimals.{brief, counted, fixed}
   */
 final case class Finding(name: String, what: String, remedy: String)
 
-/** Finds the usual faults of a loop's timing in what was observed. A pure function; the most costly come first.
+/** Finds the usual faults of a loop's timing in what was observed. A pure function; the most costly come
+  * first.
   */
 object Diagnosis:
 
@@ -66,7 +67,9 @@ object Diagnosis:
   private def inTurn(observed: Observed): Option[Finding] =
     val read = observed.vehicles.count(_.ownAgeMs.isDefined)
     worst(observed)(_.skewMs.fold(0.0)(_.median))
-      .filter((_, skew) => read > 1 && observed.readsOverlap < 0.1 && skew > Notable * stateMs(observed) && skew > 3)
+      .filter((_, skew) =>
+        read > 1 && observed.readsOverlap < 0.1 && skew > Notable * stateMs(observed) && skew > 3
+      )
       .map: (vehicle, skew) =>
         Finding(
           "reads in turn",
@@ -75,7 +78,9 @@ object Diagnosis:
         )
 
   private def stateMs(observed: Observed): Double =
-    observed.methods.filter(_.kind == CallKind.State).flatMap(_.roundTripMs).map(_.median).maxOption.getOrElse(0.0)
+    observed.methods.filter(
+      _.kind == CallKind.State
+    ).flatMap(_.roundTripMs).map(_.median).maxOption.getOrElse(0.0)
 
   private def saturated(observed: Observed): Option[Finding] =
     for
@@ -172,4 +177,5 @@ object Diagnosis:
   private def worst(observed: Observed)(by: ObservedVehicle => Double): Option[(ObservedVehicle, Double)] =
     observed.vehicles.filter(_.commands > 0).map(vehicle => (vehicle, by(vehicle))).maxByOption(_._2)
 
-  private def named(vehicle: ObservedVehicle) = if vehicle.name.isEmpty then "the first vehicle" else vehicle.name
+  private def named(vehicle: ObservedVehicle) =
+    if vehicle.name.isEmpty then "the first vehicle" else vehicle.name

@@ -46,8 +46,8 @@ final class LoopAccount:
     case Passed.Opened(connection, at) =>
       opened += 1
       connections(connection) = Open()
-    case called: Passed.Called     => tick(called.at); call(called)
-    case answered: Passed.Answered => tick(answered.at); answer(answered)
+    case called: Passed.Called                     => tick(called.at); call(called)
+    case answered: Passed.Answered                 => tick(answered.at); answer(answered)
     case Passed.Unreadable(connection, reason, at) =>
       if lost.size < MostLost then lost += s"connection ${connection + 1}: $reason"
     case Passed.Closed(connection, at) =>
@@ -211,7 +211,8 @@ final class LoopAccount:
       clock = stamps.map: known =>
         val wall = known.receivedAt.since(known.first._2).toSeconds
         val rate = if wall > 0 then known.validAt.since(known.first._1).toSeconds / wall else 1.0
-        SimulatorClock(rate, backwards, Span.ofNanos(stillNs)),
+        SimulatorClock(rate, backwards, Span.ofNanos(stillNs))
+      ,
       stalls = stalls.sortBy(-_.length.toNanos).toVector,
       smallCallMs = (quiet = quiet.distribution, besideImages = beside.distribution),
       readsOverlap = if reads == 0 then 0 else overlap.toDouble / reads,
@@ -281,21 +282,21 @@ object LoopAccount:
         .getOrElse(receivedAt.since(sentAt) / 2)
 
   private final class Vehicle(name: String):
-    var reading       = Option.empty[Reading]
-    var movedAt       = Option.empty[Instant]
-    val inFlight      = mutable.LinkedHashSet.empty[Pending]
-    var commands      = 0L
-    var superseded    = 0L
-    var overtaken     = 0L
-    var mostInFlight  = 0
-    var joined        = 0L
-    var leftRunning   = 0L
-    val ownAge        = Samples()
-    val othersAge     = Samples()
-    val bound         = Samples()
-    val every         = Samples()
-    val sinceOthers   = Samples()
-    val skew          = Samples()
+    var reading      = Option.empty[Reading]
+    var movedAt      = Option.empty[Instant]
+    val inFlight     = mutable.LinkedHashSet.empty[Pending]
+    var commands     = 0L
+    var superseded   = 0L
+    var overtaken    = 0L
+    var mostInFlight = 0
+    var joined       = 0L
+    var leftRunning  = 0L
+    val ownAge       = Samples()
+    val othersAge    = Samples()
+    val bound        = Samples()
+    val every        = Samples()
+    val sinceOthers  = Samples()
+    val skew         = Samples()
 
     def observed: ObservedVehicle = ObservedVehicle(
       name,

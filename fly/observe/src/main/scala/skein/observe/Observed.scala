@@ -1,14 +1,15 @@
 package skein.observe
 
 import skein.measure.Distribution
-import skein.units.{Instant, Span}
+import skein.units.Span
 
 /** What an observer knows of a loop. Ages are in milliseconds, at the moment at which a command passed.
   *
   * @param lasted from the first call to the last message
   * @param vehicles those that were read or commanded, in the order of their first call
   * @param methods in the order of their first call
-  * @param periodMs how a period from command to command was spent, on average; empty before the second command
+  * @param periodMs how a period from command to command was spent, on average; empty before the second
+  *   command
   * @param clock of the simulator; absent where no answer had a time stamp
   * @param stalls in which calls waited for much longer than usual, the longest first
   * @param smallCallMs round trips of small calls, while nobody transferred an image and while somebody did

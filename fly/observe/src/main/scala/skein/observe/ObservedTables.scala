@@ -8,7 +8,12 @@ object ObservedTables:
 
   /** @param header names of columns; those that begin with `<` are aligned left
     */
-  final case class Table(title: String, header: Vector[String], rows: Vector[Vector[String]], note: String = "")
+  final case class Table(
+      title: String,
+      header: Vector[String],
+      rows: Vector[Vector[String]],
+      note: String = ""
+  )
 
   val Findings = "Findings"
 
@@ -82,7 +87,8 @@ object ObservedTables:
       else found.map(one => s"${one.name.capitalize}: ${one.what}. Remedy: ${one.remedy}.")
     val paused = Option.when(observed.pauses > 0):
       s"The program paused, stepped or reset the simulator ${observed.pauses} times: while time stands still, ages grow and data does not get old."
-    val lost = observed.lost.map(reason => s"Not understood from there on, and passed on all the same: $reason.")
+    val lost =
+      observed.lost.map(reason => s"Not understood from there on, and passed on all the same: $reason.")
     val more = Option.when(observed.notKept > 0)(
       s"${observed.notKept} pieces passed while the observer was behind; their connections are not counted any more."
     )

@@ -13,8 +13,8 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.link.*
 import skein.units.{Clock, Instant}
 
-/** Stands between clients and their simulator, and keeps account of their loop. It changes nothing: bytes pass
-  * in their order, none is added, held back or lost, whatever they mean.
+/** Stands between clients and their simulator, and keeps account of their loop. It changes nothing: bytes
+  * pass in their order, none is added, held back or lost, whatever they mean.
   *
   * What passes is looked at by a thread of its own. It may lag behind by [[ObservingProxy.MostWaiting]]; what
   * comes beyond is passed on and not looked at, which is counted, and its connection is not understood any
@@ -73,13 +73,17 @@ object ObservingProxy:
     val account            = LoopAccount()
     val count              = AtomicInteger()
     val missed             = AtomicLong()
-    val _ = Thread
+    val _                  = Thread
       .ofPlatform()
       .daemon()
       .name("skein-observe")
       .start(() => look(pieces, waiting, missed, account))
 
-    def passing(connection: Int, isFromClient: Boolean, isWhole: Whole): Flow[ByteString, ByteString, NotUsed] =
+    def passing(
+        connection: Int,
+        isFromClient: Boolean,
+        isWhole: Whole
+    ): Flow[ByteString, ByteString, NotUsed] =
       Flow[ByteString].map: bytes =>
         if isWhole.is then
           if waiting.addAndGet(bytes.size) > MostWaiting then
@@ -95,8 +99,8 @@ object ObservingProxy:
       pieces.add(Piece.Opened(connection, clock.now())): Unit
       val server = BidiFlow
         .fromFlows(
-          switch.flow[ByteString].via(passing(connection, true, whole)),
-          switch.flow[ByteString].via(passing(connection, false, whole))
+          passing(connection, true, whole).via(switch.flow),
+          passing(connection, false, whole).via(switch.flow)
         )
         .atop(link.connection(TransportError.Lost(simulator, "the link broke")))
         .joinMat(transport.connect(simulator))(Keep.right)
@@ -144,7 +148,8 @@ object ObservingProxy:
           case Piece.Bytes(connection, isFromClient, bytes, at) =>
             waiting.addAndGet(-bytes.size): Unit
             conversations.get(connection).foreach: known =>
-              val passed = if isFromClient then known.fromClient(bytes, at) else known.fromSimulator(bytes, at)
+              val passed =
+                if isFromClient then known.fromClient(bytes, at) else known.fromSimulator(bytes, at)
               passed.foreach(account.add)
           case Piece.Closed(connection, at) =>
             conversations.remove(connection): Unit

@@ -30,7 +30,8 @@ enum Passed:
       at: Instant
   )
 
-  /** Bytes that are no MessagePack-RPC: nothing more of this connection is understood. They pass all the same.
+  /** Bytes that are no MessagePack-RPC: nothing more of this connection is understood. They pass all the
+    * same.
     */
   case Unreadable(connection: Int, reason: String, at: Instant)
 

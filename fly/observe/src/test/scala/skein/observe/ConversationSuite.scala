@@ -49,7 +49,10 @@ class ConversationSuite extends munit.FunSuite:
     val image = bytes(Arr(Int32(1), Int32(1), Null, Binary(new Array[Byte](3_000_000))))
     val talk  = Conversation(0)
     val found = (image ++ answered).grouped(10_000).toVector.flatMap(talk.fromSimulator(_, now))
-    assertEquals(found.collect { case answer: Passed.Answered => answer.bytes }, Vector(image.size.toLong, answered.size.toLong))
+    assertEquals(
+      found.collect { case answer: Passed.Answered => answer.bytes },
+      Vector(image.size.toLong, answered.size.toLong)
+    )
 
   test("bytes that are no messages are told once, and harm nothing"):
     for seed <- 1L to 500 do

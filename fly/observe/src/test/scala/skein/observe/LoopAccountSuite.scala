@@ -41,10 +41,10 @@ class LoopAccountSuite extends munit.FunSuite:
     def move(vehicle: String, sentMs: Double, connection: Int = 0): Long =
       call("moveByVelocityZ", vehicle, sentMs, connection)
 
-    def closed(ms: Double): Unit         = account.add(Passed.Closed(0, at(ms)))
-    def observed: Observed               = account.observed
-    def found: Set[String]               = Diagnosis.of(observed).map(_.name).toSet
-    def vehicle(name: String)            = observed.vehicles.find(_.name == name).get
+    def closed(ms: Double): Unit = account.add(Passed.Closed(0, at(ms)))
+    def observed: Observed       = account.observed
+    def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
+    def vehicle(name: String)    = observed.vehicles.find(_.name == name).get
 
   test("the age of a command's data counts from when it was sampled, by the clocks' offset"):
     val program = Program()
@@ -57,7 +57,9 @@ class LoopAccountSuite extends munit.FunSuite:
     assertEqualsDouble(seen.boundMs.get, 20, 0.2)
     assertEqualsDouble(seen.everyMs.get.mean, 100, 1e-6)
 
-  test("without time stamps a reading is as old as half of its round trip says, and the bound says how wrong that may be"):
+  test(
+    "without time stamps a reading is as old as half of its round trip says, and the bound says how wrong that may be"
+  ):
     val program = Program()
     program.called("simGetVehiclePose", "A", 0, 40)
     program.move("A", 50)
@@ -149,7 +151,8 @@ class LoopAccountSuite extends munit.FunSuite:
     back.called("getMultirotorState", "A", 100, 140, Some(-900))
     assertEquals(back.observed.clock.get.backwards, 1L)
     val still = Program()
-    for tick <- 0 until 10 do still.called("getMultirotorState", "A", tick * 100.0, tick * 100.0 + 40, Some(20))
+    for tick <- 0 until 10 do
+      still.called("getMultirotorState", "A", tick * 100.0, tick * 100.0 + 40, Some(20))
     assert(still.found("the simulator stands still"))
 
   test("commands that still run when their connection closes are told"):

@@ -12,8 +12,8 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** A program flies the built-in simulator through the observer, in virtual time; what the observer says of its
-  * data's age is held to what the program itself has noted.
+/** A program flies the built-in simulator through the observer, in virtual time; what the observer says of
+  * its data's age is held to what the program itself has noted.
   */
 class ObservingProxySimulation extends munit.FunSuite:
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))
@@ -40,14 +40,14 @@ class ObservingProxySimulation extends munit.FunSuite:
           proxy <- ObservingProxy.start(Address("controller", 41452), server.address, link, here, clock)
           client = AirSimClient(RpcClient(here, proxy.address, clock))
           direct = AirSimClient(RpcClient(here, server.address, clock))
-          beside   <- named(direct, "Evader")
-          evader   <- named(client, "Evader")
-          _        <- evader.enableApiControl()
-          _        <- evader.hoverAt(VehiclePose(Vector3(0, 0, -20), Quaternion.Identity))
+          beside <- named(direct, "Evader")
+          evader <- named(client, "Evader")
+          _      <- evader.enableApiControl()
+          _      <- evader.hoverAt(VehiclePose(Vector3(0, 0, -20), Quaternion.Identity))
           // Nothing lies between: the answer's time stamp is of now.
-          stamped  <- beside.kinematics().map(_.fold(error => throw AssertionError(error.message), identity))
-          offset    = stamped.receivedAt.since(stamped.validAt)
-          ages     <- Source
+          stamped <- beside.kinematics().map(_.fold(error => throw AssertionError(error.message), identity))
+          offset = stamped.receivedAt.since(stamped.validAt)
+          ages <- Source
             .tick(0.millis, 100.millis, ())
             .take(300)
             .mapAsync(1): _ =>

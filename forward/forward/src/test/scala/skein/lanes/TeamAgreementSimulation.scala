@@ -47,12 +47,12 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
     timing       <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
   do
     test(s"$name, ${timing.productPrefix}: the same decisions in each world compared, 6 s"):
-      val seed    = 23L
-      val random  = SplitMix64(seed)
-      val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
-      val key     = WorldRandom.key(2, 0, 0)
-      val model   = LaneDynamics.of(plant, drawn.head.agents).fold(fail(_), identity)
-      val lanes   =
+      val seed   = 23L
+      val random = SplitMix64(seed)
+      val drawn  = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
+      val key    = WorldRandom.key(2, 0, 0)
+      val model  = LaneDynamics.of(plant, drawn.head.agents).fold(fail(_), identity)
+      val lanes  =
         TeamLanes.of(policies(drawn.head), drawn.head.assignment, isPredicted = false).fold(throw _, identity)
       val team    = TeamViews(lanes)
       val agents  = Array.tabulate(lanes.count)(self => Logged(self, drawn.head.agents(self), model, team))

@@ -83,7 +83,12 @@ final class LiveShow(
       case reading: ReadingRow if begun.isEmpty =>
         begun = Some(reading.state.sentAt)
         val json = ujson.Obj("startedAtNs" -> reading.state.sentAt.toNanos.toString)
-        publish(FlightMessage.json(LiveShow.clock.name, "", reading.state.sentAt, reading.state.sentAt)(json.render()))
+        publish(FlightMessage.json(
+          LiveShow.clock.name,
+          "",
+          reading.state.sentAt,
+          reading.state.sentAt
+        )(json.render()))
       case ending: Ending => ended = Some(ending.at)
       case _              => ()
     gauges.foreach(_.see(record))

@@ -7,9 +7,9 @@ import scala.util.control.NonFatal
 import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
-/** One flight as viewers see it: channels, the newest of each, and who is looking. Of each
-  * topic and vehicle the newest message is kept, so that whoever comes later, or looks at a time that stands
-  * still, sees where everything is.
+/** One flight as viewers see it: channels, the newest of each, and who is looking. Of each topic and vehicle
+  * the newest message is kept, so that whoever comes later, or looks at a time that stands still, sees where
+  * everything is.
   *
   * All its methods may be called from any thread; none waits but for another of them.
   *

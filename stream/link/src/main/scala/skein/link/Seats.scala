@@ -3,16 +3,16 @@ package skein.link
 import java.util.concurrent.atomic.AtomicLong
 import skein.units.{Clock, Instant, Span}
 
-/** A port's [[Places]], shared by its connections, for protocols in which whoever is there speaks now and then.
-  * From any thread.
+/** A port's [[Places]], shared by its connections, for protocols in which whoever is there speaks now and
+  * then. From any thread.
   *
   * @param most connections at once
   */
 private[skein] final class Seats(most: Int, private val clock: Clock):
-  private val places                 = Places(most, Seats.Silent)
-  private val numbers                = AtomicLong()
-  private val seated                 = AtomicLong()
-  private val displaced, refused     = AtomicLong()
+  private val places             = Places(most, Seats.Silent)
+  private val numbers            = AtomicLong()
+  private val seated             = AtomicLong()
+  private val displaced, refused = AtomicLong()
 
   /** Connections that gave up their place. */
   def displacedConnections: Long = displaced.get
