@@ -23,8 +23,8 @@ private[flight] object Displacement:
     val off     = (b.positionNed - a.positionNed - flown).norm
     val allowed = (b.velocityNed - a.velocityNed).norm * s / 2 + MostAccelerationMps2 * s * s / 4 + TouchM
     Option.when(s > 0 && off > allowed):
-      s"$vehicle is ${off.fixed(1)} m from where it can have flown in ${s.fixed(2)} s: another client reset " +
-        "it or put it elsewhere, or its state is another vehicle's"
+      s"$vehicle is ${off.fixed(1)} m from where it can have flown in ${s.fixed(2)} s: the simulator was " +
+        "started again, another client reset it or put it elsewhere, or its state is another vehicle's"
 
   /** Three times gravity: AirSim's multirotor has less than two. */
   private val MostAccelerationMps2 = 30.0

@@ -57,7 +57,6 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
         SimulatorSettings(
           WorldSettings(vehicles),
           Address("127.0.0.1", 0),
-          speed = 3,
           mavlink = Some(mavlink)
         ),
         TcpTransport(),

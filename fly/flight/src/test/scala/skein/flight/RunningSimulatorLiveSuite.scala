@@ -39,8 +39,7 @@ class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting:
     val world     =
       SimulatorSettings(
         WorldSettings(duel, text = WorldSettings.render(duel)),
-        Address("127.0.0.1", 0),
-        speed = 5
+        Address("127.0.0.1", 0)
       )
     def fly(assembler: FlightAssembler, before: Vector[Recording]): Future[Vector[Recording]] =
       if before.size == settings.plans.size then Future.successful(before)

@@ -63,9 +63,10 @@ class SensorLiveSuite extends munit.FunSuite, Unhurried:
       _ <- server.close()
     yield recorder.recording
 
-  test("every loop flies by AirSim's barometer, and decides the same from its recording"):
+  test("every loop but plan flies by AirSim's barometer, and decides the same from its recording"):
     import system.dispatcher
-    Future.traverse(LoopKind.values.toVector)(kind => fly(kind).map((kind, _))).map: flown =>
+    val loops = LoopKind.values.toVector.filterNot(_ == LoopKind.Plan)
+    Future.traverse(loops)(kind => fly(kind).map((kind, _))).map: flown =>
       for (kind, recording) <- flown do
         val sensors = recording.measurements.groupBy(_.sensor)
         assertEquals(sensors.keySet, Set("barometer", "imu"), kind.label)

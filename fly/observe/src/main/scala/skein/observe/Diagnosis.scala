@@ -24,6 +24,9 @@ object Diagnosis:
   /** Images slow small calls by so much where a link is full of them. */
   private val SlowedBy = 2.0
 
+  /** A physics step of AirSim: readings of one moment differ by as much. */
+  private val LeastSkewMs = 3.0
+
   /** Clocks of one machine differ by less. */
   private val RateWithin = 0.02
 
@@ -65,11 +68,9 @@ object Diagnosis:
         )
 
   private def inTurn(observed: Observed): Option[Finding] =
-    val read = observed.vehicles.count(_.ownAgeMs.isDefined)
+    val least = (Notable * stateMs(observed)).max(LeastSkewMs)
     worst(observed)(_.skewMs.fold(0.0)(_.median))
-      .filter((_, skew) =>
-        read > 1 && observed.readsOverlap < 0.1 && skew > Notable * stateMs(observed) && skew > 3
-      )
+      .filter((_, skew) => observed.readsOverlap < 0.1 && skew > least)
       .map: (vehicle, skew) =>
         Finding(
           "reads in turn",

@@ -2,7 +2,7 @@ package skein.torture
 
 import skein.loop.{LoopKind, FlightOutcome}
 import skein.port.Moves
-import skein.record.{DecisionRow, Recording}
+import skein.record.{DecisionRow, EventKind, Recording}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -106,7 +106,10 @@ object Checks:
       def count[A](rows: Vector[A])(of: A => Boolean) = rows.count(of)
       val readings                                    = count(recording.readings)(_.vehicle == vehicle)
       val failed                                      =
-        count(recording.events)(e => e.vehicle.contains(vehicle) && e.detail.matches("reading \\d+: .*"))
+        count(recording.events)(e =>
+          e.vehicle.contains(vehicle) && e.kind != EventKind.ClockRestarted &&
+            e.detail.matches("reading \\d+: .*")
+        )
       val commands  = count(recording.commands)(_.vehicle == vehicle)
       val ended     = count(recording.acknowledgements)(_.vehicle == vehicle)
       val decisions = count(recording.decisions)(_.vehicle == vehicle)

@@ -292,7 +292,7 @@ private object ServerConnection:
   private val BytesPerRequest = 512
 
   /** The first bytes of an array of three or four, MessagePack's and AirSim's clients' only ones. */
-  private val Starts = Set(0x93, 0x94, 0xdc, 0xdd)
+  private[rpc] val Starts = Set(0x93, 0x94, 0xdc, 0xdd)
 
   private case object Watch
   private final case class Outcome(

@@ -8,7 +8,7 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
 import scala.util.Random
-import skein.link.{Address, TcpTransport}
+import skein.link.{Address, FirstBytes, TcpTransport}
 import skein.units.*
 import upack.{Int32, Msg, Null}
 
@@ -174,7 +174,17 @@ object PairFuzz:
     val cut    = Option.when(framer.midway)("the peer stopped in the middle of a message")
     (messages.takeWhile(!_.isInstanceOf[RpcMessage.Malformed]), reason.orElse(cut))
 
-  private def expectedReason(bytes: Array[Byte]): Option[String] = decoded(bytes, RpcMessage.fromClient)._2
+  /** Before the first request nothing else may come; what its first byte shows to be foreign is not read. */
+  private def expectedReason(bytes: Array[Byte]): Option[String] =
+    FirstBytes.verdict(ByteString.fromArrayUnsafe(bytes), ServerConnection.Starts) match
+      case FirstBytes.Foreign(what) => Some(s"expected a message of MessagePack-RPC, came $what")
+      case _                        =>
+        val (messages, reason) = decoded(bytes, RpcMessage.fromClient)
+        messages.headOption
+          .collect { case RpcMessage.Ignored(what) =>
+            s"expected a message of MessagePack-RPC first, came $what"
+          }
+          .orElse(reason)
 
   private def requestsIn(bytes: Array[Byte]): Int =
     decoded(bytes, RpcMessage.fromClient)._1.count(_.isInstanceOf[RpcMessage.Request])

@@ -72,6 +72,8 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
       val good   = Peer(to)
       val random = Random(7)
       val writer = FrameWriter(245, 190)
+      // A peer is known from its first whole message on.
+      assert(bad.isAnswered(0))
       for definition <- Dialect.all do
         for count <- 1 to 1000 do
           val frame = writer.write(definition.decode(random.nextBytes(definition.length)))
