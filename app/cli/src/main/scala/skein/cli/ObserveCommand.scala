@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.io.IOException
-import java.util.concurrent.{CountDownLatch, TimeUnit}
+import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
 import mainargs.{Flag, Leftover, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
@@ -20,7 +20,7 @@ final case class ObserveOptions(
       "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …"
     )
     link: String = "none",
-    @arg(doc = "seed of every random choice of the emulated network")
+    @arg(doc = "seed of every random choice")
     seed: Long = 1,
     @arg(doc = Shown.Doc)
     json: Flag,
@@ -56,12 +56,13 @@ object ObserveCommand
       options: ObserveOptions
   ): Either[String, Unit] =
     given system: ActorSystem   = ActorSystem("skein")
+    val reader                  = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
     val shown                   = Shown(options.json.value)
     def warn(reason: Throwable) = Console.err.println(s"skein observe: ${reason.getMessage}")
     try
       val link  = EmulatedLink(profile, options.seed, Clock.system)
       val proxy = Edge.await(
-        ObservingProxy.start(listenAt, simulator, link, TcpTransport(), Clock.system, unreachable = warn)
+        ObservingProxy.start(listenAt, simulator, link, TcpTransport(), Clock.system, reader, unreachable = warn)
       )
       val command = options.command.value
       shown.say(
@@ -79,7 +80,9 @@ object ObserveCommand
       shown.tables(sections(ObservedTables.sections(observed)), text(observed))
       ended
     catch case error: TransportError => Left(error.getMessage)
-    finally Edge.await(system.terminate()): Unit
+    finally
+      reader.shutdown()
+      Edge.await(system.terminate()): Unit
 
   private def untilInterrupted(): Either[String, Unit] =
     val stopped = CountDownLatch(1)

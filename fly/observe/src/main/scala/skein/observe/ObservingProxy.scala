@@ -1,7 +1,7 @@
 package skein.observe
 
-import java.util.concurrent.LinkedBlockingQueue
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
+import java.util.concurrent.{ConcurrentLinkedQueue, Executor}
 import org.apache.pekko.Done
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
@@ -16,15 +16,14 @@ import skein.units.{Clock, Instant}
 /** Stands between clients and their simulator, and keeps account of their loop. It changes nothing: bytes
   * pass in their order, none is added, held back or lost, whatever they mean.
   *
-  * What passes is looked at by a thread of its own. It may lag behind by [[ObservingProxy.MostWaiting]]; what
-  * comes beyond is passed on and not looked at, which is counted, and its connection is not understood any
-  * more.
+  * What passes is looked at elsewhere, one piece after the other. That may lag behind by
+  * [[ObservingProxy.MostWaiting]]; what comes beyond is passed on and not looked at, which is counted, and its
+  * connection is not understood any more.
   */
 final class ObservingProxy private (
     listening: Listening,
     switch: SharedKillSwitch,
-    pieces: LinkedBlockingQueue[ObservingProxy.Piece],
-    account: LoopAccount
+    looking: ObservingProxy.Looking
 ):
   import ObservingProxy.*
 
@@ -32,7 +31,7 @@ final class ObservingProxy private (
   def address: Address = listening.address
 
   /** What is known now. */
-  def observed: Observed = account.synchronized(account.observed)
+  def observed: Observed = looking.observed
 
   /** Accepts no more, closes the open connections, and looks at what has passed until now. */
   def close(): Future[Done] =
@@ -40,12 +39,14 @@ final class ObservingProxy private (
     switch.shutdown()
     val looked = Promise[Done]()
     listening.close().flatMap: _ =>
-      pieces.add(Piece.End(() => looked.success(Done): Unit)): Unit
+      looking.add(Piece.End(() => looked.success(Done): Unit))
       looked.future
 
 object ObservingProxy:
   /** Bytes that have passed and were not looked at yet. */
   val MostWaiting: Long = 256L << 20
+
+  private val MostConnections = 1024
 
   private enum Piece:
     case Opened(connection: Int, at: Instant)
@@ -56,6 +57,7 @@ object ObservingProxy:
   /** Starts listening. Fails with a [[TransportError]] where that is not possible.
     *
     * @param link emulated between the observer and the simulator
+    * @param reader runs what looks at the pieces; a thread of its own, where time is real
     * @param unreachable told why, when an accepted connection cannot be continued to the simulator
     */
   def start(
@@ -64,39 +66,24 @@ object ObservingProxy:
       link: EmulatedLink,
       transport: Transport,
       clock: Clock,
+      reader: Executor,
       unreachable: Throwable => Unit = _ => ()
   )(using ActorSystem): Future[ObservingProxy] =
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("observing-proxy")
-    val pieces             = LinkedBlockingQueue[Piece]()
-    val waiting            = AtomicLong()
-    val account            = LoopAccount()
+    val looking            = Looking(reader)
     val count              = AtomicInteger()
-    val missed             = AtomicLong()
-    val _                  = Thread
-      .ofPlatform()
-      .daemon()
-      .name("skein-observe")
-      .start(() => look(pieces, waiting, missed, account))
 
-    def passing(
-        connection: Int,
-        isFromClient: Boolean,
-        isWhole: Whole
-    ): Flow[ByteString, ByteString, NotUsed] =
+    def passing(connection: Int, isFromClient: Boolean, whole: Whole): Flow[ByteString, ByteString, NotUsed] =
       Flow[ByteString].map: bytes =>
-        if isWhole.is then
-          if waiting.addAndGet(bytes.size) > MostWaiting then
-            waiting.addAndGet(-bytes.size)
-            missed.incrementAndGet()
-            isWhole.is = false
-          else pieces.add(Piece.Bytes(connection, isFromClient, bytes, clock.now())): Unit
+        if whole.is then
+          whole.is = looking.offer(Piece.Bytes(connection, isFromClient, bytes, clock.now()))
         bytes
 
     def forward(incoming: Incoming): Future[Done] =
       val connection = count.getAndIncrement()
       val whole      = Whole()
-      pieces.add(Piece.Opened(connection, clock.now())): Unit
+      looking.add(Piece.Opened(connection, clock.now()))
       val server = BidiFlow
         .fromFlows(
           passing(connection, true, whole).via(switch.flow),
@@ -113,7 +100,7 @@ object ObservingProxy:
         _ <- sent.recover(_ => Done)
         _ <- answered.recover(_ => Done)
       yield
-        pieces.add(Piece.Closed(connection, clock.now())): Unit
+        looking.add(Piece.Closed(connection, clock.now()))
         Done
 
     transport
@@ -121,39 +108,58 @@ object ObservingProxy:
       .mapAsyncUnordered(MostConnections)(forward)
       .toMat(Sink.ignore)(Keep.left)
       .run()
-      .map(ObservingProxy(_, switch, pieces, account))
-
-  private val MostConnections = 1024
+      .map(ObservingProxy(_, switch, looking))
 
   /** Whether all of a connection was looked at. */
   private final class Whole:
     @volatile var is = true
 
-  private def look(
-      pieces: LinkedBlockingQueue[Piece],
-      waiting: AtomicLong,
-      missed: AtomicLong,
-      account: LoopAccount
-  ): Unit =
-    val conversations = mutable.LongMap.empty[Conversation]
-    var open          = true
-    while open do
-      val piece = pieces.take()
-      account.synchronized:
-        account.passedOver(missed.getAndSet(0))
-        piece match
-          case Piece.Opened(connection, at) =>
-            conversations(connection) = Conversation(connection)
-            account.add(Passed.Opened(connection, at))
-          case Piece.Bytes(connection, isFromClient, bytes, at) =>
-            waiting.addAndGet(-bytes.size): Unit
-            conversations.get(connection).foreach: known =>
-              val passed =
-                if isFromClient then known.fromClient(bytes, at) else known.fromSimulator(bytes, at)
-              passed.foreach(account.add)
-          case Piece.Closed(connection, at) =>
-            conversations.remove(connection): Unit
-            account.add(Passed.Closed(connection, at))
-          case Piece.End(looked) =>
-            open = false
-            looked()
+  /** Looks at pieces in their order, one at a time. Added to from any thread; never blocks. */
+  private final class Looking(reader: Executor):
+    private val pieces        = ConcurrentLinkedQueue[Piece]()
+    private val count         = AtomicInteger()
+    private val waiting       = AtomicLong()
+    private val missed        = AtomicLong()
+    private val account       = LoopAccount()
+    private val conversations = mutable.LongMap.empty[Conversation]
+
+    def observed: Observed = synchronized:
+      account.passedOver(missed.getAndSet(0))
+      account.observed
+
+    /** @return false where too much waits; then it is left out
+      */
+    def offer(piece: Piece.Bytes): Boolean =
+      val fits = waiting.addAndGet(piece.bytes.size) <= MostWaiting
+      if fits then add(piece)
+      else
+        waiting.addAndGet(-piece.bytes.size)
+        missed.incrementAndGet(): Unit
+      fits
+
+    def add(piece: Piece): Unit =
+      pieces.add(piece): Unit
+      if count.getAndIncrement() == 0 then reader.execute(() => drain())
+
+    private def drain(): Unit =
+      var left = true
+      while left do
+        look(pieces.poll())
+        left = count.decrementAndGet() > 0
+
+    private def look(piece: Piece): Unit = piece match
+      case Piece.Opened(connection, at) =>
+        synchronized:
+          conversations(connection) = Conversation(connection)
+          account.add(Passed.Opened(connection, at))
+      case Piece.Bytes(connection, isFromClient, bytes, at) =>
+        waiting.addAndGet(-bytes.size): Unit
+        synchronized:
+          conversations.get(connection).foreach: known =>
+            val passed = if isFromClient then known.fromClient(bytes, at) else known.fromSimulator(bytes, at)
+            passed.foreach(account.add)
+      case Piece.Closed(connection, at) =>
+        synchronized:
+          conversations.remove(connection): Unit
+          account.add(Passed.Closed(connection, at))
+      case Piece.End(looked) => looked()
