@@ -45,7 +45,7 @@ final case class Access(
   private def isOwnHost(said: String) =
     val name =
       if said.endsWith(s":$port") then Some(said.dropRight(s":$port".length))
-      else Option.when(port == HttpPort)(said)
+      else Option.when(port == DefaultPort)(said)
     name.exists(one => own(one) || !isLoopback && (isPlain(one) || isAddress(one)))
 
   private def isOwnPage(origin: String, at: String) =
@@ -59,7 +59,7 @@ object Access:
   private val Scheme   = "http://"
 
   /** Which browsers leave out. */
-  private val HttpPort = 80
+  private val DefaultPort = 80
 
   private def isPlain(name: String) =
     name.nonEmpty && name.forall(letter => letter.isLetterOrDigit || letter == '-')

@@ -36,7 +36,7 @@ object FirstBytes:
           Foreign(s"an HTTP request (${word.utf8String.trim})")
         case Some(_) if own.isEmpty || own(first & 0xff) => Undecided
         case _ if first == Handshake && !own(Handshake)  => Foreign("a greeting of TLS")
-        case _ if own.nonEmpty && !own(first & 0xff)     => Foreign(f"a first byte of 0x${first & 0xff}%02x")
+        case _ if own.nonEmpty && !own(first & 0xff)     => Foreign(s"a first byte of 0x${Integer.toHexString(first & 0xff | 0x100).drop(1)}")
         case _                                           => Own
 
   /** Lets a connection's bytes through once its first ones are its own protocol's.
