@@ -225,7 +225,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       ).map:
         case "HOST:PORT"                                                => server.address.toString
         case "NAME"                                                     => "patrol"
-        case "FILE" if command.startsWith("policy")                     => learned.toString
+        case "FILE" if command.startsWith("policy") || command.contains("--policy FILE") => learned.toString
         case "FILE…" if command.startsWith("identify")                  => seeing.toString
         case "FILE" | "FILE…"                                           => recording.toString
         case "settings.json"                                            => settings.toString
