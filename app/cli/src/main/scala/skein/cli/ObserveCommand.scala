@@ -6,8 +6,8 @@ import mainargs.{Flag, Leftover, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import skein.link.*
-import skein.observe.{ObservedTables, ObservingProxy}
-import skein.report.{Paragraph, Section, TextTable}
+import skein.observe.{Observed, ObservingProxy}
+import skein.report.{ObservedTables, Paragraph, Section}
 import skein.units.{Clock, Expect}
 
 /** Options of `./skein observe`. */
@@ -77,7 +77,7 @@ object ObserveCommand
       telling.cancel()
       Edge.await(proxy.close())
       val observed = proxy.observed
-      shown.tables(sections(ObservedTables.sections(observed)), text(observed))
+      shown.tables(ObservedTables.data(observed), text(observed))
       ended
     catch case error: TransportError => Left(error.getMessage)
     finally
@@ -93,22 +93,20 @@ object ObserveCommand
   private def runToEnd(command: Seq[String]): Either[String, Unit] =
     try
       val program = ProcessBuilder(command*).inheritIO().start()
-      Edge.untilInterrupted(() => program.destroy()):
+      Edge.untilInterrupted(() => stop(program)):
         val status = program.waitFor()
         if status != 0 then
           Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
-      if !program.waitFor(GraceS, TimeUnit.SECONDS) then program.destroyForcibly(): Unit
       Right(())
     catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
 
-  private def sections(tables: Vector[ObservedTables.Table]): Vector[Section] =
-    tables.map(table => Section(table.title, table.note, Some(TextTable(table.header, table.rows))))
+  private def stop(program: Process): Unit =
+    program.destroy()
+    if !program.waitFor(GraceS, TimeUnit.SECONDS) then program.destroyForcibly(): Unit
 
-  private def text(observed: skein.observe.Observed): String =
-    val tables =
-      Section.text(sections(ObservedTables.sections(observed).filterNot(_.title == ObservedTables.Findings)))
+  private def text(observed: Observed): String =
     val findings = ObservedTables.findings(observed).flatMap(Paragraph.lines(_, 100))
-    (tables +: "" +: findings).mkString("\n")
+    (Section.text(ObservedTables.tables(observed)) +: "" +: findings).mkString("\n")
 
   private val TellEvery = 5.seconds
   private val GraceS    = 5L

@@ -34,9 +34,7 @@ final class LoopAccount:
   private var stillNs        = 0L
   private var begunAt        = Option.empty[Instant]
   private var lastAt         = Instant.Epoch
-  private var firstMove      = true
   private var periodsNs      = Map.empty[String, Long]
-  private var moves          = 0L
   private var reads, overlap = 0L
   private var imagesInLoop   = 0L
   private var pauses         = 0L
@@ -99,11 +97,8 @@ final class LoopAccount:
     outstanding(kind.ordinal) += 1
 
   private def move(called: Passed.Called, pending: Pending, open: Open): Unit =
-    if firstMove then
-      firstMove = false
-      for phase <- Phases do spentNs(phase) = 0
+    if commands == 0 then for phase <- Phases do spentNs(phase) = 0
     else periodsNs = spentNs.toMap
-    moves += 1
     imagesInLoop += open.images
     open.images = 0
     for commanded <- vehicle(called.vehicle) do
@@ -112,14 +107,15 @@ final class LoopAccount:
       for last <- commanded.movedAt do
         commanded.every.add(at.since(last).toMillis)
         if at.since(last) < PhysicsStep then commanded.superseded += 1
-      val others = vehicles.valuesIterator.filterNot(_ eq commanded).toVector
-      others.flatMap(_.movedAt).maxOption.foreach(last => commanded.sinceOthers.add(at.since(last).toMillis))
-      commanded.reading.foreach: own =>
-        commanded.ownAge.add(own.ageAt(at, clock).toMillis)
-        commanded.bound.add(own.bound(clock).toMillis)
-      val known = others.flatMap(_.reading)
-      known.map(_.ageAt(at, clock).toMillis).maxOption.foreach(commanded.othersAge.add)
-      val ages = (known ++ commanded.reading).map(_.ageAt(at, clock).toMillis)
+      val rest = vehicles.valuesIterator.filterNot(_ eq commanded).toVector
+      rest.flatMap(_.movedAt).maxOption.foreach(last => commanded.sinceOthers.add(at.since(last).toMillis))
+      def ageMs(reading: Reading) = reading.ageAt(at, clock).toMillis
+      val own                     = commanded.reading.map(ageMs)
+      val others                  = rest.flatMap(_.reading).map(ageMs)
+      own.foreach(commanded.ownAge.add)
+      others.maxOption.foreach(commanded.othersAge.add)
+      commanded.reading.foreach(reading => commanded.bound.add(reading.bound(clock).toMillis))
+      val ages = others ++ own
       if ages.size > 1 then commanded.skew.add(ages.max - ages.min)
       commanded.movedAt = Some(at)
       commanded.inFlight.add(pending): Unit
@@ -198,9 +194,12 @@ final class LoopAccount:
         methods(name) = first
         first
 
+  /** To all vehicles. */
+  private def commands: Long = vehicles.valuesIterator.map(_.commands).sum
+
   /** All that is known now. */
   def observed: Observed =
-    val periods = moves.toDouble / vehicles.valuesIterator.count(_.commands > 0).max(1) - 1
+    val periods = commands.toDouble / vehicles.valuesIterator.count(_.commands > 0).max(1) - 1
     Observed(
       lasted = begunAt.fold(Span.Zero)(lastAt.since),
       connections = opened,

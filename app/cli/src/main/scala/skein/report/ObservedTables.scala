@@ -1,27 +1,28 @@
-package skein.observe
+package skein.report
 
 import skein.measure.Distribution
+import skein.observe.{Diagnosis, LoopAccount, Observed}
 import skein.units.Decimals.{brief, fixed}
 
 /** What was observed, as tables and sentences. */
 object ObservedTables:
 
-  /** @param header names of columns; those that begin with `<` are aligned left
-    */
-  final case class Table(
+  /** For people: the findings are said in sentences ([[findings]]). */
+  def tables(observed: Observed): Vector[Section] =
+    Vector(vehicles(observed), period(observed), methods(observed)).flatten
+
+  /** For scripts. */
+  def data(observed: Observed): Vector[Section] = tables(observed) ++ found(observed)
+
+  /** None without rows. */
+  private def section(
       title: String,
       header: Vector[String],
       rows: Vector[Vector[String]],
       note: String = ""
-  )
+  ): Option[Section] = Option.when(rows.nonEmpty)(Section(title, note, Some(TextTable(header, rows))))
 
-  val Findings = "Findings"
-
-  /** For a report; tables without rows are left out. */
-  def sections(observed: Observed): Vector[Table] =
-    Vector(vehicles(observed), period(observed), methods(observed), found(observed)).filter(_.rows.nonEmpty)
-
-  private def vehicles(observed: Observed) = Table(
+  private def vehicles(observed: Observed) = section(
     "How old the data behind each command was",
     Vector("<vehicle", "commands", "every ms", "p99") ++
       Vector("own data ms", "p99", "others' data ms", "p99", "± ms") ++
@@ -44,7 +45,7 @@ object ObservedTables:
       "They lie within ± of the truth."
   )
 
-  private def period(observed: Observed) = Table(
+  private def period(observed: Observed) = section(
     "Where a period goes",
     Vector("<waiting for", "ms", "%"),
     for
@@ -54,7 +55,7 @@ object ObservedTables:
     yield Vector(phase, ms.brief, if whole > 0 then (100 * ms / whole).fixed(0) else "")
   )
 
-  private def methods(observed: Observed) = Table(
+  private def methods(observed: Observed) = section(
     "Calls",
     Vector("<method", "<kind", "calls", "a second", "failed", "median ms", "p99", "most", "MB"),
     observed.methods.map: method =>
@@ -72,8 +73,8 @@ object ObservedTables:
       )
   )
 
-  private def found(observed: Observed) = Table(
-    Findings,
+  private def found(observed: Observed) = section(
+    "Findings",
     Vector("<finding", "<seen", "<remedy"),
     Diagnosis.of(observed).map(finding => Vector(finding.name, finding.what, finding.remedy))
   )
