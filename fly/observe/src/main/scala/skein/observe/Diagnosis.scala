@@ -58,25 +58,22 @@ object Diagnosis:
       )
 
   private def waitsForMoves(observed: Observed): Option[Finding] =
-    worst(observed)(vehicle => vehicle.joined.toDouble / vehicle.commands.max(1))
-      .filter((_, share) => share > 0.5)
-      .map: (vehicle, share) =>
-        Finding(
-          "waits for each move",
-          s"the program waited for the end of ${(100 * share).fixed(0)} % of the commands to ${named(vehicle)} before it did anything else",
-          "send moves without waiting (no join()): a newer command replaces the one before"
-        )
+    ofWorst(observed, above = 0.5)(vehicle => share(vehicle, vehicle.joined)): (vehicle, share) =>
+      Finding(
+        "waits for each move",
+        s"the program waited for the end of ${(100 * share).fixed(0)} % of the commands to ${named(vehicle)} before it did anything else",
+        "send moves without waiting (no join()): a newer command replaces the one before"
+      )
 
   private def inTurn(observed: Observed): Option[Finding] =
-    val least = (Notable * stateMs(observed)).max(LeastSkewMs)
-    worst(observed)(_.skewMs.fold(0.0)(_.median))
-      .filter((_, skew) => observed.readsOverlap < 0.1 && skew > least)
-      .map: (vehicle, skew) =>
-        Finding(
-          "reads in turn",
-          s"vehicles are read one after the other: when ${named(vehicle)} is commanded, the oldest reading is ${skew.brief} ms older than the newest",
-          "ask for all vehicles at once, on a connection for each, and join the newest answers"
-        )
+    val overlap = observed.readsOverlap >= 0.1
+    val least   = if overlap then Double.PositiveInfinity else (Notable * stateMs(observed)).max(LeastSkewMs)
+    ofWorst(observed, above = least)(_.skewMs.fold(0.0)(_.median)): (vehicle, skew) =>
+      Finding(
+        "reads in turn",
+        s"vehicles are read one after the other: when ${named(vehicle)} is commanded, the oldest reading is ${skew.brief} ms older than the newest",
+        "ask for all vehicles at once, on a connection for each, and join the newest answers"
+      )
 
   private def stateMs(observed: Observed): Double =
     observed.methods.filter(
@@ -95,7 +92,7 @@ object Diagnosis:
     )
 
   private def manyMoves(observed: Observed): Option[Finding] =
-    worst(observed)(_.mostInFlight.toDouble).filter((_, most) => most > MostMoves).map: (vehicle, most) =>
+    ofWorst(observed, above = MostMoves)(_.mostInFlight): (vehicle, most) =>
       Finding(
         "many moves unanswered",
         s"up to ${most.toInt} commands to ${named(vehicle)} were unanswered at once",
@@ -103,7 +100,7 @@ object Diagnosis:
       )
 
   private def overtaken(observed: Observed): Option[Finding] =
-    worst(observed)(_.overtaken.toDouble).filter((_, count) => count > 0).map: (vehicle, count) =>
+    ofWorst(observed, above = 0)(_.overtaken.toDouble): (vehicle, count) =>
       Finding(
         "commands overtake one another",
         s"${counted(count.toLong, "command")} to ${named(vehicle)} acted after a later one",
@@ -111,17 +108,15 @@ object Diagnosis:
       )
 
   private def superseded(observed: Observed): Option[Finding] =
-    worst(observed)(vehicle => vehicle.superseded.toDouble / vehicle.commands.max(1))
-      .filter((_, share) => share > 0.05)
-      .map: (vehicle, share) =>
-        Finding(
-          "commands come in bursts",
-          s"${(100 * share).fixed(0)} % of the commands to ${named(vehicle)} were replaced within 3 ms, before physics made a step",
-          "send one command a period"
-        )
+    ofWorst(observed, above = 0.05)(vehicle => share(vehicle, vehicle.superseded)): (vehicle, share) =>
+      Finding(
+        "commands come in bursts",
+        s"${(100 * share).fixed(0)} % of the commands to ${named(vehicle)} were replaced within 3 ms, before physics made a step",
+        "send one command a period"
+      )
 
   private def leftRunning(observed: Observed): Option[Finding] =
-    worst(observed)(_.leftRunning.toDouble).filter((_, count) => count > 0).map: (vehicle, count) =>
+    ofWorst(observed, above = 0)(_.leftRunning.toDouble): (vehicle, count) =>
       Finding(
         "moves left running",
         s"${counted(count.toLong, "command")} to ${named(vehicle)} still ran when the program left",
@@ -175,8 +170,18 @@ object Diagnosis:
         "nothing, if it decides by images or from a file"
       )
 
-  private def worst(observed: Observed)(by: ObservedVehicle => Double): Option[(ObservedVehicle, Double)] =
-    observed.vehicles.filter(_.commands > 0).map(vehicle => (vehicle, by(vehicle))).maxByOption(_._2)
+  /** Of the commanded vehicle that is worst by a quantity, if that is above a limit. */
+  private def ofWorst(observed: Observed, above: Double)(by: ObservedVehicle => Double)(
+      finding: (ObservedVehicle, Double) => Finding
+  ): Option[Finding] =
+    observed.vehicles
+      .filter(_.commands > 0)
+      .map(vehicle => (vehicle, by(vehicle)))
+      .maxByOption(_._2)
+      .filter(_._2 > above)
+      .map(finding(_, _))
+
+  private def share(vehicle: ObservedVehicle, of: Long) = of.toDouble / vehicle.commands
 
   private def named(vehicle: ObservedVehicle) =
     if vehicle.name.isEmpty then "the first vehicle" else vehicle.name
