@@ -52,11 +52,8 @@ final class LoopAccount:
       tick(at)
       for open <- connections.remove(connection) do
         for pending <- open.pending.values do
-          outstanding(pending.kind.ordinal) -= 1
-          if pending.kind == CallKind.Move then
-            vehicle(pending.vehicle).foreach: commanded =>
-              commanded.inFlight.remove(pending): Unit
-              commanded.leftRunning += 1
+          if pending.kind == CallKind.Move then vehicle(pending.vehicle).foreach(_.leftRunning += 1)
+          forget(pending)
 
   /** Messages that passed and were not taken into account. */
   def passedOver(count: Long): Unit = forgotten += count
@@ -79,13 +76,11 @@ final class LoopAccount:
     val kind    = CallKind.of(called.method)
     val pending = Pending(called.method, kind, called.vehicle, called.at)
     val open    = connections.getOrElseUpdate(called.connection, Open())
-    open.pending.values.foreach(_.isAlone = false)
     if open.pending.size >= MostPending then
       forgotten += 1
-      val (oldest, first) = open.pending.head
-      open.pending.remove(oldest): Unit
-      outstanding(first.kind.ordinal) -= 1
-    open.pending.put(called.id, pending).foreach(again => outstanding(again.kind.ordinal) -= 1)
+      open.pending.remove(open.pending.head._1).foreach(forget)
+    open.pending.put(called.id, pending).foreach(forget)
+    open.last = Some(pending)
     method(called.method, kind).foreach(_.calls += 1)
     if kind == CallKind.State then
       reads += 1
@@ -95,6 +90,12 @@ final class LoopAccount:
     if kind == CallKind.Move then move(called, pending, open)
     pending.besideImages = outstanding(CallKind.Image.ordinal) > 0
     outstanding(kind.ordinal) += 1
+
+  /** Nothing waits for this call any more. */
+  private def forget(pending: Pending): Unit =
+    outstanding(pending.kind.ordinal) -= 1
+    if pending.kind == CallKind.Move then
+      vehicle(pending.vehicle).foreach(_.inFlight.remove(pending): Unit)
 
   private def move(called: Passed.Called, pending: Pending, open: Open): Unit =
     if commands == 0 then for phase <- Phases do spentNs(phase) = 0
@@ -126,7 +127,6 @@ final class LoopAccount:
       open    <- connections.get(answered.connection)
       pending <- open.pending.remove(answered.id)
     do
-      outstanding(pending.kind.ordinal) -= 1
       val roundTrip = answered.at.since(pending.at)
       for known <- method(pending.method, pending.kind) do
         for error <- answered.error do
@@ -137,16 +137,20 @@ final class LoopAccount:
         known.roundTrips.add(roundTrip.toMillis)
       if answered.bytes < SmallBytes && pending.kind != CallKind.Move && pending.kind != CallKind.Image then
         (if pending.besideImages then beside else quiet).add(roundTrip.toMillis)
-      if pending.kind == CallKind.Move then ended(pending, roundTrip, answered.error.isEmpty)
+      if pending.kind == CallKind.Move then
+        ended(pending, roundTrip, isAlone = open.last.contains(pending), answered.error.isEmpty)
       else if answered.error.isEmpty then read(pending, answered)
+      forget(pending)
 
-  private def ended(pending: Pending, roundTrip: Span, hasFlown: Boolean): Unit =
+  /** @param isAlone whether its connection has sent nothing since
+    * @param hasFlown whether the simulator did not refuse it
+    */
+  private def ended(pending: Pending, roundTrip: Span, isAlone: Boolean, hasFlown: Boolean): Unit =
     for commanded <- vehicle(pending.vehicle) do
-      if pending.isAlone && roundTrip > JoinedFor then commanded.joined += 1
+      if isAlone && roundTrip > JoinedFor then commanded.joined += 1
       // A later command has replaced this one in its time; one that was sent before and still flies came after.
       val isLast = !commanded.inFlight.exists(_.at > pending.at)
       if hasFlown && isLast && commanded.inFlight.exists(_.at < pending.at) then commanded.overtaken += 1
-      commanded.inFlight.remove(pending): Unit
 
   private def read(pending: Pending, answered: Passed.Answered): Unit =
     val sampled = answered.sampledAt.map(Stamped((), _, pending.at, answered.at))
@@ -251,12 +255,12 @@ object LoopAccount:
       val vehicle: String,
       val at: Instant
   ):
-    /** Whether its connection has sent nothing since. */
-    var isAlone      = true
+    /** Whether an image was under way when it was sent. */
     var besideImages = false
 
   private final class Open:
     val pending = mutable.LinkedHashMap.empty[Long, Pending]
+    var last    = Option.empty[Pending]
 
     /** Image calls since the last command. */
     var images = 0L
