@@ -31,8 +31,8 @@ object Packaging {
     "-XX:+EnableVectorAggressiveReboxing"
   )
 
-  /** The first day that a ZIP archive can tell; UTC. */
-  private val firstDay = 315532800000L
+  /** The first day that a ZIP archive can tell, ms, UTC: the time of all files, so that equal sources give equal bytes. */
+  val firstDay = 315532800000L
 
   private val isMac = sys.props("os.name").startsWith("Mac")
   private val isArm = sys.props("os.arch") == "aarch64"

@@ -7,11 +7,6 @@ object Wheel {
   val testedWheel: TaskKey[Unit] =
     taskKey[Unit]("Builds what tests install: the wheel of now where one can be built, else why there is none")
 
-  /** Equal sources give equal bytes: the newest time that a ZIP archive may tell is that of its format's
-    * first day.
-    */
-  private val firstDay = "315532800"
-
   /** Why no wheel can be built here, if none can: tests go without it then. */
   def obstacle(scratch: File): Option[String] = {
     val said   = new StringBuilder
@@ -41,7 +36,7 @@ object Wheel {
     val tag    = s"--config-settings=--build-option=--plat-name=${Packaging.wheelPlatform}"
     val pip    =
       Seq("python3", "-m", "pip", "wheel", "--quiet", "--no-deps", tag, "--wheel-dir", out.getPath, copy.getPath)
-    val status = Process(pip, sources, "SOURCE_DATE_EPOCH" -> firstDay).!(log)
+    val status = Process(pip, sources, "SOURCE_DATE_EPOCH" -> (Packaging.firstDay / 1000).toString).!(log)
     val built  = (out ** "*.whl").get
     if (status != 0 || built.isEmpty) sys.error(s"${pip.mkString(" ")} ended with status $status")
     log.info(s"${built.head}: ${built.head.length >> 20} MiB")

@@ -71,7 +71,7 @@ object ObserveCommand
           (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
       )
       val telling = system.scheduler.scheduleWithFixedDelay(TellEvery, TellEvery)(() =>
-        ObservedTables.line(proxy.observed).foreach(Console.err.println)
+        ObservedTables.line(proxy.progress).foreach(Console.err.println)
       )(using system.dispatcher)
       val ended = if command.isEmpty then untilInterrupted() else runToEnd(command)
       telling.cancel()

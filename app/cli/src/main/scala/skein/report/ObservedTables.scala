@@ -1,7 +1,7 @@
 package skein.report
 
 import skein.measure.Distribution
-import skein.observe.{Diagnosis, LoopAccount, Observed}
+import skein.observe.{Diagnosis, LoopAccount, Observed, Progress}
 import skein.units.Decimals.{brief, fixed}
 
 /** What was observed, as tables and sentences. */
@@ -96,11 +96,10 @@ object ObservedTables:
     sentence ++ paused ++ lost ++ more
 
   /** Progress in one line; absent before the first command. */
-  def line(observed: Observed): Option[String] =
-    val ages = observed.vehicles.flatMap(_.ownAgeMs)
-    Option.when(observed.commands > 0):
-      val age = if ages.isEmpty then "never read" else s"data ${ages.map(_.mean).max.brief} ms old"
-      s"${observed.lasted.toSeconds.fixed(0)} s: ${observed.commands} commands, $age"
+  def line(progress: Progress): Option[String] =
+    Option.when(progress.commands > 0):
+      val age = progress.ageMs.fold("never read")(ms => s"data ${ms.brief} ms old")
+      s"${progress.lasted.toSeconds.fixed(0)} s: ${progress.commands} commands, $age"
 
   private def mean(samples: Option[Distribution]) = samples.fold("")(_.mean.brief)
   private def p99(samples: Option[Distribution])  = samples.fold("")(_.p99.brief)

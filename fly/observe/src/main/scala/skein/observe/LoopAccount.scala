@@ -201,7 +201,14 @@ final class LoopAccount:
   /** To all vehicles. */
   private def commands: Long = vehicles.valuesIterator.map(_.commands).sum
 
-  /** All that is known now. */
+  /** In a few steps, however much was observed. */
+  def progress: Progress = Progress(
+    begunAt.fold(Span.Zero)(lastAt.since),
+    commands,
+    vehicles.valuesIterator.flatMap(_.ownAge.mean).maxOption
+  )
+
+  /** All that is known now; sorts every sample. */
   def observed: Observed =
     val periods = commands.toDouble / vehicles.valuesIterator.count(_.commands > 0).max(1) - 1
     Observed(
@@ -306,7 +313,7 @@ object LoopAccount:
       commands,
       ownAge.distribution,
       othersAge.distribution,
-      bound.distribution.map(_.mean),
+      bound.mean,
       every.distribution,
       sinceOthers.distribution,
       skew.distribution,

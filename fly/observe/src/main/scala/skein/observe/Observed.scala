@@ -91,3 +91,10 @@ final case class SimulatorClock(rate: Double, backwards: Long, stoodStill: Span)
   * @param at its end, since the first call
   */
 final case class Stall(at: Span, length: Span, method: String)
+
+/** How far an observation is.
+  *
+  * @param ageMs mean age of the own data of the vehicle whose data is oldest; absent before the first command
+  *   to a vehicle that was read
+  */
+final case class Progress(lasted: Span, commands: Long, ageMs: Option[Double])

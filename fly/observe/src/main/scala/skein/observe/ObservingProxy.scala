@@ -30,7 +30,10 @@ final class ObservingProxy private (
   /** Where clients connect to, with the actual port. */
   def address: Address = listening.address
 
-  /** What is known now. */
+  /** To be asked now and then, while it observes. */
+  def progress: Progress = looking.progress
+
+  /** What is known now; what passes meanwhile is looked at after that. */
   def observed: Observed = looking.observed
 
   /** Accepts no more, closes the open connections, and looks at what has passed until now. */
@@ -122,6 +125,8 @@ object ObservingProxy:
     private val missed        = AtomicLong()
     private val account       = LoopAccount()
     private val conversations = mutable.LongMap.empty[Conversation]
+
+    def progress: Progress = synchronized(account.progress)
 
     def observed: Observed = synchronized:
       account.passedOver(missed.getAndSet(0))

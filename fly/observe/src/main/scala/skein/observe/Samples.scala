@@ -7,10 +7,15 @@ import skein.measure.Distribution
 private[observe] final class Samples:
   private val kept  = mutable.ArrayBuilder.ofDouble()
   private var count = 0L
+  private var sum   = 0.0
 
   def add(sample: Double): Unit =
     if count < Samples.Most then kept += sample
     count += 1
+    sum += sample
+
+  /** Of all that were added. */
+  def mean: Option[Double] = Option.when(count > 0)(sum / count)
 
   def added: Long = count
 
