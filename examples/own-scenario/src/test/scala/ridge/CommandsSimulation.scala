@@ -86,7 +86,7 @@ class CommandsSimulation extends munit.FunSuite:
       "fly",
       "--set",
       "side-m=wide"
-    )._2).contains("skein.fly.over-the-ridge.side-m: expected a number, came 'wide'"))
+    )._2).contains("--set side-m: expected a number, came 'wide'"))
     assert(clue(run(
       "fly",
       "--scenario",

@@ -175,7 +175,7 @@ final case class FlightOptions(
       known <- Expect.all(short ++ told): (flag, key, value) =>
         Either.cond(
           keys.contains(key),
-          (flag, s"${kind.name}.$key", value),
+          (if flag == "--set" then s"--set $key" else flag, s"${kind.name}.$key", value),
           s"$flag: the scenario ${kind.name} has no setting '$key'; expected one of ${keys.mkString(", ")}"
         )
     yield FlightOptions.configured(known)
