@@ -282,6 +282,8 @@ lazy val cli = project.in(file("app/cli"))
       copied ++ told
     }.taskValue,
     executableScriptName := "skein",
+    // A suite starts the program as it is staged.
+    Test / test := (Test / test).dependsOn(stage).value,
     Packaging.program    := {
       val home = (ThisBuild / baseDirectory).value
       Packaging.build(

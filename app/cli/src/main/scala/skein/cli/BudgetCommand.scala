@@ -65,6 +65,9 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
   private val MostCells    = 10_000
   private val MostEpisodes = 100_000
 
+  override protected def check(options: BudgetOptions): Either[String, Unit] =
+    question(options, BudgetCommand.Period).map(_ => ())
+
   protected def execute(options: BudgetOptions): Either[String, Unit] =
     val legs = if options.oneWay.value then Legs.OneWay else Legs.RoundTrip
     for
@@ -75,16 +78,13 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
         s"--at-jitter: expected what the map has, up to ${(axes.jittersMs.last / legs.perRoundTrip).significant(3)} ms"
       _ <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
         s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
-      periods <- Expect.all(if options.period.isEmpty then Seq("100ms") else options.period)(
-        Span.parse(_).left.map("--period: " + _)
-      )
+      periods <- Expect.all(options.period)(Span.parse(_).left.map("--period: " + _))
+        .map(periods => if periods.isEmpty then Seq(BudgetCommand.Period) else periods)
       threads   <- options.forward.threadCount
       cluster   <- options.cluster.checked
-      questions <- Expect.all(periods)(period =>
-        scenario(options).fold(duel(options, period))(team(options, _, period))
-      ).map(_.toVector)
-      subjects <- Expect.all(questions)(_.subject(threads)).map(_.toVector)
-      _        <- Expect.that(subjects.forall(_.loop != LoopKind.Paused.label)):
+      questions <- Expect.all(periods)(question(options, _)).map(_.toVector)
+      subjects  <- Expect.all(questions)(_.subject(threads)).map(_.toVector)
+      _         <- Expect.that(subjects.forall(_.loop != LoopKind.Paused.label)):
         "--loop: the paused loop is the truth and feels no latency; expected another"
       folder <- OutFolder.made("--out", options.out)
       _      <- OutFolder.alone(folder):
@@ -108,6 +108,9 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     for map <- maps do
       shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
       map.markLines.foreach(line => shown.say(s"  $line"))
+
+  private def question(options: BudgetOptions, period: Span): Either[String, BudgetQuestion] =
+    scenario(options).fold(duel(options, period))(team(options, _, period))
 
   private def scenario(options: BudgetOptions) = options.scenario.orElse(scenarios.firstWithoutGame)
 
@@ -266,4 +269,5 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     )
 
 private object BudgetCommand:
+  private val Period = Span.ofMillis(100)
   private val Marked = Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)

@@ -1,6 +1,7 @@
 package skein.cli
 
 import mainargs.{ArgSig, ParserForClass, Result, Util}
+import scala.annotation.unused
 import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
 
@@ -17,6 +18,12 @@ trait Command(val name: String, val summary: String):
     *   values of the wrong kind
     */
   def run(arguments: Seq[String]): Int
+
+  /** Reads the words after the command's name without running it, for tests.
+    *
+    * @return or what is wrong with them
+    */
+  private[cli] def checked(arguments: Seq[String]): Either[String, Unit]
 
   /** What `--help` prints. */
   def help: String
@@ -55,28 +62,41 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** By options' names: all values that one takes, where that is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
-  /** What stands behind `--` is another program's. */
   final def run(words: Seq[String]): Int =
-    val (arguments, behind) = words.span(_ != "--")
-    if arguments.exists(word => word == "--help" || word == "-h") then
+    if words.takeWhile(_ != "--").exists(word => word == "--help" || word == "-h") then
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
       0
     else
-      arguments
-        .flatMap(Complaint.ofWord)
-        .headOption
-        .orElse(strange(arguments).map(Misuse.noSuch(_, names)))
-        .fold(parsed(arguments, behind.drop(1)))(misused)
+      parsed(words).fold(
+        misused,
+        options =>
+          OutFolder.unlessRefused(done(options)) match
+            case Right(())    => 0
+            case Left(reason) =>
+              Console.err.println(s"skein $name: ${Complaint.text(reason)}")
+              1
+      )
 
-  private def parsed(arguments: Seq[String], behind: Seq[String]): Int =
-    parser.constructRaw(optionsFirst(arguments) ++ behind) match
-      case failure: Result.Failure => misused(Misuse.text(failure, names))
-      case Result.Success(options) =>
-        OutFolder.unlessRefused(done(options)) match
-          case Right(())    => 0
-          case Left(reason) =>
-            Console.err.println(s"skein $name: ${Complaint.text(reason)}")
-            1
+  private[cli] final def checked(words: Seq[String]): Either[String, Unit] =
+    parsed(words).flatMap(check)
+
+  /** Makes the settings that options state, without a file, a socket or a flight.
+    *
+    * @return or what is wrong with them
+    */
+  protected def check(@unused options: A): Either[String, Unit] = Right(())
+
+  /** What stands behind `--` is another program's. */
+  private def parsed(words: Seq[String]): Either[String, A] =
+    val (arguments, behind) = words.span(_ != "--")
+    val mistake = arguments.flatMap(Complaint.ofWord).headOption.orElse(strange(arguments).map(Misuse.noSuch(
+      _,
+      names
+    )))
+    mistake.toLeft(()).flatMap: _ =>
+      parser.constructRaw(optionsFirst(arguments) ++ behind.drop(1)) match
+        case failure: Result.Failure => Left(Misuse.text(failure, names))
+        case Result.Success(options) => Right(options)
 
   private def misused(mistakes: String): Int =
     Complaint.text(mistakes).linesIterator.foreach(mistake => Console.err.println(s"skein $name: $mistake"))

@@ -53,6 +53,9 @@ final class FlyCommand(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
+  override protected def check(options: FlyOptions): Either[String, Unit] =
+    options.flights.settings.map(_ => ())
+
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
       settings <- options.flights.settings

@@ -86,6 +86,9 @@ final class LearnCommand(program: String)(using Scenarios)
 
   import LearnCommand.Measuring
 
+  override protected def check(options: LearnOptions): Either[String, Unit] =
+    LearnCommand.question(options).flatMap(_.setup).map(_ => ())
+
   protected def execute(options: LearnOptions): Either[String, Unit] =
     val flights = options.flights.getOrElse(20)
     for

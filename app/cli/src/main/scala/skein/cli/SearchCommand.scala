@@ -76,6 +76,8 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   override protected def known: Map[String, Seq[String]] =
     Map("family" -> (PolicyFamily.all ++ scenarios.families).map(_.name))
 
+  override protected def check(options: SearchOptions): Either[String, Unit] = question(options).map(_ => ())
+
   protected def execute(options: SearchOptions): Either[String, Unit] =
     val shown = Shown(options.json.value)
     for
@@ -111,11 +113,14 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   private def begin(options: SearchOptions): Either[String, Begun] =
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
     for
-      question <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
+      question <- question(options)
       _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
         s"--out: $folder holds a search already; --resume ${Typed.path(folder)} goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, None)
+
+  private def question(options: SearchOptions) =
+    options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
 
   private def team(options: SearchOptions, scenario: String): Either[String, TeamQuestion] =
     import options.forward

@@ -37,6 +37,9 @@ final class SpreadCommand(program: String)(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
+  override protected def check(options: SpreadOptions): Either[String, Unit] =
+    options.flights.settings.map(_ => ())
+
   protected def execute(options: SpreadOptions): Either[String, Unit] =
     for
       settings <- options.flights.settings

@@ -15,26 +15,38 @@ import skein.gpu.CudaGpu
 import skein.link.{Address, TcpTransport}
 import skein.mujoco.MujocoLibrary
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.testing.{Lengthy, Optimised}
+import skein.testing.{Lengthy, Optimised, Unhurried}
 import skein.units.Clock
 
 /** Flights by the clock. */
-class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Flight), Lengthy
+class DocumentedFlightsLiveSuite
+    extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Flight)),
+      Lengthy
 
 /** What takes several processes. */
-class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Lengthy,
+class DocumentedClustersLiveSuite
+    extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Cluster)),
+      Lengthy,
       Optimised
 
 /** Forward simulation, by vectors. */
-class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Lengthy,
+class DocumentedSearchesLiveSuite
+    extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Search)),
+      Lengthy,
       Optimised
 
-class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Lengthy
+class DocumentedCommandsLiveSuite
+    extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Other)),
+      Lengthy
 
-/** Runs every command of a kind that README, guides, results and examples show, as it is written there, for a
-  * shorter time; [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
+/** One command of each kind and engine, before every commit. */
+class DocumentedSampleLiveSuite extends DocumentedCommands(DocumentedCommands.sample), Unhurried
+
+/** Runs commands that README, guides, results and examples show, as they are written there, for a shorter
+  * time; [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
   */
-abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.FunSuite:
+abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
+  import DocumentedCommands.files
   private given system: ActorSystem = ActorSystem("documented-commands")
   private lazy val folder           = Files.createTempDirectory("documented")
 
@@ -76,11 +88,6 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
   override def afterAll(): Unit =
     val _ = Edge.await(system.terminate())
     files(folder).reverse.foreach(Files.delete)
-
-  private def files(under: Path): Vector[Path] =
-    val found = Files.walk(under)
-    try found.iterator.asScala.toVector
-    finally found.close()
 
   private val forward = Seq("--candidates", "16", "--episodes", "2", "--fresh", "8", "--duration", "12s")
 
@@ -148,7 +155,10 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     def isSilent(said: String) =
       Seq("no answer from the simulator", "nothing was decided in").exists(said.contains)
     val first @ (status, told) = run(shortened(words, out))
-    if status == 0 || kind != DocumentedCommands.Kind.Flight || !isSilent(told) then first
+    if status == 0 || DocumentedCommands.kindOf(
+        words.mkString(" ")
+      ) != DocumentedCommands.Kind.Flight || !isSilent(told)
+    then first
     else
       println(s"flown once more, for the machine was too busy: ./skein ${words.mkString(" ")}: $told")
       val second @ (again, said) = run(shortened(words, out, live = "8s"))
@@ -192,50 +202,26 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     if !process.waitFor(30, TimeUnit.SECONDS) then process.destroyForcibly(): Unit
     (process.exitValue, said.toString)
 
-  private def shown(page: Path): Vector[String] =
-    """\./skein [^`\n#]+""".r.findAllIn(Files.readString(page)).map(_.stripPrefix("./skein ").trim).toVector
-
-  private val readme: Vector[String] = shown(Documentation.root.resolve("README.md"))
-
-  private val documented: Vector[String] =
-    val pages = Seq("docs/guides", "docs/results", "examples").flatMap(under =>
-      files(Documentation.root.resolve(under))
-    )
-    val shownThere = (pages :+ Documentation.root.resolve("docs/results.md"))
-      .filter(page => page.toString.endsWith(".md") && !page.toString.contains("/target/"))
-      .flatMap(shown)
-    (readme ++ shownThere).distinct
-      .filterNot(DocumentedCommands.leftOut)
-      .map(DocumentedCommands.inVirtualTime(_, readme))
-
-  test("README, guides, results and examples show commands"):
-    assert(documented.sizeIs > 10, documented.mkString("\n"))
-
-  for
-    command <- documented
-    if DocumentedCommands.kindOf(command) == kind && !DocumentedCommands.runElsewhere.contains(command)
-  do
+  for command <- commands do
     test(s"./skein $command"):
       val settings = Files.writeString(
         folder.resolve("settings.json"),
         """{"SettingsVersion": 1.2, "SimMode": "Multirotor", "Vehicles": {"Evader": {"VehicleType": "SimpleFlight"}}}"""
       )
-      val asked = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(found =>
-        Option(found.group(1)).getOrElse(found.group(2))
-      ).map:
-        case "HOST:PORT"                                                => server.address.toString
-        case "NAME"                                                     => "patrol"
+      val asked = DocumentedCommands.words(command).map:
+        case "HOST:PORT" => server.address.toString
+        case "NAME"      => "patrol"
         case "FILE" if command.startsWith("policy") || command.contains("--policy FILE") => learned.toString
-        case "FILE…" if command.startsWith("identify")                  => seeing.toString
-        case "FILE" | "FILE…"                                           => recording.toString
-        case "settings.json"                                            => settings.toString
-        case "searches/…/policy.conf"                                   => policy.toString
-        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf" => learned.toString
-        case "learned/2026-11-22"                                       => learned.getParent.toString
-        case "pursuer.onnx" | "other.onnx"                              => onnx.toString
-        case "sensor.conf"                                              => sensor.toString
-        case "evader.onnx"                                              => s"evader:$onnx"
-        case "searches/…/scenario.conf"                                 => scenario.toString
+        case "FILE…" if command.startsWith("identify")                                   => seeing.toString
+        case "FILE" | "FILE…"                                                            => recording.toString
+        case "settings.json"                                                             => settings.toString
+        case "searches/…/policy.conf"                                                    => policy.toString
+        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf"                  => learned.toString
+        case "learned/2026-11-22"          => learned.getParent.toString
+        case "pursuer.onnx" | "other.onnx" => onnx.toString
+        case "sensor.conf"                 => sensor.toString
+        case "evader.onnx"                 => s"evader:$onnx"
+        case "searches/…/scenario.conf"    => scenario.toString
         // What one command of a guide writes, a later one reads.
         case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
         case model if model.startsWith("mujoco:examples/")                    =>
@@ -302,6 +288,54 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
 object DocumentedCommands:
   enum Kind:
     case Flight, Cluster, Search, Other
+
+  private def files(under: Path): Vector[Path] =
+    val found = Files.walk(under)
+    try found.iterator.asScala.toVector
+    finally found.close()
+
+  private def shown(page: Path): Vector[String] =
+    """\./skein [^`\n#]+""".r.findAllIn(Files.readString(page)).map(_.stripPrefix("./skein ").trim).toVector
+
+  private lazy val readme: Vector[String] = shown(Documentation.root.resolve("README.md"))
+
+  /** As they are written. */
+  lazy val documented: Vector[String] =
+    val pages = Seq("docs/guides", "docs/results", "examples").flatMap(under =>
+      files(Documentation.root.resolve(under))
+    )
+    val shownThere = (pages :+ Documentation.root.resolve("docs/results.md"))
+      .filter(page => page.toString.endsWith(".md") && !page.toString.contains("/target/"))
+      .flatMap(shown)
+    (readme ++ shownThere).distinct
+      .filterNot(leftOut)
+
+  def of(kind: Kind): Vector[String] = documented
+    .map(inVirtualTime(_, readme))
+    .filter(command => kindOf(command) == kind && !runElsewhere.contains(command))
+
+  /** The first of those that differ in nothing that chooses an engine; flights by the clock but one, and
+    * processes, are for the nightly run.
+    */
+  def sample: Vector[String] =
+    val quick   = of(Kind.Search) ++ of(Kind.Other)
+    val engines = Seq(
+      "--scenario",
+      "--gpu",
+      "mujoco:",
+      "--mavlink",
+      "--plant car",
+      "--view",
+      "--policy pursuer.onnx",
+      "--onnx"
+    )
+    quick.distinctBy(command => (command.takeWhile(_ != ' '), engines.filter(command.contains))) ++
+      of(Kind.Flight).find(_ == "fly --loop predictive --link vpn")
+
+  /** The words of a command. */
+  def words(command: String): Vector[String] = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(
+    found => Option(found.group(1)).getOrElse(found.group(2))
+  )
 
   /** The guides' flights by the clock, where the clock is not what they are about: those of the README are
     * flown live.

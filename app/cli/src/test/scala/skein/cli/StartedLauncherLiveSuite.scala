@@ -1,12 +1,12 @@
 package skein.cli
 
 import java.nio.file.Files
-import skein.testing.{Lengthy, TemporaryFolders}
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Commands of the README as a user starts them: the launcher's script, as `cli/stage` makes it, in a process
   * of its own.
   */
-class StartedLauncherLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
+class StartedLauncherLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private lazy val scratch = temporaryFolder()
 
   private def said(words: String*): String =
