@@ -1,12 +1,12 @@
-"""Prints every function that the official clients of multirotors and cars call, with its number of arguments: `name arity`.
+"""Prints every function that the clients of a package, airsim or cosysairsim, call, with its number of arguments: `name arity`.
 
 The client's methods are called one after another on a connection that only writes down what it is asked for.
 """
 
+import importlib
 import inspect
 import logging
-
-import airsim
+import sys
 
 logging.disable()
 
@@ -27,7 +27,9 @@ class Notebook:
 
 
 notebook = Notebook()
-clients = [object.__new__(airsim.MultirotorClient), object.__new__(airsim.CarClient)]
+package = importlib.import_module(sys.argv[1])
+kinds = ["MultirotorClient", "CarClient"] + (["ComputerVisionClient"] if package.__name__ == "cosysairsim" else [])
+clients = [object.__new__(getattr(package, kind)) for kind in kinds]
 for client in clients:
     client.client = notebook
 for name, method in (member for client in clients for member in inspect.getmembers(client, inspect.ismethod)):

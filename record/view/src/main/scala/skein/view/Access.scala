@@ -1,31 +1,16 @@
 package skein.view
 
-import java.net.InetAddress
-import scala.util.Try
-
 /** Who may ask an HTTP server of ours: programs, and the pages that it serves itself. A browser's page of
   * another site may not, not even under a name that it has led to this machine (DNS rebinding).
   *
   * Headers are compared as texts. So a header that says something unheard of is as foreign as one that names
   * another site, and is never taken for none.
   *
-  * @param port that it listens on
-  * @param host that it listens on, an address of IPv6 in brackets
-  * @param isLoopback whether this machine alone reaches it. Others may ask by any address and by names
-  *   without a dot, which nobody can register, besides `host` and `names`
-  * @param names of this machine
+  * @param port on loopback
   * @param origins pages of other sites that may look all the same, for example `https://app.foxglove.dev`
   */
-final case class Access(
-    port: Int,
-    host: String = "127.0.0.1",
-    isLoopback: Boolean = true,
-    names: Set[String] = Set.empty,
-    origins: Set[String] = Set.empty
-):
+final case class Access(port: Int, origins: Set[String] = Set.empty):
   import Access.*
-
-  private val own = Loopback ++ names + host
 
   /** Why a request is refused, if it is.
     *
@@ -36,33 +21,21 @@ final case class Access(
     (said("host"), said("origin")) match
       case (Vector(at), from) if isOwnHost(at) =>
         from match
-          case Vector()                                          => None
-          case Vector(one) if isOwnPage(one, at) || origins(one) => None
+          case Vector()                                      => None
+          case Vector(one) if isOwnPage(one) || origins(one) => None
           case _ => Some("pages of other sites may not look; start with --view-origin to let one")
       case _ =>
-        Some(s"expected one of ${own.toVector.sorted.map(name => s"$name:$port").mkString(", ")} as the host")
+        Some(s"expected one of ${Own.toVector.sorted.map(name => s"$name:$port").mkString(", ")} as the host")
 
   private def isOwnHost(said: String) =
-    val name =
-      if said.endsWith(s":$port") then Some(said.dropRight(s":$port".length))
-      else Option.when(port == DefaultPort)(said)
-    name.exists(one => own(one) || !isLoopback && (isPlain(one) || isAddress(one)))
+    if said.endsWith(s":$port") then Own(said.dropRight(s":$port".length))
+    else port == DefaultPort && Own(said)
 
-  private def isOwnPage(origin: String, at: String) =
-    origin.startsWith(Scheme) && {
-      val from = origin.drop(Scheme.length)
-      from == at || isLoopback && isOwnHost(from)
-    }
+  private def isOwnPage(origin: String) = origin.startsWith(Scheme) && isOwnHost(origin.drop(Scheme.length))
 
 object Access:
-  private val Loopback = Set("127.0.0.1", "localhost", "[::1]")
-  private val Scheme   = "http://"
+  private val Own    = Set("127.0.0.1", "localhost", "[::1]")
+  private val Scheme = "http://"
 
   /** Which browsers leave out. */
   private val DefaultPort = 80
-
-  private def isPlain(name: String) =
-    name.nonEmpty && name.forall(letter => letter.isLetterOrDigit || letter == '-')
-
-  private def isAddress(name: String) =
-    Try(InetAddress.ofLiteral(name)).isSuccess && (name.count(_ == '.') == 3 || name.startsWith("["))

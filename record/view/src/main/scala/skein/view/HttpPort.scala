@@ -16,18 +16,19 @@ import skein.link.Seats
   */
 object HttpPort:
 
-  /** @param host where it listens, as an address of IPv6 has no brackets
+  /** Listens on loopback.
+    *
     * @param port 0 for any that is free
     * @param access by the port that it listens on
     * @param refused told of each request that `access` refuses
     * @param answer must not wait; an answer that is no error counts as a word of use
     * @return fails where it cannot listen
     */
-  def bind(host: String, port: Int, seats: Seats, access: Int => Access, refused: () => Unit = () => ())(
+  def bind(port: Int, seats: Seats, access: Int => Access, refused: () => Unit)(
       answer: (HttpRequest, Guest) => HttpResponse
   )(using ActorSystem): Future[Http.ServerBinding] =
     Http()
-      .newServerAt(host, port)
+      .newServerAt("127.0.0.1", port)
       .connectionSource()
       .to(Sink.foreach: connection =>
         val switch = KillSwitches.shared("http-connection")

@@ -71,7 +71,7 @@ object ViewServer:
     val seats  = Seats(limits.connections, clock)
     val counts = RefusalCounts(seats)
     HttpPort
-      .bind("127.0.0.1", port, seats, Access(_, origins = origins), () => counts.refusedRequest())(
+      .bind(port, seats, Access(_, origins = origins), () => counts.refusedRequest())(
         answer(_, _, token, shows.all, clock, counts)
       )
       .map: binding =>

@@ -46,18 +46,6 @@ class AccessSuite extends munit.FunSuite:
     assertEquals(web.refusal(Seq("host" -> "localhost", "origin" -> "http://localhost")), None)
     assert(web.refusal(Seq("host" -> "elsewhere.example")).isDefined)
 
-  test(
-    "a server that others reach answers to addresses and plain names, and to no name of a registered domain"
-  ):
-    val wide = Access(9100, "0.0.0.0", isLoopback = false, names = Set("lab-1.example.org"))
-    for name <- Seq("10.0.0.7", "[fe80::1]", "coordinator", "lab-1.example.org", "0.0.0.0") do
-      assertEquals(wide.refusal(Seq("host" -> s"$name:9100")), None, name)
-    for name <- Seq("elsewhere.example", "1.2.3", "10.0.0.7.elsewhere.example", "") do
-      assert(wide.refusal(Seq("host" -> s"$name:9100")).isDefined, name)
-    val from = Seq("host" -> "10.0.0.7:9100")
-    assertEquals(wide.refusal(from :+ "origin" -> "http://10.0.0.7:9100"), None)
-    assert(wide.refusal(from :+ "origin" -> "http://10.0.0.8:9100").isDefined)
-
 object AccessSuite:
   /** What a browser, or who speaks like one, may say of another site, or of none. */
   def foreign(port: Int): Seq[String] = Seq(

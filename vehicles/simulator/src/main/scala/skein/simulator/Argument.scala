@@ -58,8 +58,8 @@ private[simulator] object Argument:
     case Arr(values) => values.iterator.map(element.read).toVector
     case _           => badCast
 
-  /** Beyond it numbers lose their metres. */
-  private val FarthestM = 1e9f
+  /** A vector's numbers are metres, metres per second or radians: beyond it they lose their ones. */
+  private val Greatest = 1e9f
 
   given Argument[Vector3r] = checked(record(Vector3r.Zero)): vector =>
     if Seq(vector.x_val, vector.y_val, vector.z_val).forall(math.abs(_) <= FarthestM) then None

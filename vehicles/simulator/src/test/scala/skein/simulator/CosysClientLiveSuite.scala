@@ -34,7 +34,7 @@ class CosysClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
         val _ = Await.result(server.close(), 10.seconds)
 
   test("Cosys-AirSim's client calls what methods.txt lists"):
-    val (status, output) = CosysClient.run("list_methods.py")
+    val (status, output) = CosysClient.run("../airsim-python/list_methods.py", "cosysairsim")
     assertEquals(status, 0, output)
     val listed = Source.fromResource("cosys-python/methods.txt")
     try assertEquals(output.linesIterator.toSeq, listed.getLines().toSeq)

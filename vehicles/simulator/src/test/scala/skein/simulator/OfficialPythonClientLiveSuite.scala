@@ -43,7 +43,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
     fly("drive_car.py", WorldSettings(mixed, text = WorldSettings.render(mixed)))
 
   test("the official Python client calls what methods.txt lists"):
-    val (status, output) = OfficialPythonClient.run("list_methods.py")
+    val (status, output) = OfficialPythonClient.run("list_methods.py", "airsim")
     assertEquals(status, 0, output)
     val listed = Source.fromResource("airsim-python/methods.txt")
     try assertEquals(output.linesIterator.toSeq, listed.getLines().toSeq)
