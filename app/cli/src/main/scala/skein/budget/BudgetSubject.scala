@@ -3,7 +3,7 @@ package skein.budget
 import skein.forward.DelayTable
 import skein.lanes.{DuelNumber, DuelWorlds}
 import skein.optimise.{Objective, RunningStats}
-import skein.policy.{Policy, Role}
+import skein.policy.{HeadingPolicy, Role}
 import skein.search.{Conditions, Effort}
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
@@ -127,5 +127,5 @@ final class DuelSubject(
       extends CellWorlds(links, each, seed),
         DuelWorlds:
     override def asked: Set[DuelNumber] = objective.asked(policy.role)
-    def pursuer(world: Int): Policy     = DuelSubject.this.pursuer
-    def evader(world: Int): Policy      = DuelSubject.this.evader
+    def pursuer(world: Int): HeadingPolicy     = DuelSubject.this.pursuer
+    def evader(world: Int): HeadingPolicy      = DuelSubject.this.evader

@@ -12,7 +12,7 @@ import skein.optimise.{
   SearchMethod,
   ValueEvaluator
 }
-import skein.policy.{Policy, PolicyFamily, Role, SearchSpace}
+import skein.policy.{HeadingPolicy, PolicyFamily, Role, SearchSpace}
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.units.Expect
@@ -204,7 +204,7 @@ final case class SearchSetup(
   /** Is asked what flies, and flies nothing. */
   private lazy val asked = batch(1)
 
-  private def pair(of: Policy): (Policy, Policy) =
+  private def pair(of: HeadingPolicy): (HeadingPolicy, HeadingPolicy) =
     if role == Role.Pursuer then (of, opponent.policy) else (opponent.policy, of)
 
   /** As a policy file. */

@@ -98,7 +98,7 @@ final case class Drift(toM: Double = 12) extends Scenario:
   override def measures: Vector[Measure] =
     Vector(north.most("furthest"), north.firstWhere("arrives")(_ > toM))
 
-final case class Northward(toM: Double) extends skein.policy.AgentPolicy:
+final case class Northward(toM: Double) extends skein.policy.Policy:
   import skein.policy.*
   type Memory = Unit
   def start: Unit                                             = ()

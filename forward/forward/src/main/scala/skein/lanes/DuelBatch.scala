@@ -10,7 +10,7 @@ import skein.forward.{
 }
 import skein.lanes.policy.PolicyLanes
 import skein.lanes.timetable.Timetables
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 import skein.simd.LaneMath
 import skein.units.Expect
 
@@ -105,7 +105,7 @@ final class DuelBatch(
     * @param links that the worlds fly over: where delays are long for the period, or are recorded ones, no
     *   lanes know them
     */
-  def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
+  def engine(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
       case Left(reason)                                       => stepped.getOrElse(s"scalar: $reason")
       case Right(_) if shares(shareEpisodes) && isAccelerated => accelerator.get.engine
@@ -114,7 +114,7 @@ final class DuelBatch(
           Accelerator.instead(accelerated)
 
   /** How many candidates that share episodes take no longer than one. */
-  def sideBySide(pursuer: Policy, evader: Policy, link: Delays): Int =
+  def sideBySide(pursuer: HeadingPolicy, evader: HeadingPolicy, link: Delays): Int =
     if !fliesByLanes(pursuer, evader, shareEpisodes = true, Seq(link)) then 1
     else if isAccelerated then accelerator.get.sideBySide
     else LaneMath.LANES
@@ -124,7 +124,7 @@ final class DuelBatch(
   /** Whether all worlds of these policies fly by lanes, or AirSim's quadrotors do at least, over any of the
     * links.
     */
-  def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
+  def fliesByLanes(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
     model.isInstanceOf[QuadrotorResponse] && stepped.isDefined ||
       lanesOf(pursuer, evader, shares(shareEpisodes)).isRight &&
       links.forall(refusal(shares(shareEpisodes), _).isEmpty)
@@ -135,7 +135,7 @@ final class DuelBatch(
     else apart.fold(Some(_), (plant, _) => LoopSupport.refusal(timing, 2, link, plant))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
-  private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
+  private def lanesOf(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean): Either[String, String] =
     for
       _ <- plant
       _ <- Seq(pursuer, evader)

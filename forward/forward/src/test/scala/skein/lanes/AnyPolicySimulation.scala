@@ -23,7 +23,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   private def within(random: SplitMix64, least: Double, most: Double) =
     least + (most - least) * random.nextDouble()
 
-  private def fleet(random: SplitMix64, policies: (Role, SplitMix64 => AgentPolicy)*) =
+  private def fleet(random: SplitMix64, policies: (Role, SplitMix64 => Policy)*) =
     Fleet(policies.toVector.zipWithIndex.map:
       case ((role, draw), i) =>
         Agent(
@@ -120,7 +120,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
       assert(!fliesByLanes(quadrotors))
 
   test("a policy that does something else than to fly on at its altitude is refused with its line"):
-    def refusal(policy: AgentPolicy) = intercept[IllegalArgumentException]:
+    def refusal(policy: Policy) = intercept[IllegalArgumentException]:
       Engagement.of(fleet(SplitMix64(1), Role.Evader -> (_ => policy), Role.Pursuer -> (_ => Chase)))
     assert(clue(refusal(Landing).getMessage).contains("it decides for Action.Land"))
     assert(clue(refusal(Landing).getMessage).contains("AnyPolicySimulation.scala:"))
@@ -142,7 +142,7 @@ object AnyPolicySimulation:
   private def heading(seen: Observation, way: Vector3, by: Double = 0) =
     Action.heading(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
 
-  trait Forgetful extends AgentPolicy:
+  trait Forgetful extends Policy:
     type Memory = Unit
     def start: Unit = ()
     def action(seen: Observation): Action
@@ -153,7 +153,7 @@ object AnyPolicySimulation:
     def action(seen: Observation): Action = heading(seen, towards(seen, seen.opponent))
 
   final case class Phase(angle: Double, isLeft: Boolean)
-  final case class Weaving(rate: Double) extends AgentPolicy:
+  final case class Weaving(rate: Double) extends Policy:
     type Memory = Phase
     def start: Phase                                              = Phase(0.25, true)
     def choose(seen: Observation, memory: Phase): (Action, Phase) =
@@ -179,7 +179,7 @@ object AnyPolicySimulation:
         seen.startDown
       )
 
-  case object Trailing extends AgentPolicy:
+  case object Trailing extends Policy:
     type Memory = Vector[Double]
     def start: Vector[Double]                                                       = Vector(0.0, 0.0, 0.0)
     def choose(seen: Observation, memory: Vector[Double]): (Action, Vector[Double]) =

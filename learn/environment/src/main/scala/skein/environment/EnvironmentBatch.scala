@@ -4,7 +4,7 @@ import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
 import skein.lanes.LearnerDuels.WORLDS
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.simd.LaneMath
@@ -55,7 +55,7 @@ final class EnvironmentBatch private (
   /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides,
     * from their next episodes on.
     */
-  def fly(policy: Policy): Unit = groups.foreach:
+  def fly(policy: HeadingPolicy): Unit = groups.foreach:
     case team: ScenarioGroup => team.fly(policy)
     case _                   => ()
 

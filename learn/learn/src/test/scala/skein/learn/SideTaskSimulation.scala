@@ -60,8 +60,8 @@ class SideTaskSimulation extends munit.FunSuite:
       override def shareEpisodes      = true
       def key(world: Int): Int        = world
       def link(world: Int): Delays    = DelayTable.vpn
-      def pursuer(world: Int): Policy = policy
-      def evader(world: Int): Policy  = PaperEvader()
+      def pursuer(world: Int): HeadingPolicy = policy
+      def evader(world: Int): HeadingPolicy  = PaperEvader()
     val batch = DuelBatch(duel, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)
     assert(batch.fliesByLanes(policy, PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
     val flown   = batch.fly(worlds)
