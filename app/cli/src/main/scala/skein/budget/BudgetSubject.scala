@@ -1,7 +1,7 @@
 package skein.budget
 
 import skein.forward.DelayTable
-import skein.lanes.{DuelNumber, DuelWorlds}
+import skein.lanes.{DuelNumber, DuelWorlds, Engine}
 import skein.optimise.{Objective, RunningStats}
 import skein.policy.{HeadingPolicy, Role}
 import skein.search.{Conditions, Effort}
@@ -28,8 +28,7 @@ trait BudgetSubject(
   /** The number where the world waits for the controller; or why there is none. */
   def truth: Either[String, Double]
 
-  /** What flies, in a line for the user. */
-  def engine(links: Vector[LatencyDistribution]): String
+  def engine(links: Vector[LatencyDistribution]): Engine
 
   /** Episodes of a cell that are flown in seconds. */
   def cellEpisodes(links: Vector[LatencyDistribution]): Int
@@ -108,10 +107,10 @@ final class DuelSubject(
     Right(objective.value(paused, 0, policy.role, durationS))
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int =
-    val isFast = batch.fliesByLanes(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
-    Effort.of(isFast, isFast, flown.vehicle, flown.sees).cellEpisodes
+    val alone = engine(links)
+    Effort.of(alone, alone, flown.vehicle, flown.sees).cellEpisodes
 
-  def engine(links: Vector[LatencyDistribution]): String =
+  def engine(links: Vector[LatencyDistribution]): Engine =
     batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =

@@ -1,5 +1,6 @@
 package skein.search
 
+import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats, Search, ValueEvaluator, WeightedSum}
 import skein.policy.SearchSpace
 
@@ -50,8 +51,8 @@ trait ReadySearch:
     */
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats]
 
-  /** A line that says what flies a candidate, or the baseline, where it is judged. */
-  def engine(candidate: Vector[Double], judge: Judge): String
+  /** What flies a candidate, or the baseline, where it is judged. */
+  def engine(candidate: Vector[Double], judge: Judge): Engine
 
   /** What flies the candidates, and where it is something else, what flies the winner's fresh episodes and
     * the baseline's.
@@ -60,7 +61,7 @@ trait ReadySearch:
     val together = engine(space.defaults, Judge.Candidates)
     val fresh    =
       Vector(engine(space.defaults, Judge.Winner), engine(baseline.candidate, Judge.Baseline)).distinct
-    together + (if fresh == Vector(together) then ""
+    together.text + (if fresh == Vector(together) then ""
                 else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
 
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
@@ -68,9 +69,6 @@ trait ReadySearch:
 
   /** Whether forward simulation flies it, and not flights in virtual time. */
   def fliesForward: Boolean = true
-
-  /** Whether many candidates that meet the same episodes fly by lanes. */
-  def byLanes: Boolean
 
   def effort: Effort
 

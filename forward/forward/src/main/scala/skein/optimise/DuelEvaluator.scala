@@ -26,7 +26,8 @@ final class DuelEvaluator(
 
   override def sideBySide: Int =
     val policy = family.defaultPolicy
-    if shareEpisodes then batch.sideBySide(pursuer(policy), evader(policy), link) else 1
+    if shareEpisodes then batch.engine(pursuer(policy), evader(policy), shareEpisodes, Seq(link)).sideBySide
+    else 1
 
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],

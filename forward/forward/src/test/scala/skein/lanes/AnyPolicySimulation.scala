@@ -80,7 +80,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   ): Unit =
     val all    = worlds(candidates(draw, 60, 5), over, share)
     val batch  = TeamBatch(timing, plant, threads = 1)
-    val engine = batch.engine(all.candidate(0), share, Seq(over))
+    val engine = batch.engine(all.candidate(0), share, Seq(over)).text
     assert(engine.startsWith("SIMD"), engine)
     val flown  = batch.fly(all)
     val scalar = ScalarTeam(timing, plant)
@@ -115,7 +115,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     val plants     = TeamBatch(LoopTiming.Stream(), lag, threads = 1)
     for policy <- Seq(Turning, Upwards) do
       val one = candidates(fleet(_, Role.Evader -> (_ => policy), Role.Pursuer -> (_ => Chase)), 1, 2).head
-      def fliesByLanes(by: TeamBatch) = by.fliesByLanes(one, shareEpisodes = true, Seq(DelayTable.vpn))
+      def fliesByLanes(by: TeamBatch) = by.engine(one, shareEpisodes = true, Seq(DelayTable.vpn)).fliesByLanes
       assert(fliesByLanes(plants))
       assert(!fliesByLanes(quadrotors))
 
@@ -130,7 +130,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   test("one that promises to fly in the plane flies by the scalar engine, and fails if it does not"):
     val team = fleet(_, Role.Evader -> (_ => Promising), Role.Pursuer -> (_ => Chase))
     val one  = candidates(team, 1, 5).head
-    val told = TeamBatch(LoopTiming.Stream(), lag, 1).engine(one, shareEpisodes = true, Seq(DelayTable.vpn))
+    val told = TeamBatch(LoopTiming.Stream(), lag, 1).engine(one, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(clue(told).startsWith("scalar: a policy is no formula: "))
     val failed = intercept[OwnFailure](ScalarTeam(LoopTiming.Stream(), lag).fly(one, DelayTable.vpn, 4))
     assert(clue(failed.getMessage).startsWith("the policy Promising decided for Land"))

@@ -114,7 +114,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       def pursuer(world: Int): HeadingPolicy     = CameraTrackerAgreementSimulation.this.pursuer(world)
       def evader(world: Int): HeadingPolicy      = CameraTrackerAgreementSimulation.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
-    val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn))
+    val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)
     assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel(DuelNumber.MeanDistance).toSeq)
 

@@ -82,7 +82,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       val batch = DuelBatch(duel, timing, model, threads = 1)
       val said  = table((worlds, nameOf(timing)))(plant)
       for (kind, policy) <- policies do
-        val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn))
+        val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn)).text
         // Quadrotors need no formula to fly side by side.
         val expected =
           if kind != "no formula" then said else if plant == "the quadrotor" then "vehicles" else "scalar"
@@ -97,7 +97,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     test(s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine says what is told below the table"):
       val seeing = duel.copy(pursuer = duel.pursuer.copy(eye = Some(GuideCamera.model)))
       val engine = DuelBatch(seeing, timing, model, threads = 1)
-        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
       val said    = table((worlds, nameOf(timing)))(plant)
       val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
       assertEquals(word(engine), if said == "SIMD" && isTimed then "SIMD" else "scalar", engine)
@@ -109,7 +109,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     test(s"predictive by $plant itself, ${if shared then "shared" else "own"} delays: it flies by lanes"):
       val model  = PlantResponse(plant)
       val batch  = DuelBatch(duel, LoopTiming.Predictive(predictor = model.predictor), model, threads = 1)
-      val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+      val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
       assertEquals(word(engine), "SIMD", engine)
 
   private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
@@ -141,7 +141,7 @@ class FlownByLanesSuite extends munit.FunSuite:
         )
       val batch = TeamBatch(timing, model, threads = 1)
       for (worlds, shared) <- Seq("teams, shared delays" -> true, "teams, own delays" -> false) do
-        val engine = batch.engine(team, shared, Seq(DelayTable.vpn))
+        val engine = batch.engine(team, shared, Seq(DelayTable.vpn)).text
         assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
   test(
@@ -153,7 +153,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       Vector(Judged(OffRing(8), Reduction.Rms, 0))
     )
     for timing <- loops(model).tail do
-      val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn))
+      val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("scalar: the lanes fly steps of"), s"$timing: $engine")
 
   test("the table has a row for all that the engines fly, and no other"):

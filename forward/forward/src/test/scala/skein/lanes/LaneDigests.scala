@@ -139,7 +139,7 @@ object LaneDigests:
         timing,
         model,
         threads = 1
-      ).fliesByLanes(pursuer(0), PaperEvader(), shared, Nil)
+      ).engine(pursuer(0), PaperEvader(), shared, Nil).isFast
     do
       val aside = Seq(0.0, 2.0)(at % 2)
       val count = if plant == "quadrotor" then 9 else 141

@@ -49,7 +49,7 @@ import skein.vehicle.ReducedModel
       def link(world: Int): Delays    = over
       def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 1e-4 * (world % 512))
       def evader(world: Int): HeadingPolicy  = PaperEvader()
-    val isFast = batch.fliesByLanes(PaperPursuer(), PaperEvader(), shared, Seq(over))
+    val isFast = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(over)).isFast
 
     /** Processor time of the batch's own threads, which end with each call. */
     def rate(count: Int): Double =

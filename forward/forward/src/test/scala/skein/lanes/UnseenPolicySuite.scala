@@ -36,8 +36,8 @@ class UnseenPolicySuite extends munit.FunSuite:
         def evader(world: Int): HeadingPolicy      = UnseenPolicySuite.Evader
       val batch = DuelBatch(short, timing, model, 1)
       assert(
-        batch.fliesByLanes(pursuers.head, evader, shared, Seq(DelayTable.vpn)),
-        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn))
+        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).isFast,
+        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).text
       )
       val flown = batch.fly(worlds)
       val off   = pursuers.indices.map: world =>

@@ -34,7 +34,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
         def link(world: Int): Delays        = DelayTable.vpn
         def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.6 + 0.04 * world)
         def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.1 * world)
-      val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn))
+      val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn)).text
       assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
       val flown = batch.fly(all)
       for world <- 0 until all.size do
@@ -55,7 +55,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
       val told  = s"${timing.productPrefix}, shared delays: $shared"
       val batch = TeamBatch(timing, model, threads = 1)
       assertEquals(
-        batch.engine(team, shared, Seq(DelayTable.vpn)),
+        batch.engine(team, shared, Seq(DelayTable.vpn)).text,
         "vehicles side by side; their loops by the scalar engine",
         told
       )

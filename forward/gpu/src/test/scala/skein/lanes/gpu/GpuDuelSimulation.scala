@@ -65,7 +65,7 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
     val onCpu  = DuelBatch(duel, timing, model, threads = 1)
     val onGpu  = DuelBatch(duel, timing, model, threads = 1, Some(GpuAccelerator(gpu)))
     assertEquals(
-      onGpu.engine(pursuer(0), PaperEvader(), shareEpisodes = true, Seq(link)),
+      onGpu.engine(pursuer(0), PaperEvader(), shareEpisodes = true, Seq(link)).text,
       s"GPU, ${gpu.name}: a thread a candidate"
     )
     val (told, wanted) = (onGpu.fly(worlds, 4), onCpu.fly(worlds, 4))
