@@ -1,7 +1,7 @@
 package skein.search
 
-import skein.lanes.Engine
-import skein.optimise.{Evaluator, RunningStats, Search, ValueEvaluator, WeightedSum}
+import skein.lanes.{Accelerator, Engine}
+import skein.optimise.{Evaluator, RunningStats, Search, SearchMethod, ValueEvaluator, WeightedSum}
 import skein.policy.SearchSpace
 
 /** A search whose question was read: whoever reads the same question judges with the same bits. */
@@ -64,6 +64,15 @@ trait ReadySearch:
     together.text + (if fresh == Vector(together) then ""
                 else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
 
+  /** Whether candidates share episodes: an episode's timetable costs as much as it saves some hundred
+    * candidates, so few fly faster each with delays of its own.
+    *
+    * @param alone what flies them so
+    * @param accelerator flies shared episodes only
+    */
+  protected final def shares(by: SearchMethod, accelerator: Option[Accelerator], alone: Engine): Boolean =
+    accelerator.nonEmpty || by.together(space.dimension) >= ReadySearch.ShareFrom || !alone.isFast
+
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
   def rate(threads: Int): Option[String] = None
 
@@ -92,3 +101,6 @@ trait ReadySearch:
 
   /** For an axis of a picture. */
   def measure: String = WeightedSum.withUnit(formula, unit)
+
+object ReadySearch:
+  private val ShareFrom = 256

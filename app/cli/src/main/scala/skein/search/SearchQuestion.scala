@@ -166,7 +166,7 @@ final case class SearchSetup(
   def judges(threads: Int): Judge => ValueEvaluator =
     val flown = batch(threads)
     val each  = Judge.values.toVector.map:
-      case Judge.Candidates => evaluator(flown)
+      case Judge.Candidates => evaluator(flown, many = sharing)
       case Judge.Winner     => evaluator(flown, many = false)
       case Judge.Baseline   => evaluator(flown, paper.family, many = false)
     judge => each(judge.ordinal)
@@ -193,9 +193,14 @@ final case class SearchSetup(
   private def flown(judge: Judge) = engine(space.defaults, judge)
 
   def engine(candidate: Vector[Double], judge: Judge): Engine =
-    val of                = if judge == Judge.Baseline then paper.family else family
-    val (pursuer, evader) = pair(of.policy(candidate))
-    asked.engine(pursuer, evader, shareEpisodes = judge == Judge.Candidates, Seq(delays))
+    val of = if judge == Judge.Baseline then paper.family else family
+    engine(of.policy(candidate), judge == Judge.Candidates && sharing)
+
+  private def engine(policy: HeadingPolicy, share: Boolean): Engine =
+    val (pursuer, evader) = pair(policy)
+    asked.engine(pursuer, evader, share, Seq(delays))
+
+  private lazy val sharing = shares(by, accelerator, engine(family.defaultPolicy, share = false))
 
   /** Is asked what flies, and flies nothing. */
   private lazy val asked = batch(1)

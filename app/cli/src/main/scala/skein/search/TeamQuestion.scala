@@ -217,8 +217,12 @@ final case class TeamSetup(
       Some(space.defaults)
     )
 
-  /** Whether candidates meet the same episodes: of few, each world flies faster by itself. */
-  private def share(judge: Judge) = judge == Judge.Candidates
+  private def share(judge: Judge) = judge == Judge.Candidates && sharing
+
+  private lazy val sharing = flownBy match
+    case TeamEngine.Reduced(_, delays) =>
+      shares(by, accelerator, asked.engine(candidate(space.defaults), shareEpisodes = false, Seq(delays)))
+    case _: TeamEngine.Whole => false
 
   def measured(
       by: Judge => Evaluator,
