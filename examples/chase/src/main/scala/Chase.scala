@@ -4,7 +4,7 @@ import skein.scenario.*
 import skein.units.*
 
 /** Flies at full speed towards the place where the evader was last seen. */
-case object Chase extends AgentPolicy:
+case object Chase extends Policy:
   type Memory = Unit
   def start: Unit                                             = ()
   def choose(seen: Observation, memory: Unit): (Action, Unit) =

@@ -5,7 +5,7 @@ import java.nio.{ByteBuffer, ByteOrder}
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, PlantResponse}
 import skein.lanes.{DuelBatch, DuelWorlds}
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.Scenarios
 import skein.vehicle.ReducedModel
 
@@ -67,8 +67,8 @@ private def flights(count: Int): (Double, Float) =
     override def shareEpisodes      = true
     def key(world: Int): Int        = world / 128
     def link(world: Int): Delays    = DelayTable.vpn
-    def pursuer(world: Int): Policy = pursuing
-    def evader(world: Int): Policy  = evading
+    def pursuer(world: Int): HeadingPolicy = pursuing
+    def evader(world: Int): HeadingPolicy  = evading
     private val (pursuing, evading) = (PaperPursuer(), PaperEvader())
   var last = 0f
   val rate = bestRate(() => last = batch.fly(worlds).meanLast10sM(0))

@@ -5,7 +5,7 @@ import skein.gpu.{CudaGpu, Gpu}
 import skein.lanes.*
 import skein.lanes.gpu.{GpuAccelerator, GpuQuadrotors}
 import skein.lanes.plant.LaneQuadrotors
-import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
+import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, ReducedModel}
@@ -28,10 +28,10 @@ object GpuRates:
     println(s"${gpu.name}; ${Runtime.getRuntime.availableProcessors} processors")
     println("| work | GPU, M/s | its kernels alone, M/s | processors, M/s | times | witness | differ |")
     println("|---|---|---|---|---|---|---|")
-    def paper(i: Int): Policy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
-    def neural(i: Int): Policy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
+    def paper(i: Int): HeadingPolicy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
+    def neural(i: Int): HeadingPolicy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
     val drag                   = PlantResponse(ReducedModel.AirSim)
-    def duels(name: String, timing: LoopTiming, model: VelocityResponse, share: Int, pursuer: Int => Policy) =
+    def duels(name: String, timing: LoopTiming, model: VelocityResponse, share: Int, pursuer: Int => HeadingPolicy) =
       val count    = candidates / share
       val policies = Vector.tabulate(count)(pursuer)
       val onGpu    = DuelBatch(Duel.paper, timing, model, accelerator = accelerator)
@@ -95,12 +95,12 @@ object GpuRates:
     def key(world: Int): Int            = WorldRandom.key(3, 0, world % Episodes)
     def link(world: Int): DelayTable    = DelayTable.vpn
 
-  private final class Duels(candidates: Int, policies: Vector[Policy]) extends DuelWorlds,
+  private final class Duels(candidates: Int, policies: Vector[HeadingPolicy]) extends DuelWorlds,
         Together(candidates):
     private val evader                  = PaperEvader()
     override def asked: Set[DuelNumber] = GpuRates.asked
-    def pursuer(world: Int): Policy     = policies(world / Episodes)
-    def evader(world: Int): Policy      = this.evader
+    def pursuer(world: Int): HeadingPolicy     = policies(world / Episodes)
+    def evader(world: Int): HeadingPolicy      = this.evader
 
   private final class Teams(candidates: Int, teams: Vector[TeamCandidate]) extends TeamWorlds,
         Together(candidates):

@@ -4,7 +4,7 @@ import java.lang.management.ManagementFactory
 import skein.forward.{DelayTable, Delays, Engagement, LoopTiming}
 import skein.lanes.{ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.score.Judged
-import skein.policy.{Action, AgentPolicy, Fleet, Observation, PaperPursuer}
+import skein.policy.{Action, Policy, Fleet, Observation, PaperPursuer}
 import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.units.{MetresPerSecond, Radians}
@@ -67,7 +67,7 @@ object TeamRates:
   def crossing(vehicles: Int)(number: Int): TeamCandidate =
     candidate(Crossing(vehicles, marginM = 0.5 + 0.005 * number), Vector(Separation))
 
-  private def duel(by: AgentPolicy)(number: Int): TeamCandidate =
+  private def duel(by: Policy)(number: Int): TeamCandidate =
     val Vector(evader, pursuer) = PaperDuel().agents: @unchecked
     val speed                   = MetresPerSecond(8 + 0.01 * number)
     TeamCandidate(
@@ -76,7 +76,7 @@ object TeamRates:
     )
 
   /** As examples/chase has it. */
-  private case object Chase extends AgentPolicy:
+  private case object Chase extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =

@@ -3,7 +3,7 @@ package skein.bench
 import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse, Rollout, VelocityResponses}
 import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
 import skein.lanes.plant.LaneQuadrotors
-import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
+import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
@@ -74,8 +74,8 @@ object Works:
       override def asked: Set[DuelNumber] = Works.asked
       def key(world: Int): Int            = WorldRandom.key(thread, 0, world / 256)
       def link(world: Int): DelayTable    = DelayTable.vpn
-      def pursuer(world: Int): Policy     = policies(world % 256)
-      def evader(world: Int): Policy      = Works.evader
+      def pursuer(world: Int): HeadingPolicy     = policies(world % 256)
+      def evader(world: Int): HeadingPolicy      = Works.evader
     val outcomes = batch(LoopTiming.Stream(), 1).fly(all)
     (worlds * 1200.0, outcomes.meanLast10sM.map(_.toDouble).sum / worlds)
 
@@ -95,8 +95,8 @@ object Works:
     override def asked: Set[DuelNumber] = Works.asked
     def key(world: Int): Int            = WorldRandom.key(seed, 0, world / perEpisode)
     def link(world: Int): DelayTable    = delays
-    def pursuer(world: Int): Policy     = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
-    def evader(world: Int): Policy      = Works.evader
+    def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
+    def evader(world: Int): HeadingPolicy      = Works.evader
 
   private val evader = PaperEvader()
 

@@ -10,7 +10,7 @@ import skein.units.*
   *
   * @param trustS at this age a reading's velocity counts half
   */
-final case class Patient(metres: Double, trustS: Double) extends AgentPolicy:
+final case class Patient(metres: Double, trustS: Double) extends Policy:
   type Memory = Double
   def start: Double = 0
 

@@ -9,7 +9,7 @@ import skein.units.*
   * @param laneM east, that it keeps to
   */
 final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Double, other: Int)
-    extends AgentPolicy:
+    extends Policy:
   type Memory = Unit
   def start: Unit = ()
 

@@ -16,7 +16,7 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Drives from corner to corner; remembers which is the next. */
-final case class Patrol(corners: Vector[Vector3], mps: Double) extends AgentPolicy:
+final case class Patrol(corners: Vector[Vector3], mps: Double) extends Policy:
   type Memory = Int
   def start: Int                                            = 0
   def choose(seen: Observation, memory: Int): (Action, Int) =

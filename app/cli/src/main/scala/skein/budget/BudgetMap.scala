@@ -1,5 +1,6 @@
 package skein.budget
 
+import skein.lanes.Engine
 import skein.optimise.LatencyBudget.Bound
 import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
@@ -10,7 +11,7 @@ import upickle.default.{ReadWriter, macroRW, write}
 /** A map of one loop at one period, with what is said of it.
   *
   * @param policy or scenario
-  * @param engine what flew it, in a line
+  * @param engine what flew it
   * @param marks named links with what was flown over them as they were measured
   */
 final case class BudgetMap(
@@ -20,7 +21,7 @@ final case class BudgetMap(
     unit: String,
     vehicles: String,
     policy: String,
-    engine: String,
+    engine: Engine,
     tolerance: Tolerance,
     episodes: Int,
     budget: LatencyBudget,
@@ -130,7 +131,7 @@ object BudgetMap:
       map.loop,
       map.periodMs,
       map.vehicles,
-      map.engine,
+      map.engine.text,
       map.objective,
       map.unit,
       map.legs.text,

@@ -1,9 +1,9 @@
 package skein.budget
 
 import skein.forward.DelayTable
-import skein.lanes.{DuelNumber, DuelWorlds}
+import skein.lanes.{DuelNumber, DuelWorlds, Engine}
 import skein.optimise.{Objective, RunningStats}
-import skein.policy.{Policy, Role}
+import skein.policy.{HeadingPolicy, Role}
 import skein.search.{Conditions, Effort}
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
@@ -28,8 +28,7 @@ trait BudgetSubject(
   /** The number where the world waits for the controller; or why there is none. */
   def truth: Either[String, Double]
 
-  /** What flies, in a line for the user. */
-  def engine(links: Vector[LatencyDistribution]): String
+  def engine(links: Vector[LatencyDistribution]): Engine
 
   /** Episodes of a cell that are flown in seconds. */
   def cellEpisodes(links: Vector[LatencyDistribution]): Int
@@ -108,10 +107,10 @@ final class DuelSubject(
     Right(objective.value(paused, 0, policy.role, durationS))
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int =
-    val isFast = batch.fliesByLanes(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
-    Effort.of(isFast, isFast, flown.vehicle, flown.sees).cellEpisodes
+    val alone = engine(links)
+    Effort.of(alone, alone, flown.vehicle, flown.sees).cellEpisodes
 
-  def engine(links: Vector[LatencyDistribution]): String =
+  def engine(links: Vector[LatencyDistribution]): Engine =
     batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
@@ -127,5 +126,5 @@ final class DuelSubject(
       extends CellWorlds(links, each, seed),
         DuelWorlds:
     override def asked: Set[DuelNumber] = objective.asked(policy.role)
-    def pursuer(world: Int): Policy     = DuelSubject.this.pursuer
-    def evader(world: Int): Policy      = DuelSubject.this.evader
+    def pursuer(world: Int): HeadingPolicy     = DuelSubject.this.pursuer
+    def evader(world: Int): HeadingPolicy      = DuelSubject.this.evader

@@ -1,6 +1,7 @@
 package skein.budget
 
 import scala.annotation.tailrec
+import skein.lanes.Engine
 import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 
@@ -18,8 +19,8 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
   /** Of each cell: as many as were asked for, or as are flown in seconds. */
   lazy val episodes: Int = asked.getOrElse(subject.cellEpisodes(known))
 
-  /** What flies the cells, in a line for the user. */
-  def engine: String = subject.engine(known)
+  /** What flies the cells. */
+  def engine: Engine = subject.engine(known)
 
   /** Over a link with these round trips. */
   def over(roundTrip: LatencyDistribution): Either[String, RunningStats] =

@@ -3,7 +3,7 @@ package skein.budget
 import java.util.concurrent.atomic.AtomicLong
 import skein.flight.InParallel
 import skein.forward.*
-import skein.lanes.{TeamBatch, TeamCandidate, TeamOutcomes, TeamWorlds}
+import skein.lanes.{Engine, TeamBatch, TeamCandidate, TeamOutcomes, TeamWorlds}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, TeamObjective}
 import skein.scenario.{Scenario, Scenarios, Tracks}
@@ -69,13 +69,10 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
     val paused = batch(flown.paused.timing, 1).fly(Worlds(Vector(DelayTable.none), 1))
     Right(value(paused, 0))
 
-  def engine(links: Vector[LatencyDistribution]): String =
+  def engine(links: Vector[LatencyDistribution]): Engine =
     cells.engine(candidate, shareEpisodes = false, links.map(DelayTable.of))
 
-  def cellEpisodes(links: Vector[LatencyDistribution]): Int =
-    Effort
-      .ofTeam(cells.fliesByLanes(candidate, shareEpisodes = false, links.map(DelayTable.of)))
-      .cellEpisodes
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int = Effort.ofTeam(engine(links)).cellEpisodes
 
   def tallies(asked: BudgetCells): Either[String, Vector[RunningStats]] =
     val outcomes = cells.fly(
@@ -101,12 +98,12 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
 final class FlownSubject private (
     question: ScenarioQuestion,
     vehicles: String,
-    told: String,
+    told: Engine,
     effort: Effort,
     over: Option[LatencyDistribution] => Int => Either[String, Tracks]
 ) extends ScenarioSubject(question, vehicles):
 
-  def engine(links: Vector[LatencyDistribution]): String = told
+  def engine(links: Vector[LatencyDistribution]): Engine = told
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = effort.cellEpisodes
 
@@ -144,7 +141,7 @@ object FlownSubject:
     FlownSubject(
       question,
       flown.vehicle.description,
-      s"scalar: ${WholeFlights.ofWholeFlights(plain)}",
+      WholeFlights.ofMeasures(plain),
       Effort.OfScalarFlights,
       _.fold(fly(flown.paused.timing, DelayTable.none))(roundTrip =>
         fly(flown.timing, DelayTable.of(roundTrip))
@@ -156,7 +153,7 @@ object FlownSubject:
     FlownSubject(
       question,
       WholeFlights.SimulatorsQuadrotor,
-      s"flights in virtual time: $reason",
+      WholeFlights.inVirtualTime(reason),
       Effort.OfFlights,
       link =>
         WholeFlights.virtual(

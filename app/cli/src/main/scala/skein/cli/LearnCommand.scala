@@ -250,7 +250,7 @@ final class LearnCommand(program: String)(using Scenarios)
         def judge(from: Judge) = ClusterEvaluator(
           LearnWork.episodes(run),
           from,
-          asked.block.getOrElse(Effort.blockEpisodes(byLanes = true, setup.conditions.vehicle)),
+          asked.block.getOrElse(Effort.blockEpisodes(isFast = true, setup.conditions.vehicle)),
           // Learning, which goes on meanwhile, has a line of its own.
           _ => if from != Judge.Candidates then wait()
         )

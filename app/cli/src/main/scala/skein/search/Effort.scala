@@ -1,5 +1,6 @@
 package skein.search
 
+import skein.lanes.Engine
 import skein.settings.VehicleChoice
 
 /** How many episodes are flown unless told otherwise: fewer where one costs more.
@@ -22,8 +23,8 @@ final case class Effort(
 
 object Effort:
   /** Episodes that one core flies in about half a second. */
-  def blockEpisodes(byLanes: Boolean, vehicle: VehicleChoice): Int =
-    (byLanes, vehicle.fliesInSteps) match
+  def blockEpisodes(isFast: Boolean, vehicle: VehicleChoice): Int =
+    (isFast, vehicle.fliesInSteps) match
       case (true, false)  => 32768
       case (true, true)   => 2048
       case (false, false) => 512
@@ -36,13 +37,13 @@ object Effort:
 
   /** Of duels.
     *
-    * @param together whether candidates that share their episodes fly by lanes
-    * @param alone whether worlds with delays of their own do
+    * @param together of candidates that share their episodes
+    * @param alone of worlds with delays of their own
     * @param sees whether somebody knows of the other by a sensor: what follows from images costs several
     *   times what all else does, and more with images of a world's own
     */
-  def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice, sees: Boolean): Effort =
-    def level(byLanes: Boolean, isDear: Boolean) = (byLanes, isDear) match
+  def of(together: Engine, alone: Engine, vehicle: VehicleChoice, sees: Boolean): Effort =
+    def level(engine: Engine, isDear: Boolean) = (engine.isFast, isDear) match
       case (true, false) => Cheap
       case (true, true)  => Dear
       case (false, _)    => if vehicle.fliesInSteps then Dearer else Dear
@@ -58,8 +59,10 @@ object Effort:
   /** Of flights in virtual time, some a second. */
   val OfFlights: Effort = Effort(16, 1, 5, 2, onCurve = 9)
 
-  def ofTeam(byLanes: Boolean): Effort =
-    if byLanes then Effort(TeamsFresh, 16, 21, 300) else Effort(TeamsFresh, 2, 7, 10)
+  def ofTeam(engine: Engine): Effort =
+    if engine.fliesByLanes then Effort(TeamsFresh, 16, 21, 300) else ScalarTeams
+
+  private val ScalarTeams = Effort(TeamsFresh, 2, 7, 10)
 
   /** Of a team whose measures are of whole flights, by the scalar engine. */
-  val OfScalarFlights: Effort = ofTeam(byLanes = false).copy(cellEpisodes = 4)
+  val OfScalarFlights: Effort = ScalarTeams.copy(cellEpisodes = 4)

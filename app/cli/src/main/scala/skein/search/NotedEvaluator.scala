@@ -1,14 +1,15 @@
 package skein.search
 
+import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats}
 
 /** Judges as another does, and notes what flies the candidates: their policies may be of several forms. One
   * call at a time.
   *
-  * @param engine of a candidate, in a line for the user
+  * @param engine of a candidate
   */
-final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => String) extends Evaluator:
-  private val candidates = collection.mutable.LinkedHashMap.empty[String, Int].withDefaultValue(0)
+final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => Engine) extends Evaluator:
+  private val candidates = collection.mutable.LinkedHashMap.empty[Engine, Int].withDefaultValue(0)
 
   override def sideBySide: Int = by.sideBySide
 
@@ -28,7 +29,7 @@ final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => String) exte
     if episodes.start == 0 then of.foreach(each => candidates(engine(each)) += 1)
 
   /** How many candidates were flown by something else than this, in a line for the user. */
-  def others(expected: String): Option[String] =
+  def others(expected: Engine): Option[String] =
     val others = candidates.toVector.filter(_._1 != expected)
     Option.when(others.nonEmpty):
       val told = others.map((engine, count) => s"$count by another engine, $engine")

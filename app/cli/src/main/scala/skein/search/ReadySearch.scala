@@ -1,6 +1,7 @@
 package skein.search
 
-import skein.optimise.{Evaluator, RunningStats, Search, ValueEvaluator, WeightedSum}
+import skein.lanes.{Accelerator, Engine}
+import skein.optimise.{Evaluator, RunningStats, Search, SearchMethod, ValueEvaluator, WeightedSum}
 import skein.policy.SearchSpace
 
 /** A search whose question was read: whoever reads the same question judges with the same bits. */
@@ -50,8 +51,8 @@ trait ReadySearch:
     */
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats]
 
-  /** A line that says what flies a candidate, or the baseline, where it is judged. */
-  def engine(candidate: Vector[Double], judge: Judge): String
+  /** What flies a candidate, or the baseline, where it is judged. */
+  def engine(candidate: Vector[Double], judge: Judge): Engine
 
   /** What flies the candidates, and where it is something else, what flies the winner's fresh episodes and
     * the baseline's.
@@ -60,17 +61,23 @@ trait ReadySearch:
     val together = engine(space.defaults, Judge.Candidates)
     val fresh    =
       Vector(engine(space.defaults, Judge.Winner), engine(baseline.candidate, Judge.Baseline)).distinct
-    together + (if fresh == Vector(together) then ""
+    together.text + (if fresh == Vector(together) then ""
                 else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
+
+  /** Whether candidates share episodes: an episode's timetable costs as much as it saves some hundred
+    * candidates, so few fly faster each with delays of its own.
+    *
+    * @param alone what flies them so
+    * @param accelerator flies shared episodes only
+    */
+  protected final def shares(by: SearchMethod, accelerator: Option[Accelerator], alone: Engine): Boolean =
+    accelerator.nonEmpty || by.together(space.dimension) >= ReadySearch.ShareFrom || !alone.isFast
 
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
   def rate(threads: Int): Option[String] = None
 
   /** Whether forward simulation flies it, and not flights in virtual time. */
   def fliesForward: Boolean = true
-
-  /** Whether many candidates that meet the same episodes fly by lanes. */
-  def byLanes: Boolean
 
   def effort: Effort
 
@@ -94,3 +101,6 @@ trait ReadySearch:
 
   /** For an axis of a picture. */
   def measure: String = WeightedSum.withUnit(formula, unit)
+
+object ReadySearch:
+  private val ShareFrom = 256

@@ -2,7 +2,7 @@ package skein.search
 
 import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.Delays
-import skein.lanes.{Accelerator, DuelBatch}
+import skein.lanes.{Accelerator, DuelBatch, Engine}
 import skein.optimise.{
   DuelEvaluator,
   Evaluator,
@@ -12,7 +12,7 @@ import skein.optimise.{
   SearchMethod,
   ValueEvaluator
 }
-import skein.policy.{Policy, PolicyFamily, Role, SearchSpace}
+import skein.policy.{HeadingPolicy, PolicyFamily, Role, SearchSpace}
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.units.Expect
@@ -130,7 +130,7 @@ final case class SearchSetup(
   def periodMs: Double                         = question.conditions.periodMs
   def vehicles: String                         = conditions.vehicle.description
   def model: String                            = conditions.vehicle.name
-  def blockEpisodes: Int                       = Effort.blockEpisodes(byLanes, conditions.vehicle)
+  def blockEpisodes: Int                       = Effort.blockEpisodes(flown(Judge.Candidates).isFast, conditions.vehicle)
   def fresh: Option[Int]                       = question.fresh
   def label(candidate: Vector[Double]): String = policy(candidate).label
   def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
@@ -166,7 +166,7 @@ final case class SearchSetup(
   def judges(threads: Int): Judge => ValueEvaluator =
     val flown = batch(threads)
     val each  = Judge.values.toVector.map:
-      case Judge.Candidates => evaluator(flown)
+      case Judge.Candidates => evaluator(flown, many = sharing)
       case Judge.Winner     => evaluator(flown, many = false)
       case Judge.Baseline   => evaluator(flown, paper.family, many = false)
     judge => each(judge.ordinal)
@@ -183,28 +183,29 @@ final case class SearchSetup(
     yield (winner.head, other.head)
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] =
-    Option.when(fliesByLanes(together = false))(
+    Option.when(flown(Judge.Winner).isFast)(
       evaluator(conditions.reference, many = false).tallies(Vector(candidate), episodes).head
     )
 
-  def byLanes: Boolean = fliesByLanes(together = true)
-
   def effort: Effort =
-    Effort.of(byLanes, fliesByLanes(together = false), conditions.vehicle, conditions.sees)
+    Effort.of(flown(Judge.Candidates), flown(Judge.Winner), conditions.vehicle, conditions.sees)
 
-  def engine(candidate: Vector[Double], judge: Judge): String =
-    val of                = if judge == Judge.Baseline then paper.family else family
-    val (pursuer, evader) = pair(of.policy(candidate))
-    asked.engine(pursuer, evader, shareEpisodes = judge == Judge.Candidates, Seq(delays))
+  private def flown(judge: Judge) = engine(space.defaults, judge)
 
-  private def fliesByLanes(together: Boolean) =
-    val (pursuer, evader) = pair(family.defaultPolicy)
-    asked.fliesByLanes(pursuer, evader, shareEpisodes = together, Seq(delays))
+  def engine(candidate: Vector[Double], judge: Judge): Engine =
+    val of = if judge == Judge.Baseline then paper.family else family
+    engine(of.policy(candidate), judge == Judge.Candidates && sharing)
+
+  private def engine(policy: HeadingPolicy, share: Boolean): Engine =
+    val (pursuer, evader) = pair(policy)
+    asked.engine(pursuer, evader, share, Seq(delays))
+
+  private lazy val sharing = shares(by, accelerator, engine(family.defaultPolicy, share = false))
 
   /** Is asked what flies, and flies nothing. */
   private lazy val asked = batch(1)
 
-  private def pair(of: Policy): (Policy, Policy) =
+  private def pair(of: HeadingPolicy): (HeadingPolicy, HeadingPolicy) =
     if role == Role.Pursuer then (of, opponent.policy) else (opponent.policy, of)
 
   /** As a policy file. */

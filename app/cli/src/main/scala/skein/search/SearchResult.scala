@@ -1,6 +1,7 @@
 package skein.search
 
 import com.typesafe.config.ConfigUtil.quoteString
+import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats, SearchState}
 import skein.policy.SearchSpace
 import skein.report.{Section, TextTable}
@@ -27,14 +28,14 @@ final case class SearchResult(ready: ReadySearch, found: Found):
 
   /** As a table: what was found, and the baseline beside it. */
   def section: Section =
-    def row(name: String, parameters: Seq[(String, Double)], tally: RunningStats, engine: String) = Vector(
+    def row(name: String, parameters: Seq[(String, Double)], tally: RunningStats, engine: Engine) = Vector(
       name,
       parameters.map((parameter, value) => s"$parameter = $value").mkString(", "),
       tally.mean.toString,
       tally.halfWidth95.toString,
       tally.count.toString,
       ready.unit,
-      engine
+      engine.text
     )
     Section(
       s"${ready.formula}, on fresh episodes",

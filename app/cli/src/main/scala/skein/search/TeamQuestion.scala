@@ -2,7 +2,7 @@ package skein.search
 
 import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.{Delays, Engagement}
-import skein.lanes.{Accelerator, TeamBatch, TeamCandidate}
+import skein.lanes.{Accelerator, Engine, TeamBatch, TeamCandidate}
 import skein.optimise.{
   Evaluator,
   RunningStats,
@@ -100,10 +100,7 @@ final case class TeamQuestion(
           _       <- Expect.that(!plantIsTold)(WholeFlights.noPlant(reason))
           loop    <- conditions.checked
           profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
-        yield TeamEngine.Whole(
-          WholeFlights.virtual(conditions, loop, profile, seed, reason),
-          virtually = true
-        )
+        yield TeamEngine.Whole(WholeFlights.virtual(conditions, loop, profile, seed, reason))
       case None =>
         for
           flown  <- conditions.copy(altitudeM = altitudesM(all.head).head).resolved
@@ -111,7 +108,7 @@ final case class TeamQuestion(
         yield
           val plain = by.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
           if plain.isEmpty then TeamEngine.Reduced(flown, delays)
-          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain), virtually = false)
+          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain))
 
 object TeamQuestion:
   /** What flies where nothing is told: teams fly low, where the model of three parameters does not hold. */
@@ -151,8 +148,8 @@ enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String)
       extends TeamEngine(false, conditions.vehicle.description, conditions.vehicle.name)
 
   /** By measures of whole flights. */
-  case Whole(flights: WholeFlights, virtually: Boolean)
-      extends TeamEngine(virtually, flights.vehicles, flights.model)
+  case Whole(flights: WholeFlights)
+      extends TeamEngine(flights.engine.kind == Engine.Kind.Flights, flights.vehicles, flights.model)
 
 /** A search over a scenario's settings, ready to run.
   *
@@ -205,7 +202,7 @@ final case class TeamSetup(
       val flown         = batch(conditions, threads)
       val (shared, own) = (evaluator(flown, delays, share = true), evaluator(flown, delays, share = false))
       judge => if share(judge) then shared else own
-    case TeamEngine.Whole(flights, _) =>
+    case TeamEngine.Whole(flights) =>
       val same = WholeFlightEvaluator(flights, scenario, objective, threads)
       _ => same
 
@@ -220,8 +217,12 @@ final case class TeamSetup(
       Some(space.defaults)
     )
 
-  /** Whether candidates meet the same episodes: of few, each world flies faster by itself. */
-  private def share(judge: Judge) = judge == Judge.Candidates
+  private def share(judge: Judge) = judge == Judge.Candidates && sharing
+
+  private lazy val sharing = flownBy match
+    case TeamEngine.Reduced(_, delays) =>
+      shares(by, accelerator, asked.engine(candidate(space.defaults), shareEpisodes = false, Seq(delays)))
+    case _: TeamEngine.Whole => false
 
   def measured(
       by: Judge => Evaluator,
@@ -236,7 +237,7 @@ final case class TeamSetup(
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
     case TeamEngine.Reduced(conditions, delays)
-        if asked.fliesByLanes(this.candidate(candidate), share(Judge.Winner), Seq(delays)) =>
+        if engine(candidate, Judge.Winner).fliesByLanes =>
       val scalar = TeamBatch(conditions.timing, conditions.vehicle.response, threads = 1, isReference = true)
       Some(evaluator(scalar, delays, share = false).tallies(Vector(candidate), episodes).head)
     case _ => None
@@ -247,19 +248,17 @@ final case class TeamSetup(
       .candidate(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
-  def engine(candidate: Vector[Double], judge: Judge): String = flownBy match
+  def engine(candidate: Vector[Double], judge: Judge): Engine = flownBy match
     case TeamEngine.Reduced(_, delays) => asked.engine(this.candidate(candidate), share(judge), Seq(delays))
-    case TeamEngine.Whole(flights, _)  => flights.engine
+    case TeamEngine.Whole(flights)  => flights.engine
 
   override def rate(threads: Int): Option[String] = flownBy match
     case _: TeamEngine.Reduced        => None
-    case TeamEngine.Whole(flights, _) => Some(flights.rate(scenario(space.defaults), objective, threads))
+    case TeamEngine.Whole(flights) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
   override def fliesForward: Boolean = !isVirtual
 
-  def byLanes: Boolean = flownBy match
-    case TeamEngine.Reduced(_, delays) => asked.fliesByLanes(candidate(space.defaults), true, Seq(delays))
-    case _: TeamEngine.Whole           => false
+  private def flown = engine(space.defaults, Judge.Candidates)
 
   /** Is asked what flies, of every candidate, and flies nothing; where teams fly by measures of quantities.
     */
@@ -268,12 +267,12 @@ final case class TeamSetup(
     case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
 
   def effort: Effort = flownBy match
-    case _: TeamEngine.Reduced        => Effort.ofTeam(byLanes)
-    case TeamEngine.Whole(flights, _) => flights.effort
+    case _: TeamEngine.Reduced        => Effort.ofTeam(flown)
+    case TeamEngine.Whole(flights) => flights.effort
 
   def blockEpisodes: Int = flownBy match
-    case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(byLanes, conditions.vehicle)
-    case TeamEngine.Whole(flights, _)      => flights.blockEpisodes
+    case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(flown.fliesByLanes, conditions.vehicle)
+    case TeamEngine.Whole(flights)      => flights.blockEpisodes
 
   private def candidate(values: Vector[Double]): TeamCandidate =
     val own      = scenario(values)

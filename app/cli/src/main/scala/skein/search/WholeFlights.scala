@@ -2,6 +2,7 @@ package skein.search
 
 import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
+import skein.lanes.Engine
 import skein.loop.LoopKind
 import skein.optimise.{TeamObjective, ValueEvaluator}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
@@ -15,15 +16,12 @@ import skein.vehicle.VehicleKind
   *
   * @param vehicles what flies, for people
   * @param model the same in a word
-  * @param by the engine
-  * @param why nothing faster flies them
   * @param fly an episode by its number; on the calling thread
   */
 final class WholeFlights private (
     val vehicles: String,
     val model: String,
-    by: String,
-    why: String,
+    val engine: Engine,
     val effort: Effort,
     val blockEpisodes: Int,
     fly: (Scenario, Int) => Either[String, Tracks]
@@ -38,9 +36,6 @@ final class WholeFlights private (
     fly(scenario, episode).map(
       WholeFlights.sum(terms, _).getOrElse(objective.direction.sign * WholeFlights.Never)
     )
-
-  /** A line that says what flies, and why nothing faster does. */
-  def engine: String = s"$by: $why"
 
   /** How many episodes it flies in a second, for people. Flies twice to know. */
   def rate(scenario: Scenario, objective: TeamObjective, threads: Int): String =
@@ -138,16 +133,22 @@ object WholeFlights:
     WholeFlights(
       flown.vehicle.description,
       flown.vehicle.name,
-      "scalar",
-      ofWholeFlights(plain),
+      ofMeasures(plain),
       Effort.OfScalarFlights,
       blockEpisodes = 64,
       forward(flown.timing, link, flown.vehicle.response, flown.duel.durationS, seed)
     )
 
-  /** Why measures are taken of whole flights. */
-  def ofWholeFlights(plain: Seq[String]): String =
-    s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself"
+  /** World by world.
+    *
+    * @param plain measures that are not of a quantity
+    */
+  def ofMeasures(plain: Seq[String]): Engine =
+    Engine.scalar(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
+
+  /** @param why nothing faster flies them
+    */
+  def inVirtualTime(why: String): Engine = Engine(Engine.Kind.Flights, s"flights in virtual time: $why")
 
   /** By flights in virtual time. */
   def virtual(
@@ -159,8 +160,7 @@ object WholeFlights:
   ): WholeFlights = WholeFlights(
     SimulatorsQuadrotor,
     "simulator",
-    "flights in virtual time",
-    reason,
+    inVirtualTime(reason),
     Effort.OfFlights,
     blockEpisodes = 4,
     virtual(conditions, loop, link, seed)

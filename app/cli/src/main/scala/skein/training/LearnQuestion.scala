@@ -2,7 +2,7 @@ package skein.training
 
 import skein.environment.{EnvironmentBatch, EnvironmentSettings}
 import skein.forward.{Delays, Engagement}
-import skein.lanes.{TeamBatch, TeamCandidate}
+import skein.lanes.{Engine, TeamBatch, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
 import skein.optimise.{DuelEvaluator, Objective, TeamEvaluator, TeamObjective, ValueEvaluator, WeightedSum}
 import skein.policy.{Fleet, LearnedPolicy, PolicyFamily, Role}
@@ -184,8 +184,8 @@ final case class LearnSetup(
       TeamObjective.judged(team.objective.measures, durationS, conditions.timing.periodS)
     )
 
-  /** What flies while it learns, in a line for the user. */
-  def engine: String = game match
+  /** What flies while it learns. */
+  def engine: Engine = game match
     case _: LearnGame.OfTeam => EnvironmentBatch.engineOf(question.scenario)
     case _                   => EnvironmentBatch.EngineOfGame
 

@@ -1,5 +1,6 @@
 package skein.budget
 
+import skein.lanes.Engine
 import skein.scenario.Scenarios
 import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective, RunningStats}
 import skein.plot.Mark
@@ -67,7 +68,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     "m",
     "ideal",
     "paper-pursuer",
-    "SIMD",
+    Engine(Engine.Kind.Lanes, "SIMD"),
     Tolerance.Share(0.05),
     1,
     LatencyBudget(

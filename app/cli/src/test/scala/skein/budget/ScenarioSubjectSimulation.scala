@@ -31,10 +31,10 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     "a measure of a quantity comes to the same as with the whole flight's tracks"
   ):
     val plain = subject(surround)
-    assert(plain.engine(Vector(LatencyDistribution.Vpn)).startsWith("SIMD, "))
+    assert(plain.engine(Vector(LatencyDistribution.Vpn)).text.startsWith("SIMD, "))
     assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
     val both   = subject(surround, Some("off-ring + 0*surrounded-after"))
-    val scalar = both.engine(Vector.empty)
+    val scalar = both.engine(Vector.empty).text
     assertEquals(scalar, "scalar: surrounded-after is of whole flights, not of a quantity by itself")
     for latencyMs <- Seq(0.0, 200.0) do
       // Tracks are judged every 20 ms, on lines between the places of each period; a quantity once a period.
@@ -54,7 +54,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
 
   test("policies in three dimensions are flown in virtual time, with what ends the flight"):
     val drifting = subject(Drift(), conditions = Conditions("stream", "drag", 100, 10))
-    assert(drifting.engine(Vector.empty).startsWith("flights in virtual time: vehicle Lone"))
+    assert(drifting.engine(Vector.empty).text.startsWith("flights in virtual time: vehicle Lone"))
     val truth = drifting.truth.fold(fail(_), identity)
     assert(at(drifting, 400) > truth, s"$truth")
 
@@ -98,7 +98,7 @@ final case class Drift(toM: Double = 12) extends Scenario:
   override def measures: Vector[Measure] =
     Vector(north.most("furthest"), north.firstWhere("arrives")(_ > toM))
 
-final case class Northward(toM: Double) extends skein.policy.AgentPolicy:
+final case class Northward(toM: Double) extends skein.policy.Policy:
   import skein.policy.*
   type Memory = Unit
   def start: Unit                                             = ()

@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import skein.policy.{Action, Agent, AgentPolicy, Observation}
+import skein.policy.{Action, Agent, Policy, Observation}
 import skein.record.MemoryRecorder
 import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
@@ -47,7 +47,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(Files.notExists(path.resolve("out")))
 
   folder.test("of a flight whose policy throws at once, that alone is told"): path =>
-    object Lost extends AgentPolicy:
+    object Lost extends Policy:
       type Memory = Unit
       def start: Unit                                             = ()
       def choose(seen: Observation, memory: Unit): (Action, Unit) = throw Exception("no way")

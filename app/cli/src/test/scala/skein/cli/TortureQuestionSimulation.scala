@@ -33,7 +33,7 @@ final case class Failing(afterS: Double = 4) extends Scenario:
   def agents: Vector[Agent] =
     Vector(Agent("Lone", Role("Lone"), MetresPerSecond(6), Vector3(0, 0, -10), Radians(0), GivesUp(afterS)))
 
-final case class GivesUp(afterS: Double) extends AgentPolicy:
+final case class GivesUp(afterS: Double) extends Policy:
   type Memory = Unit
   def start: Unit                                             = ()
   def choose(seen: Observation, memory: Unit): (Action, Unit) =

@@ -1,6 +1,7 @@
 package skein.search
 
 import java.nio.file.Files
+import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats}
 import skein.scenario.Scenarios
 import skein.testing.{Optimised, TemporaryFolders}
@@ -82,16 +83,18 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     val by = new Evaluator:
       def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
         candidates.map(_ => RunningStats.of(1)(_ => 0.0))
-    def engine(candidate: Vector[Double]) =
-      if candidate.head > 1 then "scalar: a policy is no formula" else "SIMD"
-    val noted = NotedEvaluator(by, engine)
+    val simd  = Engine(Engine.Kind.Lanes, "SIMD")
+    val noted = NotedEvaluator(
+      by,
+      candidate => if candidate.head > 1 then Engine.scalar("a policy is no formula") else simd
+    )
     noted.tallies(Vector(Vector(0.0), Vector(1.0)), 0 until 1): Unit
-    assertEquals(noted.others("SIMD"), None)
+    assertEquals(noted.others(simd), None)
     noted.talliesUnless(() => false)(Vector(Vector(2.0), Vector(0.5), Vector(3.0)), 0 until 1): Unit
     // A round later.
     noted.tallies(Vector(Vector(2.0)), 1 until 2): Unit
     assertEquals(
-      noted.others("SIMD"),
+      noted.others(simd),
       Some("of 5 candidates judged 2 by another engine, scalar: a policy is no formula")
     )
 

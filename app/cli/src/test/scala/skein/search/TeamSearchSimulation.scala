@@ -59,7 +59,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val ready = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
     assert(ready.engines.matches("scalar: surrounded-after is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
-    assert(!ready.isVirtual && !ready.byLanes)
+    assert(!ready.isVirtual && !ready.engine(ready.space.defaults, Judge.Candidates).fliesByLanes)
     val judges = ready.judges(2)(Judge.Candidates)
     val one    = judges.tallies(Vector(Vector(8.0, 8.0), Vector(4.0, 8.0)), 0 until 2)
     assertEquals(
@@ -72,10 +72,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val reduced = setup()
     val whole   = reduced.flownBy match
       case TeamEngine.Reduced(conditions, delays) =>
-        TeamEngine.Whole(
-          WholeFlights.scalar(conditions, delays, question.seed, Seq("off-ring")),
-          virtually = false
-        )
+        TeamEngine.Whole(WholeFlights.scalar(conditions, delays, question.seed, Seq("off-ring")))
       case other => fail(other.toString)
     def mean(of: TeamSetup) =
       of.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 2).head.mean

@@ -10,8 +10,8 @@ import skein.units.*
   * @param steers the other policy; it is given the estimate in the place of readings
   * @param sensor absent where readings of the opponent are used
   */
-final case class CameraPursuer(steers: Policy, sensor: Option[String], opponentStartNed: Vector3)
-    extends AgentPolicy:
+final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], opponentStartNed: Vector3)
+    extends Policy:
   type Memory = Unit
   def start: Unit = ()
 

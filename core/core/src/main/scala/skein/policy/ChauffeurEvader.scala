@@ -24,7 +24,7 @@ package skein.policy
   *   need more.
   */
 final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Double = 0.5, dodgeM: Double = 4.0)
-    extends Policy:
+    extends HeadingPolicy:
   require(turningRadiusM > 0, s"the turning radius must be positive, came $turningRadiusM m")
   require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, came $speedRatio")
 

@@ -26,7 +26,7 @@ final case class ChauffeurPursuer(
     speedRatio: Double = 0.5,
     captureRadiusM: Double = 1.5,
     turnRateRadPerS: Double = 1.25
-) extends Policy:
+) extends HeadingPolicy:
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 
   private val game  = HomicidalChauffeur(turningRadiusM, speedRatio)

@@ -9,7 +9,7 @@ import skein.vehicle.VehicleKind
   * @param speed commanded where the policy does not choose one
   * @param startPositionNed m, in the world frame; it also holds this altitude. A car's is 0
   * @param startHeading taken as the last commanded heading before the first decision
-  * @param policy a [[Policy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other
+  * @param policy a [[HeadingPolicy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other
   *   in three dimensions
   * @param kind of vehicle; a car is steered in the plane, or told to stand still
   */
@@ -19,7 +19,7 @@ final case class Agent(
     speed: MetresPerSecond,
     startPositionNed: Vector3,
     startHeading: Radians,
-    policy: AgentPolicy,
+    policy: Policy,
     kind: VehicleKind = VehicleKind.Multirotor
 ):
   /** The velocity to command for a heading, m/s, horizontal, world NED.
@@ -31,8 +31,8 @@ final case class Agent(
     Vector3(commanded * StrictMath.cos(headingRad), commanded * StrictMath.sin(headingRad), 0)
 
   /** The policy of an agent that plays against one other. */
-  def duelPolicy: Policy = policy match
-    case against: Policy => against
+  def duelPolicy: HeadingPolicy = policy match
+    case against: HeadingPolicy => against
     case _               =>
       throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
 

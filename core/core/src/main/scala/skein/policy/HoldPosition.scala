@@ -1,7 +1,7 @@
 package skein.policy
 
 /** Stays where it is: used where a policy does not answer. */
-object HoldPosition extends AgentPolicy:
+object HoldPosition extends Policy:
   type Memory = Unit
 
   def start: Unit = ()

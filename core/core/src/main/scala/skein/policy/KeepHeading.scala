@@ -2,7 +2,7 @@ package skein.policy
 
 /** Goes on in the direction commanded last: what repeats a decision where a policy has not decided in time.
   */
-object KeepHeading extends Policy:
+object KeepHeading extends HeadingPolicy:
 
   def heading(
       dxM: Double,

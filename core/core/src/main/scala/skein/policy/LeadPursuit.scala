@@ -11,7 +11,7 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns
   */
 final case class LeadPursuit(speedRatio: Double = 0.5, lead: Double = 1.0, turnRateRadPerS: Double = 1.0)
-    extends Policy:
+    extends HeadingPolicy:
   require(speedRatio >= 0, s"the ratio of speeds must not be negative, came $speedRatio")
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 

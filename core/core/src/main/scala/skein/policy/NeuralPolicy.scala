@@ -10,7 +10,7 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns
   */
 final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], turnRateRadPerS: Double = 1.0)
-    extends Policy:
+    extends HeadingPolicy:
   private val network = DenseNetwork(shape, parameters)
 
   def heading(

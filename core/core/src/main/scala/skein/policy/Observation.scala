@@ -16,7 +16,7 @@ import skein.units.*
   * @param cruise the speed that the scenario gives the vehicle
   * @param startDown of the vehicle's start, down, negative above the origin
   * @param sensed last readings of the own vehicle's sensors, by name: those that the policy asks for
-  *   ([[AgentPolicy.sensors]]) and that have answered
+  *   ([[Policy.sensors]]) and that have answered
   * @param actsIn predicted time until the command acts; zero where nothing is predicted
   */
 final case class Observation(

@@ -6,14 +6,14 @@ import skein.units.Radians
   */
 final case class Decided[M](headingRad: Double, memory: M)
 
-/** A policy with a memory of its own, which also sees the age of each reading. As a [[Policy]] it is a pure
+/** A policy with a memory of its own, which also sees the age of each reading. As a [[HeadingPolicy]] it is a pure
   * function.
   *
   * It flies by lanes if [[decide]] is arithmetic and the memory is a number or a case class of numbers.
   *
   * @tparam M what it remembers
   */
-trait ObservingPolicy[M] extends Policy:
+trait ObservingPolicy[M] extends HeadingPolicy:
 
   /** What it remembers before its first decision. */
   def initial: M
@@ -49,7 +49,7 @@ object ObservingPolicy:
     * @param memory the policy's own; anything where it has none
     * @return and what it remembers
     */
-  def decide(policy: Policy, seen: PlanarObservation, memory: Any): Decided[Any] = policy match
+  def decide(policy: HeadingPolicy, seen: PlanarObservation, memory: Any): Decided[Any] = policy match
     case observing: ObservingPolicy[m] =>
       val decided = observing.decide(seen, memory.asInstanceOf[m])
       Decided(decided.headingRad, decided.memory)

@@ -11,7 +11,7 @@ package skein.policy
   *
   * @param turningRadiusM R, the pursuer's assumed turning radius; the paper's is 8 m
   */
-final case class PaperEvader(turningRadiusM: Double = 8.0) extends Policy:
+final case class PaperEvader(turningRadiusM: Double = 8.0) extends HeadingPolicy:
 
   def heading(
       dxM: Double,

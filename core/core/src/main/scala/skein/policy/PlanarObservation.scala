@@ -1,7 +1,7 @@
 package skein.policy
 
 /** What an [[ObservingPolicy]] sees of its opponent. North and east, m and m/s; the first seven are the
-  * arguments of [[Policy.heading]].
+  * arguments of [[HeadingPolicy.heading]].
   *
   * @param ownAgeS how old the reading of the own vehicle is, s
   * @param opponentAgeS the same of the opponent's

@@ -1,57 +1,54 @@
 package skein.policy
 
-import skein.units.Radians
+import skein.units.*
 
-/** Chooses a heading for one vehicle from what it knows of its opponent. A pure function of its arguments, on
-  * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same
-  * object without allocation.
-  *
-  * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its
-  * calls: deciding twice as often must not turn twice as fast.
+/** How a vehicle decides: a pure function from observation and memory to action and next memory. It
+  * integrates over measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as
+  * often must not act twice as strongly. It keeps nothing else between decisions, so that a replay can repeat
+  * them from the recording alone.
   */
-trait Policy extends PlanarPolicy:
+trait Policy:
 
-  /** The heading to command now, rad, from north (+x) towards east (+y); any number of turns.
-    *
-    * @param dxM opponent's position minus own, north, m
-    * @param dyM opponent's position minus own, east, m
-    * @param dvxMps opponent's velocity minus own, north, m/s
-    * @param dvyMps opponent's velocity minus own, east, m/s
-    * @param ownHeadingRad heading commanded last to the own vehicle
-    * @param opponentHeadingRad heading commanded last to the opponent, as far as known to this controller
-    * @param elapsedS time since the own last decision; 0 at the first
+  /** What is kept from one decision to the next. Immutable. */
+  type Memory
+
+  /** Names of its vehicle's sensors that are to be read; see [[skein.port.VehiclePort.sensors]]. Their last
+    * readings are in [[Observation.sensed]].
     */
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double
+  def sensors: Set[String] = Set.empty
 
-  /** The same from an observation. */
-  final def headingFor(seen: PlanarObservation): Double =
-    import seen.*
-    heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
+  /** Whether it plays against one opponent and regards nobody else; other policies regard all vehicles. */
+  def isAgainstOne: Boolean = false
 
-  /** A guess at this policy by somebody who knows it roughly, such as a planner that plays against it: its
-    * parameters are off by what is drawn. By default the policy is known exactly.
-    *
-    * @param draw normal numbers of mean 0 and deviation 1, by place
-    */
-  def guessed(draw: Int => Double): Policy = this
+  /** Whether it steers in the plane, at the altitude of its vehicle's start. */
+  def isPlanar: Boolean = false
 
-  final override def isAgainstOne: Boolean = true
+  /** Whether plans may decide in its place for a multirotor of this role. */
+  def isPlannedFor(role: Role): Boolean = false
 
-  /** For pursuers alone: a plan's only goal is to be near the opponent. */
-  final override def isPlannedFor(role: Role): Boolean = role == Role.Pursuer
+  /** The memory before the first decision. */
+  def start: Memory
 
-  type Memory = Any
+  /** The action now, and the next memory. */
+  def choose(seen: Observation, memory: Memory): (Action, Memory)
 
-  /** Nothing, but for an [[ObservingPolicy]]. */
-  def start: Any = ()
+/** A policy that steers in the plane, at the altitude of its vehicle's start: a convenience on top of
+  * [[Policy]].
+  */
+trait PlanarPolicy extends Policy:
 
-  def planar(seen: Observation, memory: Any): (Planar, Any) =
-    (Planar(Radians(headingFor(PlanarObservation.of(seen))), None), memory)
+  final override def isPlanar: Boolean = true
+
+  /** Where to fly, and what to remember. */
+  def planar(seen: Observation, memory: Memory): (Planar, Memory)
+
+  final def choose(seen: Observation, memory: Memory): (Action, Memory) =
+    val (chosen, next) = planar(seen, memory)
+    (Action.heading(chosen.heading, chosen.speed.getOrElse(seen.cruise), seen.startDown), next)
+
+/** A horizontal velocity to command.
+  *
+  * @param heading any number of turns
+  * @param speed absent: the vehicle's own
+  */
+final case class Planar(heading: Radians, speed: Option[MetresPerSecond])

@@ -16,21 +16,21 @@ final class PolicyFamily(
     val summary: String,
     val roles: Set[Role],
     val space: SearchSpace,
-    make: Vector[Double] => Policy
+    make: Vector[Double] => HeadingPolicy
 ):
 
   /** @param parameters one per axis of [[space]], in its order; they may lie outside the bounds, which only
     *   limit a search
     * @throws OwnFailure if the family throws
     */
-  def policy(parameters: Vector[Double]): Policy =
+  def policy(parameters: Vector[Double]): HeadingPolicy =
     require(
       parameters.size == space.dimension,
       s"family $name has ${space.dimension} parameters, got ${parameters.size}"
     )
     OwnFailure.told(s"the family $name")(make(parameters))
 
-  def defaultPolicy: Policy = policy(space.defaults)
+  def defaultPolicy: HeadingPolicy = policy(space.defaults)
 
   override def toString: String = name
 

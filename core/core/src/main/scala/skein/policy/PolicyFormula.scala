@@ -5,7 +5,7 @@ import skein.formula.{Answer, Evaluation, Example, Formula, Node, Op, Trace, Unt
 import skein.signal.Kinematics
 import skein.units.*
 
-/** How a policy decides at one place of a team, as a formula of numbers: [[AgentPolicy.choose]], or
+/** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], or
   * [[PlanarPolicy.planar]], read from its bytecode. It is for forward simulation, whose vehicles fly
   * horizontal velocities at the altitude of their start: what is decided for must be one.
   *
@@ -28,21 +28,21 @@ final class PolicyFormula private (
   import PolicyFormula.*
 
   /** Whether another policy differs in numbers alone. */
-  def fits(policy: AgentPolicy, assignment: Assignment): Boolean =
+  def fits(policy: Policy, assignment: Assignment): Boolean =
     formula.fits(Deciding.of(policy, assignment)) && start.isLike(memoryOf(policy))
 
   /** The numbers of a policy that [[fits]], for the formula's parameters. */
-  def parametersOf(policy: AgentPolicy): Array[Double] =
+  def parametersOf(policy: Policy): Array[Double] =
     formula.parametersOf(Deciding.of(policy, assignment))
 
   /** What a policy that [[fits]] remembers before its first decision. */
-  def startOf(policy: AgentPolicy): Array[Double] = memoryOf(policy).numbers.toArray
+  def startOf(policy: Policy): Array[Double] = memoryOf(policy).numbers.toArray
 
   /** Why it does not fly at the altitude of its vehicle's start alone, if it does not.
     *
     * @param startDown of a vehicle that it decides for
     */
-  def leaves(policy: AgentPolicy, startDown: Metres): Option[String] = down.flatMap: node =>
+  def leaves(policy: Policy, startDown: Metres): Option[String] = down.flatMap: node =>
     val isFixed = Trace.needed(Seq(node)).forall(_.op != Op.Input)
     val told    = "it flies at another altitude than that of its vehicle's start"
     Option.unless(
@@ -96,7 +96,7 @@ object PolicyFormula:
     * @return or why it is none, with the line
     */
   def of(
-      policy: AgentPolicy,
+      policy: Policy,
       self: Int,
       assignment: Assignment,
       isPredicted: Boolean
@@ -127,7 +127,7 @@ object PolicyFormula:
       )
 
   /** What a policy remembers before its first decision, and its numbers. */
-  private def startOf(policy: AgentPolicy): Either[Untraceable, (Example, Vector[Double])] =
+  private def startOf(policy: Policy): Either[Untraceable, (Example, Vector[Double])] =
     try
       val memory = memoryOf(policy)
       Right((memory, memory.numbers))
@@ -135,7 +135,7 @@ object PolicyFormula:
       case refused: Untraceable => Left(refused)
       case NonFatal(mistake)    => Left(Untraceable(s"its start fails: $mistake"))
 
-  private def memoryOf(policy: AgentPolicy) =
+  private def memoryOf(policy: Policy) =
     Example("memory", policy.start.asInstanceOf[AnyRef], takesWholes = true)
 
   private final case class Decided(motion: Motion, down: Option[Node], memory: Vector[Node], turns: Boolean)
@@ -246,7 +246,7 @@ private sealed abstract class Deciding(assignment: Assignment):
       )
     )
 
-private final class DecidingAction(policy: AgentPolicy, assignment: Assignment) extends Deciding(assignment):
+private final class DecidingAction(policy: Policy, assignment: Assignment) extends Deciding(assignment):
   def decide(seen: Observation, memory: AnyRef): AnyRef =
     policy.choose(facing(seen), memory.asInstanceOf[policy.Memory])
 
@@ -258,6 +258,6 @@ private final class DecidingPlanar(policy: PlanarPolicy, assignment: Assignment)
 private object Deciding:
   val Descriptor = "(Lskein/policy/Observation;Ljava/lang/Object;)Ljava/lang/Object;"
 
-  def of(policy: AgentPolicy, assignment: Assignment): Deciding = policy match
+  def of(policy: Policy, assignment: Assignment): Deciding = policy match
     case planar: PlanarPolicy => DecidingPlanar(planar, assignment)
     case other                => DecidingAction(other, assignment)

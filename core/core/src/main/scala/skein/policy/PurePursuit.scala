@@ -5,7 +5,7 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns; a turning circle of radius R at speed v is v / R. The
   *   paper's pursuer turns 1 rad/s.
   */
-final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends Policy:
+final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends HeadingPolicy:
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 
   def heading(

@@ -9,7 +9,7 @@ import skein.signal.SplitMix64
 class PolicyFormulaLaws extends munit.FunSuite:
   private val seed = 20261122L
 
-  private val policies: Seq[(String, SplitMix64 => Policy)] =
+  private val policies: Seq[(String, SplitMix64 => HeadingPolicy)] =
     PolicyFamily.all.map(family => family.name -> drawn(family)) ++ Seq(
       "keep-heading"               -> (_ => KeepHeading),
       "paper-pursuer as published" -> (_ => PaperPursuer.asPublished),
@@ -17,7 +17,7 @@ class PolicyFormulaLaws extends munit.FunSuite:
       "neural:8x8"                 -> drawn(PolicyFamily.neural(NeuralShape(Vector(8, 8))))
     )
 
-  private def drawn(family: PolicyFamily)(random: SplitMix64): Policy =
+  private def drawn(family: PolicyFamily)(random: SplitMix64): HeadingPolicy =
     family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble())))
 
   for (name, draw) <- policies do

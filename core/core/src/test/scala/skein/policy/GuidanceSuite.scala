@@ -12,7 +12,7 @@ class GuidanceSuite extends munit.FunSuite:
     def moved(dt: Double): Mover =
       copy(x = x + speed * math.cos(headingRad) * dt, y = y + speed * math.sin(headingRad) * dt)
 
-  private def steered(policy: Policy, own: Mover, other: Mover, dt: Double): Mover =
+  private def steered(policy: HeadingPolicy, own: Mover, other: Mover, dt: Double): Mover =
     def vx(m: Mover) = m.speed * math.cos(m.headingRad)
     def vy(m: Mover) = m.speed * math.sin(m.headingRad)
     own.copy(headingRad =
@@ -29,8 +29,8 @@ class GuidanceSuite extends munit.FunSuite:
 
   /** Pursuer and evader step by step, until they come within the distance of one step or time is over. */
   private def chase(
-      pursuing: Policy,
-      evading: Policy,
+      pursuing: HeadingPolicy,
+      evading: HeadingPolicy,
       pursuer: Mover,
       evader: Mover,
       dt: Double,

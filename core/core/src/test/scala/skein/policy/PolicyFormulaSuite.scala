@@ -14,7 +14,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
   private val assignment = Assignment(Vector(Vector(1, 2, 3), Vector(0), Vector(0), Vector(0)))
   private val seed       = 7L
 
-  private def formulaOf(policy: AgentPolicy, self: Int): Either[Untraceable, PolicyFormula] =
+  private def formulaOf(policy: Policy, self: Int): Either[Untraceable, PolicyFormula] =
     PolicyFormula.of(policy, self, assignment, isPredicted = false)
 
   private def drawn(random: SplitMix64, self: Int): Observation =
@@ -48,7 +48,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
     )
 
   /** What the formula answers. */
-  private def answered(of: PolicyFormula, policy: AgentPolicy, seen: Observation, memory: Array[Double]) =
+  private def answered(of: PolicyFormula, policy: Policy, seen: Observation, memory: Array[Double]) =
     val inputs = of.inputs.map:
       case PolicyInput.Position(vehicle, axis) =>
         val place = seen.vehicles(vehicle).kinematics.positionNed
@@ -70,7 +70,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
       ) ++ of.memory
     Evaluation(nodes)(inputs.toArray, of.parametersOf(policy)).toVector
 
-  private val policies: Seq[(String, SplitMix64 => AgentPolicy)] = Seq(
+  private val policies: Seq[(String, SplitMix64 => Policy)] = Seq(
     "the chase of the README"                             -> (_ => Chase),
     "ages and lengths of time"                            -> (_ => Ages),
     "a memory that is a case class"                       -> (random => Weaving(random.nextDouble())),
@@ -151,13 +151,13 @@ object PolicyFormulaSuite:
   private def flying(seen: Observation, north: Double, east: Double) =
     Action.VelocityAt(north, east, seen.startDown)
 
-  trait Forgetful extends AgentPolicy:
+  trait Forgetful extends Policy:
     type Memory = Unit
     def start: Unit = ()
     def action(seen: Observation): Action
     final def choose(seen: Observation, memory: Unit): (Action, Unit) = (action(seen), ())
 
-  case object Chase extends AgentPolicy:
+  case object Chase extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
@@ -176,7 +176,7 @@ object PolicyFormulaSuite:
       Action.heading(Radians(StrictMath.atan2(way.y, way.x)), MetresPerSecond(speed), seen.startDown)
 
   final case class Phase(angle: Double, isLeft: Boolean, rounds: Int)
-  final case class Weaving(rate: Double) extends AgentPolicy:
+  final case class Weaving(rate: Double) extends Policy:
     type Memory = Phase
     def start: Phase                                              = Phase(0.25, true, 0)
     def choose(seen: Observation, memory: Phase): (Action, Phase) =
@@ -192,7 +192,7 @@ object PolicyFormulaSuite:
       )
 
   final case class Place(north: Double, east: Double)
-  case object Trails extends AgentPolicy:
+  case object Trails extends Policy:
     type Memory = Vector[Place]
     def start: Vector[Place] = Vector.fill(3)(Place(1, 2))
     def choose(seen: Observation, memory: Vector[Place]): (Action, Vector[Place]) =
@@ -202,7 +202,7 @@ object PolicyFormulaSuite:
       val bent   = next.updated(0, Place(memory.head.north * 0.5, next(0).east))
       (flying(seen, middle / 10, next.foldLeft(0.0)((sum, each) => sum + each.east) / 30), bent)
 
-  case object Pairs extends AgentPolicy:
+  case object Pairs extends Policy:
     type Memory = (Double, Double)
     def start: (Double, Double)                                                         = (0.0, 1.0)
     def choose(seen: Observation, memory: (Double, Double)): (Action, (Double, Double)) =
@@ -283,12 +283,12 @@ object PolicyFormulaSuite:
       flying(seen, north, 0)
   case object Products extends Forgetful:
     def action(seen: Observation): Action = flying(seen, (seen.elapsed / 3).toSeconds, 0)
-  case object Growing extends AgentPolicy:
+  case object Growing extends Policy:
     type Memory = Vector[Double]
     def start: Vector[Double]                                                       = Vector(1.0)
     def choose(seen: Observation, memory: Vector[Double]): (Action, Vector[Double]) =
       (flying(seen, memory.sum, 0), memory :+ 2.0)
-  case object Longs extends AgentPolicy:
+  case object Longs extends Policy:
     type Memory = Long
     def start: Long                                             = 0
     def choose(seen: Observation, memory: Long): (Action, Long) = (flying(seen, 1, 0), memory + 1)

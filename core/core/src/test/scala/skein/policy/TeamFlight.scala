@@ -31,7 +31,7 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
       val courses = agents.indices.map: vehicle =>
         agents(vehicle).policy match
           case team: TeamPolicy => team.course(seenBy(vehicle))
-          case _: Policy        => throw IllegalArgumentException("no team")
+          case _: HeadingPolicy        => throw IllegalArgumentException("no team")
       val share = if lagS == 0 then 1.0 else 1 - math.exp(-stepS / lagS)
       for (course, vehicle) <- courses.zipWithIndex do
         heading(vehicle) = course.headingRad

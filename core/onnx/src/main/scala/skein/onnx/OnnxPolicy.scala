@@ -72,7 +72,7 @@ object OnnxPolicy:
     * @param role that it is for
     * @return or why the policy is none
     */
-  def write(policy: Policy, role: String): Either[String, Array[Byte]] =
+  def write(policy: HeadingPolicy, role: String): Either[String, Array[Byte]] =
     (policy match
       case learned: LearnedPolicy => Right(learned)
       case neural: NeuralPolicy   => Right(seeingMore(neural))

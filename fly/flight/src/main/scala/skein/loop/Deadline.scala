@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Agent, AgentPolicy, HoldPosition, KeepHeading, PolicyFamily}
+import skein.policy.{Agent, Policy, HoldPosition, KeepHeading, PolicyFamily}
 import skein.scenario.Scenarios
 import skein.units.Span
 
@@ -31,7 +31,7 @@ enum Fallback:
     case Decides(family) => family.name
 
   /** Who decides for an agent; absent where nobody does. */
-  def policy(agent: Agent): Option[AgentPolicy] = this match
+  def policy(agent: Agent): Option[Policy] = this match
     case Hold                                                 => None
     case Hover                                                => Some(HoldPosition)
     case Decides(family) if family.roles.contains(agent.role) => Some(family.defaultPolicy)

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{AgentPolicy, Fleet, Observation, PlanarPolicy, Seen, Sensed, TeamObservation}
+import skein.policy.{Policy, Fleet, Observation, PlanarPolicy, Seen, Sensed, TeamObservation}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -14,7 +14,7 @@ final case class Memory(headingRad: Double, decidedAt: Option[Instant], decision
   *
   * @param policy the agent's own, or one in its place
   */
-final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
+final class Decider(fleet: Fleet, self: Int, policy: Policy):
   private val agent = fleet.agents(self)
 
   def this(fleet: Fleet, self: Int) = this(fleet, self, fleet.agents(self).policy)

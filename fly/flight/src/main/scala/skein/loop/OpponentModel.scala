@@ -1,14 +1,14 @@
 package skein.loop
 
 import skein.planning.Planner
-import skein.policy.{Agent, Fleet, Policy}
+import skein.policy.{Agent, Fleet, HeadingPolicy}
 
 /** How plans foresee the opponent of a vehicle that plays against one. */
 object OpponentModel:
 
   /** By which policy it is taken to decide, or why it is taken to fly straight on. */
-  private[loop] def of(opponent: Agent): Either[String, Policy] = opponent.policy match
-    case policy: Policy => Planner.refusal(policy).toLeft(policy)
+  private[loop] def of(opponent: Agent): Either[String, HeadingPolicy] = opponent.policy match
+    case policy: HeadingPolicy => Planner.refusal(policy).toLeft(policy)
     case _              => Left("it plays against more than one vehicle")
 
   /** Whose decisions plans may foresee, by their places. */

@@ -152,7 +152,7 @@ object Planning:
            s"${names(others)} ${
                if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"
              }"),
-      "plan: expected a multirotor that can plan, by a GoalPolicy or by a Policy that " +
+      "plan: expected a multirotor that can plan, by a GoalPolicy or by a HeadingPolicy that " +
         s"pursues one opponent, came none: ${names(others)} would fly by their own policies"
     )
 

@@ -7,7 +7,7 @@ import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.{ExecutionContext, Future}
 import skein.flow.*
 import skein.loop.planning.{PlanStage, PlanWorkers}
-import skein.policy.{AgentPolicy, Fleet}
+import skein.policy.{Policy, Fleet}
 import skein.units.*
 
 /** Carries a team's requests forward to when its commands act, decides or plans upon them, and records the
@@ -163,7 +163,7 @@ private final class TeamDeciding(
   def decideWithin(
       vehicle: Int,
       deadline: Span,
-      instead: Option[AgentPolicy]
+      instead: Option[Policy]
   )(
       policy: (Memory, (TeamView, Instant)) => Future[(Memory, Decision)]
   )(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
@@ -184,7 +184,7 @@ private final class TeamDeciding(
   private def inTime[A](
       vehicles: Vector[Int],
       deadline: Span,
-      instead: Option[Vector[AgentPolicy]],
+      instead: Option[Vector[Policy]],
       asksAgain: Boolean
   )(
       policy: (Vector[Memory], TeamView, Instant) => Future[(Vector[Memory], Vector[Decision], A)]

@@ -10,7 +10,7 @@ import skein.units.*
 
 /** Moves to positions, as the simulator flies them and as they are predicted. */
 class PositionPredictionSimulation extends munit.FunSuite, Unhurried:
-  private final case class Corners(places: Vector[Vector3], yaw: Yaw) extends AgentPolicy:
+  private final case class Corners(places: Vector[Vector3], yaw: Yaw) extends Policy:
     type Memory = Int
     def start: Int                                            = 0
     def choose(seen: Observation, memory: Int): (Action, Int) =

@@ -204,7 +204,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 /** Policies of every kind in one team. */
 final case class AnyPolicies(byAges: Boolean = false) extends Scenario:
   import AnyPolicies.*
-  private def agent(i: Int, role: Role, policy: AgentPolicy) =
+  private def agent(i: Int, role: Role, policy: Policy) =
     Agent(s"V$i", role, MetresPerSecond(5 + i), Vector3(14 * i, 7 * (i % 2), -20), Radians(0.3 * i), policy)
 
   def agents: Vector[Agent] = Vector(
@@ -225,7 +225,7 @@ object AnyPolicies:
   final case class Phase(angle: Double, isLeft: Boolean)
 
   /** Flees to the left and to the right in turn. */
-  final case class Weaving(rate: Double) extends AgentPolicy:
+  final case class Weaving(rate: Double) extends Policy:
     type Memory = Phase
     def start: Phase                                              = Phase(0.25, true)
     def choose(seen: Observation, memory: Phase): (Action, Phase) =
@@ -235,7 +235,7 @@ object AnyPolicies:
       (heading(seen, towards(seen, seen.opponent) * -1, next.angle), next)
 
   /** Goes by what it and its opponent were told last. */
-  case object Mirror extends AgentPolicy:
+  case object Mirror extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
@@ -246,7 +246,7 @@ object AnyPolicies:
       (Action.VelocityAt(north, east, seen.startDown), ())
 
   /** Remembers three bearings of the first vehicle. */
-  case object Trailing extends AgentPolicy:
+  case object Trailing extends Policy:
     type Memory = Vector[Double]
     def start: Vector[Double]                                                       = Vector(0.0, 0.0, 0.0)
     def choose(seen: Observation, memory: Vector[Double]): (Action, Vector[Double]) =

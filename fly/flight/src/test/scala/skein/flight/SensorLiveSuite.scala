@@ -20,7 +20,7 @@ class SensorLiveSuite extends munit.FunSuite, Unhurried:
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 
   /** Keeps the altitude above sea level that it finds. */
-  private object KeepAltitude extends AgentPolicy:
+  private object KeepAltitude extends Policy:
     override def sensors: Set[String] = Set("barometer", "imu")
     type Memory = Option[Double]
     def start: Option[Double]                                                       = None

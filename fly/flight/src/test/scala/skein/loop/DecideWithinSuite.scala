@@ -5,7 +5,7 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
-import skein.policy.{AgentPolicy, KeepHeading}
+import skein.policy.{Policy, KeepHeading}
 import skein.record.*
 import skein.scenario.PaperDuel
 import skein.scenario.Scenarios
@@ -20,7 +20,7 @@ class DecideWithinSuite extends munit.FunSuite:
   private val pursuer  = 1
 
   /** Decisions and events of five turns by a policy that is late in the third. */
-  private def flown(instead: Option[AgentPolicy]): (Vector[DecisionRow], Vector[Event]) =
+  private def flown(instead: Option[Policy]): (Vector[DecisionRow], Vector[Event]) =
     VirtualTime.run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher

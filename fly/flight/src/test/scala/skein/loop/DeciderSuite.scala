@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, AgentPolicy, Observation, Yaw}
+import skein.policy.{Action, Policy, Observation, Yaw}
 import skein.scenario.PaperDuel
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -52,7 +52,7 @@ class DeciderSuite extends munit.FunSuite:
     )
 
   private def failureOf(action: => Action): String =
-    object Broken extends AgentPolicy:
+    object Broken extends Policy:
       type Memory = Unit
       def start: Unit                                             = ()
       def choose(seen: Observation, memory: Unit): (Action, Unit) = (action, ())
@@ -83,7 +83,7 @@ class DeciderSuite extends munit.FunSuite:
       assert(clue(failure).matches(".* \\(DeciderSuite.scala:\\d+\\)"))
 
   test("what a policy throws instead of what it remembers first is told likewise"):
-    object Broken extends AgentPolicy:
+    object Broken extends Policy:
       type Memory = Unit
       def start: Unit                                             = throw IllegalStateException("no memory")
       def choose(seen: Observation, memory: Unit): (Action, Unit) = (Action.Hover, ())

@@ -3,7 +3,7 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Policy, Role}
+import skein.policy.{Action, HeadingPolicy, Role}
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{MemoryRecorder, Recording, Samples}
 import skein.scenario.PaperDuel
@@ -62,7 +62,7 @@ class FailedFlightSuite extends munit.FunSuite:
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val duel               = PaperDuel().fleet
       var decisions          = 0
-      val failing: Policy    = (_, _, _, _, own, _, _) =>
+      val failing: HeadingPolicy    = (_, _, _, _, own, _, _) =>
         decisions += 1
         if decisions > 20 then throw error else own
       val scenario = duel.copy(agents = duel.agents.map: agent =>

@@ -2,12 +2,12 @@ package skein.loop
 
 import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, SeparationCost, Target}
 import skein.policy.{
-  AgentPolicy,
+  Policy,
   Course,
   Fleet,
   GoalPolicy,
   KeepHeading,
-  Policy,
+  HeadingPolicy,
   Role,
   TeamObservation,
   TeamPolicy
@@ -78,7 +78,7 @@ class PlanningSuite extends munit.FunSuite:
     * 0.25 rad.
     */
   private def byPolicy(turn: Double, settings: PlanSettings): (Decision, PlannedDecision) =
-    object Turning extends Policy:
+    object Turning extends HeadingPolicy:
       def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
         own + turn
     val turning  = Fleet(fleet.agents.updated(pursuer, fleet.agents(pursuer).copy(policy = Turning)))
@@ -121,9 +121,9 @@ class PlanningSuite extends munit.FunSuite:
     "the opponent is taken to fly by the policy that the scenario states, from the heading it was sent last"
   ):
     val evader                       = fleet.opponentOf(pursuer, places)
-    def flownBy(policy: AgentPolicy) =
+    def flownBy(policy: Policy) =
       Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
-    def target(policy: AgentPolicy) =
+    def target(policy: Policy) =
       val posed = pursuit(PlanSettings(behaviours = 1), flownBy(policy))
         .pose(Memory(0.25, None, 7), view.withMove(SentCommand(evader, 1, 0.7, now)), now)
       posed.situation.behaviours.head.target
@@ -134,12 +134,12 @@ class PlanningSuite extends munit.FunSuite:
       case other => fail(s"came $other")
     assertEquals(OpponentModel.missing(flownBy(KeepHeading)), Vector.empty)
 
-    object Lucky extends Policy:
+    object Lucky extends HeadingPolicy:
       def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
         System.nanoTime.toDouble
     assert(target(Lucky).isInstanceOf[Target.Along])
     // Of those alone that somebody plans against.
-    def all(policy: AgentPolicy) = Fleet(fleet.agents.map(_.copy(policy = policy)))
+    def all(policy: Policy) = Fleet(fleet.agents.map(_.copy(policy = policy)))
     val luckyPursuers            = Fleet(fleet.agents.map(agent =>
       if agent.role == Role.Pursuer then agent.copy(policy = Lucky) else agent.copy(policy = KeepHeading)
     ))

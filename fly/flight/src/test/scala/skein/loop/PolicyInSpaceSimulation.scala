@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 class PolicyInSpaceSimulation extends munit.FunSuite:
 
   /** Climbs to an altitude, remembers that it was there, and sinks to another. */
-  private final case class UpAndDown(topM: Double, bottomM: Double) extends AgentPolicy:
+  private final case class UpAndDown(topM: Double, bottomM: Double) extends Policy:
     type Memory = Boolean
     def start: Boolean                                                  = false
     def choose(seen: Observation, wasAtTop: Boolean): (Action, Boolean) =
@@ -24,14 +24,14 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       else (Action.Velocity(Vector3(0, 0, if altitudeM < goalM then -2 else 2)), atTop)
 
   /** Stays where it is and looks at the other. */
-  private object LookAtTheOther extends AgentPolicy:
+  private object LookAtTheOther extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
       val to = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
       (Action.Turn(Yaw.Towards(Radians(StrictMath.atan2(to.y, to.x)))), ())
 
-  private def agent(name: String, north: Double, east: Double, policy: AgentPolicy) =
+  private def agent(name: String, north: Double, east: Double, policy: Policy) =
     Agent(name, Role.Traveller, MetresPerSecond(2), Vector3(north, east, -20), Radians(0), policy)
 
   private val both = Fleet(Vector(

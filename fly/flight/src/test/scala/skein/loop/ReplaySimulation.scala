@@ -51,7 +51,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) = (3 * aheadS, 8.0 * seen.self)
     def course(seen: TeamObservation): Course                           = Course(0, 3)
 
-  private def team(policy: AgentPolicy) = Fleet(duels.agents.take(3).map(_.copy(policy = policy)))
+  private def team(policy: Policy) = Fleet(duels.agents.take(3).map(_.copy(policy = policy)))
 
   private def forged(recording: Recording, at: Int)(change: DecisionRow => DecisionRow): Recording =
     recording.copy(decisions = recording.decisions.updated(at, change(recording.decisions(at))))

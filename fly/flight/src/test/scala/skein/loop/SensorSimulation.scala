@@ -16,7 +16,7 @@ import skein.vtime.VirtualTime
 class SensorSimulation extends munit.FunSuite, Optimised:
 
   /** Climbs by its barometer alone, and hovers where that is too old. */
-  private final case class ByBarometer(topM: Double, oldest: Span) extends AgentPolicy:
+  private final case class ByBarometer(topM: Double, oldest: Span) extends Policy:
     override def sensors: Set[String] = Set("barometer")
     type Memory = Unit
     def start: Unit                                             = ()
@@ -156,12 +156,12 @@ class SensorSimulation extends munit.FunSuite, Optimised:
       "the policy of Evader reads a sensor 'lidar' that the vehicle does not have: expected one of barometer"
     )
 
-  private object Hovering extends AgentPolicy:
+  private object Hovering extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) = (Action.Hover, ())
 
-  private object Blind extends AgentPolicy:
+  private object Blind extends Policy:
     override def sensors: Set[String] = Set("lidar")
     type Memory = Unit
     def start: Unit                                             = ()

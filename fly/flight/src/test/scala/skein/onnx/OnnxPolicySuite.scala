@@ -8,7 +8,7 @@ import skein.signal.SplitMix64
 
 class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
   /** Weights that 32-bit floats can be. */
-  private def drawn(name: String): Policy =
+  private def drawn(name: String): HeadingPolicy =
     val random = SplitMix64(seed)
     val family = PolicyFamily.parse(name).fold(fail(_), identity)
     val values = Vector.fill(family.space.dimension)((2 * random.nextDouble() - 1).toFloat.toDouble)
@@ -38,7 +38,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
       for _ <- 1 to 50 do
         val what = seen(random, 1)
         // A neural policy is not told ages.
-        def heading(policy: Policy) = ObservingPolicy.decide(policy, what, 0.0).headingRad
+        def heading(policy: HeadingPolicy) = ObservingPolicy.decide(policy, what, 0.0).headingRad
         if name.startsWith("learned") then assertEquals(heading(again.policy), heading(policy))
         else assertEqualsDouble(heading(again.policy), heading(policy), 1e-12)
 

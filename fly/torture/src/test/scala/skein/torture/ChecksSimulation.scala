@@ -47,7 +47,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
 
   /** Flies to a place, turns, flies on. */
   private case class Patrol() extends Scenario:
-    private object Policy extends AgentPolicy:
+    private object Still extends Policy:
       type Memory = Unit
       def start: Unit                                             = ()
       def choose(seen: Observation, memory: Unit): (Action, Unit) =
@@ -57,7 +57,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
           case _ => Action.Velocity(Vector3(1, 0, 0))
         (action, ())
     def agents: Vector[Agent] =
-      Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Policy))
+      Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Still))
 
   test("commands that are no velocities are told apart by their places alone"):
     val seen = undisturbed(LoopKind.Stream, Patrol())

@@ -15,7 +15,7 @@ import skein.lanes.timetable.Timetable;
 import skein.lanes.timetable.TimetableAgents;
 import skein.lanes.timetable.TimetableKernel;
 import skein.lanes.timetable.TimetableScores;
-import skein.policy.Policy;
+import skein.policy.HeadingPolicy;
 
 /**
  * Duels in {@link #WORLDS} worlds side by side, by one timetable, that stop whenever somebody outside
@@ -57,7 +57,7 @@ public final class LearnerDuels implements TimetableScores {
    * @param isOutside whether the evader, and whether the pursuer does
    */
   public LearnerDuels(
-      Duel duel, LaneDynamics model, Policy evader, Policy pursuer, boolean[] isOutside) {
+      Duel duel, LaneDynamics model, HeadingPolicy evader, HeadingPolicy pursuer, boolean[] isOutside) {
     this.isOutside = isOutside.clone();
     policies = new LanePolicy[] {LanePolicy.of(evader, false), LanePolicy.of(pursuer, false)};
     for (int world = 0; world < WORLDS; world++) {
@@ -74,7 +74,7 @@ public final class LearnerDuels implements TimetableScores {
   }
 
   /** Why a policy does not fly so, for a person; nothing where it does. */
-  public static Optional<String> refusal(Policy policy) {
+  public static Optional<String> refusal(HeadingPolicy policy) {
     return PolicyLanes.of(policy).fold(
         refused -> Optional.of("expected a policy that is a formula: " + refused.getMessage()),
         form -> Optional.empty());

@@ -5,7 +5,7 @@ import skein.policy.{
   Observation,
   ObservingPolicy,
   PlanarObservation,
-  Policy,
+  HeadingPolicy,
   Seen,
   TeamObservation,
   TeamPolicy
@@ -182,7 +182,7 @@ private[skein] final class Controller(
     val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
     policy match
-      case duel: Policy     => decided = heading(duel, observation, elapsed)
+      case duel: HeadingPolicy     => decided = heading(duel, observation, elapsed)
       case team: TeamPolicy =>
         val course = asked(team.course(seen(observation, elapsed)))
         decided = course.headingRad
@@ -221,7 +221,7 @@ private[skein] final class Controller(
       actsIn = observation.forecast.fold(Span.Zero)(actsIn)
     )
 
-  private def heading(policy: Policy, observation: RolloutView, elapsedS: Double): Double =
+  private def heading(policy: HeadingPolicy, observation: RolloutView, elapsedS: Double): Double =
     upon = observation
     val other = world.assignment.opponentOf(agent, distance)
     world.views(agent) match
@@ -266,7 +266,7 @@ private[skein] final class Controller(
     * ago.
     */
   private def chosen(
-      policy: Policy,
+      policy: HeadingPolicy,
       observation: RolloutView,
       elapsedS: Double,
       x: Double,

@@ -1,22 +1,22 @@
 package skein.forward
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.policy.{AgentPolicy, Assignment, PolicyFormula}
+import skein.policy.{Policy, Assignment, PolicyFormula}
 import skein.simd.Forms
 import skein.units.Metres
 
 /** Which policies decide for nothing but horizontal velocities at the altitude of their vehicle's start:
-  * forward simulation flies no other. [[skein.policy.AgentPolicy.isPlanar]] promises it; of others it is seen
+  * forward simulation flies no other. [[skein.policy.Policy.isPlanar]] promises it; of others it is seen
   * in their formula.
   */
 private object Level:
-  private val known = ConcurrentHashMap[(Int, Assignment, Boolean), Forms[AgentPolicy, PolicyFormula]]()
+  private val known = ConcurrentHashMap[(Int, Assignment, Boolean), Forms[Policy, PolicyFormula]]()
 
   /** Why a policy may do something else.
     *
     * @param self its place in a team
     */
-  def refusal(policy: AgentPolicy, self: Int, assignment: Assignment, startDownM: Double): Option[String] =
+  def refusal(policy: Policy, self: Int, assignment: Assignment, startDownM: Double): Option[String] =
     if policy.isPlanar then None
     else
       Seq(false, true).iterator
@@ -24,7 +24,7 @@ private object Level:
           val forms = known.computeIfAbsent(
             (self, assignment, isPredicted),
             _ =>
-              Forms[AgentPolicy, PolicyFormula](_.fits(_, assignment)):
+              Forms[Policy, PolicyFormula](_.fits(_, assignment)):
                 PolicyFormula.of(_, self, assignment, isPredicted)
           )
           forms(policy).fold(

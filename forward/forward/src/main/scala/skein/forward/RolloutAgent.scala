@@ -1,7 +1,7 @@
 package skein.forward
 
 import skein.fusion.SensorModel
-import skein.policy.{Agent, AgentPolicy}
+import skein.policy.{Agent, Policy}
 
 /** One vehicle of a duel or of a team, as a rollout flies it.
   *
@@ -19,7 +19,7 @@ final case class RolloutAgent(
     startY: Double,
     altitudeDownM: Double,
     startHeadingRad: Double,
-    policy: AgentPolicy,
+    policy: Policy,
     eye: Option[SensorModel] = None
 )
 

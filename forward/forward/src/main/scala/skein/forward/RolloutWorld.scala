@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.policy.{Assignment, Policy, TeamPolicy}
+import skein.policy.{Assignment, HeadingPolicy, TeamPolicy}
 import skein.signal.{Kinematics, Stamped}
 
 /** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their
@@ -26,7 +26,7 @@ private[skein] final class RolloutWorld(
 
   /** By vehicle: whether its policy is asked as any is, and not by numbers alone. */
   val isAsked: Array[Boolean] = agents.map(_.policy match
-    case _: (Policy | TeamPolicy) => false
+    case _: (HeadingPolicy | TeamPolicy) => false
     case _                        => true)
 
   /** Whether all that readings tell is kept. */

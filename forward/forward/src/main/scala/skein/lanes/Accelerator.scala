@@ -7,11 +7,8 @@ import skein.lanes.timetable.Timetable
   * are the same, to the bit.
   */
 trait Accelerator:
-  /** What flies, in a line for the user. */
-  def engine: String
-
-  /** Candidates of some episodes that keep it busy. */
-  private[lanes] def sideBySide: Int
+  /** With as many candidates of some episodes as keep it busy. */
+  def engine: Engine
 
   /** @param threads that prepare flights
     * @return or why it flies no such duels
@@ -34,14 +31,20 @@ trait Accelerator:
   ): Either[String, AcceleratedTeams]
 
 private[lanes] object Accelerator:
-  /** What is told behind the line of what flies instead.
+  /** What flies in place of lanes, or why it does not; none where no accelerator was asked for.
     *
     * @param flights that it offers, or why none
     */
-  def instead(flights: Option[Either[String, Any]]): String =
-    flights.fold("")(
-      _.fold(why => s" ($why)", _ => " (the GPU flies candidates that share episodes)")
-    )
+  def engine(
+      accelerator: Option[Accelerator],
+      flights: Option[Either[String, Any]],
+      together: Boolean
+  ): Option[Either[String, Engine]] =
+    for
+      by    <- accelerator
+      offer <- flights
+    yield offer.flatMap: _ =>
+      Either.cond(together, by.engine, "the GPU flies candidates that share episodes")
 
 /** Of duels. One call at a time. */
 private[lanes] trait AcceleratedDuels:

@@ -10,7 +10,7 @@ import skein.forward.{
 }
 import skein.lanes.policy.PolicyLanes
 import skein.lanes.timetable.Timetables
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 import skein.simd.LaneMath
 import skein.units.Expect
 
@@ -91,43 +91,34 @@ final class DuelBatch(
   private val accelerated: Option[Either[String, AcceleratedDuels]] =
     accelerator.map(each => lanes.flatMap(each.duels(_, model, threads)))
 
-  /** What is told where vehicles are flown side by side. */
-  private val stepped: Option[String] =
-    SteppedRollouts.told(model, vehicles).filterNot(_ => sees || isReference)
+  /** Where vehicles are flown side by side. */
+  private val stepped: Option[Engine] =
+    SteppedRollouts.engine(model, vehicles).filterNot(_ => sees || isReference)
 
   /** A world that waits meets no delays: all worlds share their episode, but for what somebody sees. */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused] && !sees
 
-  /** Which engine flies worlds of these policies, and why, in a line for the user.
+  /** Which engine flies worlds of these policies.
     *
     * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]; on a GPU, only worlds fly that tell
     *   [[Worlds.episodesOfEach]] too
     * @param links that the worlds fly over: where delays are long for the period, or are recorded ones, no
     *   lanes know them
     */
-  def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
-    lanesOf(pursuer, evader, shares(shareEpisodes)) match
-      case Left(reason)                                       => stepped.getOrElse(s"scalar: $reason")
-      case Right(_) if shares(shareEpisodes) && isAccelerated => accelerator.get.engine
-      case Right(lanes)                                       =>
-        LaneSupport.told(lanes, links.map(refusal(shares(shareEpisodes), _))) +
-          Accelerator.instead(accelerated)
-
-  /** How many candidates that share episodes take no longer than one. */
-  def sideBySide(pursuer: Policy, evader: Policy, link: Delays): Int =
-    if !fliesByLanes(pursuer, evader, shareEpisodes = true, Seq(link)) then 1
-    else if isAccelerated then accelerator.get.sideBySide
-    else LaneMath.LANES
-
-  private def isAccelerated = accelerated.exists(_.isRight)
-
-  /** Whether all worlds of these policies fly by lanes, or AirSim's quadrotors do at least, over any of the
-    * links.
-    */
-  def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
-    model.isInstanceOf[QuadrotorResponse] && stepped.isDefined ||
-      lanesOf(pursuer, evader, shares(shareEpisodes)).isRight &&
-      links.forall(refusal(shares(shareEpisodes), _).isEmpty)
+  def engine(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      shareEpisodes: Boolean,
+      links: Seq[Delays]
+  ): Engine =
+    val together = shares(shareEpisodes)
+    Engine.of(
+      lanesOf(pursuer, evader, together),
+      links.map(refusal(together, _)),
+      stepped,
+      Accelerator.engine(accelerator, accelerated, together),
+      LaneMath.LANES
+    )
 
   /** Why no lanes fly over a link. */
   private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] =
@@ -135,7 +126,7 @@ final class DuelBatch(
     else apart.fold(Some(_), (plant, _) => LoopSupport.refusal(timing, 2, link, plant))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
-  private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
+  private def lanesOf(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean): Either[String, String] =
     for
       _ <- plant
       _ <- Seq(pursuer, evader)

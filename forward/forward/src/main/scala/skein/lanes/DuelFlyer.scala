@@ -5,7 +5,7 @@ import skein.forward.{Delays, Duel, LoopTiming, Rollout, TabledDelays, VelocityR
 import skein.lanes.loop.{BySlowest, LoopLanes}
 import skein.lanes.policy.{LanePolicy, PolicyLanes}
 import skein.lanes.timetable.{Timetable, TimetableEye, Timetables}
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 
 /** Flies a batch of worlds on one thread. Mutable. */
 private trait DuelFlyer:
@@ -27,7 +27,7 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
   * Mutable.
   */
 private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => VelocityResponse):
-  private var last: (Policy, Policy, Delays) = (null, null, null)
+  private var last: (HeadingPolicy, HeadingPolicy, Delays) = (null, null, null)
   private var rollout: Rollout               = null
 
   def apply(worlds: DuelWorlds, world: Int): Rollout =
@@ -59,14 +59,14 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   val batch: Int = DuelKernel.WORLDS
 
   /** A kernel and its policies, and the worlds that will fly by it. */
-  protected abstract class Lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]):
+  protected abstract class Lanes(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[DuelNumber]):
     protected val pursuers: LanePolicy = LanePolicy.of(pursuer, asked(DuelNumber.PursuerEffort))
     protected val evaders: LanePolicy  = LanePolicy.of(evader, asked(DuelNumber.EvaderEffort))
     private val ofLane                 = Array.ofDim[Int](batch)
     private var filled                 = 0
 
     // Who flies in the lane filled last.
-    private var lastPursuer, lastEvader: Policy = null
+    private var lastPursuer, lastEvader: HeadingPolicy = null
 
     protected def kernel: DuelKernel
 
@@ -93,7 +93,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       fill(lane, worlds, world)
 
     /** Reads a policy's numbers, unless the lane before was filled with the very same. */
-    private def put(lane: Int, lanes: LanePolicy, policy: Policy, before: Policy): Unit =
+    private def put(lane: Int, lanes: LanePolicy, policy: HeadingPolicy, before: HeadingPolicy): Unit =
       if lane > 0 && (policy eq before) then lanes.copy(lane - 1, lane) else lanes.put(lane, policy)
 
     def fly(worlds: DuelWorlds, captureRadiusM: Float, into: DuelOutcomes): Unit =
@@ -103,7 +103,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       kernel.tell(ofLane, filled, into)
       filled = 0
 
-  protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes
+  protected def lanes(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[DuelNumber]): Lanes
 
   /** Whether the lanes know a world's link. */
   protected def canFly(link: Delays): Boolean
@@ -117,7 +117,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     val unknown = Array.newBuilder[Int]
 
     // Neighbours often fly the very same policy.
-    var (lastPursuer, lastEvader) = (null: Policy, null: Policy)
+    var (lastPursuer, lastEvader) = (null: HeadingPolicy, null: HeadingPolicy)
     var forms                     = (null: Form, null: Form)
     for world <- numbers do
       val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
@@ -151,7 +151,7 @@ private final class LoopFlyer(
 
   protected def canFly(link: Delays): Boolean = LoopSupport.refusal(timing, 2, link, model).isEmpty
 
-  protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
+  protected def lanes(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[DuelNumber]): Lanes =
     new Lanes(pursuer, evader, asked):
       private val keys    = Array.ofDim[Int](batch)
       private val links   = Array.ofDim[TabledDelays](batch)
@@ -176,7 +176,7 @@ private final class TimetableFlyer(episodes: DuelEpisodes, timetables: Timetable
 
   protected def canFly(link: Delays): Boolean = true
 
-  protected def lanes(pursuer: Policy, evader: Policy, asked: Set[DuelNumber]): Lanes =
+  protected def lanes(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[DuelNumber]): Lanes =
     new Lanes(pursuer, evader, asked):
       protected val kernel: TimetableDuels = TimetableDuels(
         duel,

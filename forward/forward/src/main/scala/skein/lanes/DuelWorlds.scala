@@ -1,15 +1,15 @@
 package skein.lanes
 
 import skein.forward.DuelOutcome
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 
 /** The worlds of one call of [[DuelBatch]]. */
 trait DuelWorlds extends Worlds:
   /** What worlds are judged by. Nothing else is computed. */
   def asked: Set[DuelNumber] = DuelNumber.all
 
-  def pursuer(world: Int): Policy
-  def evader(world: Int): Policy
+  def pursuer(world: Int): HeadingPolicy
+  def evader(world: Int): HeadingPolicy
 
 /** What duels may be judged by; see [[DuelOutcome]] for the meanings. An effort costs a twentieth of a
   * flight: how far a direction is from the one before takes an arccosine.

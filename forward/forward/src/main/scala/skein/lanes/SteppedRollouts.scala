@@ -113,14 +113,15 @@ private object SteppedRollouts:
         )
       case _ => None
 
-  /** What flies so, in a line for the user; none where nothing does. */
-  def told(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[String] =
-    (model match
-      case _: SteppedResponse                                                => Some("vehicles side by side")
+  /** What flies so; none where nothing does. */
+  def engine(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[Engine] =
+    model match
+      case _: SteppedResponse => Some(Engine(Engine.Kind.Bodies, s"vehicles side by side; $Loops"))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
-        Some(s"SIMD, ${LaneMath.LANES} quadrotors at a time")
+        Some(Engine(Engine.Kind.Quadrotors, s"SIMD, ${LaneMath.LANES} quadrotors at a time; $Loops", LaneMath.LANES))
       case _ => None
-    ).map(_ + "; their loops by the scalar engine")
+
+  private val Loops = "their loops by the scalar engine"
 
   private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[RolloutAgent]) =
     LaneSupport.present.isRight && LaneDynamics.of(model, vehicles).isRight

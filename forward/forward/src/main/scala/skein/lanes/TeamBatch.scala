@@ -36,49 +36,34 @@ final class TeamBatch(
 
   private val accelerated: Option[Either[String, AcceleratedTeams]] =
     accelerator.map(_.teams(timing, model, threads, timetable))
-  private val isAccelerated = accelerated.exists(_.isRight)
 
   private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles, tellsMore = form.asksMore)
 
-  /** Which engine flies such a team, and why, in a line for the user.
+  /** Which engine flies such a team.
     *
     * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]; on a GPU, only worlds fly that tell
     *   [[Worlds.episodesOfEach]] too
     * @param links that the worlds fly over
     */
-  def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): String =
-    lanesOf(candidate) match
-      case Left(reason) => steppedOf(candidate).getOrElse(s"scalar: $reason")
-      case Right(form) if shares(shareEpisodes) && isAccelerated && form.team.isPlain =>
-        accelerator.get.engine
-      case Right(form) =>
-        val worlds = if shares(shareEpisodes) then "candidates of an episode" else "worlds"
-        LaneSupport.told(
-          s"${LaneMath.LANES} $worlds at a time",
-          links.map(refusal(form, shares(shareEpisodes), _)),
-          steppedOf(candidate)
-        ) + Accelerator.instead(
-          if form.team.isPlain then accelerated
-          else
-            accelerated.map(_ =>
-              Left("the GPU flies teams without memory that look at the newest readings alone")
-            )
-        )
-
-  /** How many such candidates that share episodes take no longer than one. */
-  def sideBySide(candidate: TeamCandidate, link: Delays): Int =
-    val isKnown = lanesOf(candidate).exists(_.team.isPlain)
-    if isAccelerated && isKnown && fliesByLanes(candidate, shareEpisodes = true, Seq(link)) then
-      accelerator.get.sideBySide
-    else LaneFunction.COUNT
+  def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
+    val together = shares(shareEpisodes)
+    val lanes    = lanesOf(candidate)
+    val worlds   = if together then "candidates of an episode" else "worlds"
+    val isPlain  = lanes.exists(_.team.isPlain)
+    Engine.of(
+      lanes.map(_ => s"${LaneMath.LANES} $worlds at a time"),
+      lanes.fold(_ => Nil, form => links.map(refusal(form, together, _))),
+      steppedOf(candidate),
+      if isPlain then Accelerator.engine(accelerator, accelerated, together)
+      else
+        accelerated.map(_ => Left("the GPU flies teams without memory that look at the newest readings alone"))
+      ,
+      LaneFunction.COUNT
+    )
 
   private def steppedOf(candidate: TeamCandidate) =
-    SteppedRollouts.told(model, candidate.engagement.agents).filterNot(_ => isReference)
-
-  /** Whether all of its worlds fly by lanes, over any of the links. */
-  def fliesByLanes(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
-    lanesOf(candidate).exists(form => links.forall(refusal(form, shares(shareEpisodes), _).isEmpty))
+    SteppedRollouts.engine(model, candidate.engagement.agents).filterNot(_ => isReference)
 
   /** A world that waits meets no delays: all worlds share their episode. */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]

@@ -2,7 +2,7 @@ package skein.optimise
 
 import skein.forward.Delays
 import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
-import skein.policy.{Policy, PolicyFamily, Role}
+import skein.policy.{HeadingPolicy, PolicyFamily, Role}
 import skein.simd.WorldRandom
 
 /** Flies a family's candidates against one opponent in [[DuelBatch]].
@@ -17,7 +17,7 @@ final class DuelEvaluator(
     durationS: Double,
     family: PolicyFamily,
     role: Role,
-    opponent: Policy,
+    opponent: HeadingPolicy,
     link: Delays,
     objective: Objective,
     seed: Long,
@@ -26,7 +26,8 @@ final class DuelEvaluator(
 
   override def sideBySide: Int =
     val policy = family.defaultPolicy
-    if shareEpisodes then batch.sideBySide(pursuer(policy), evader(policy), link) else 1
+    if shareEpisodes then batch.engine(pursuer(policy), evader(policy), shareEpisodes, Seq(link)).sideBySide
+    else 1
 
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -41,16 +42,16 @@ final class DuelEvaluator(
         Array.tabulate(keys.length): episode =>
           objective.value(outcomes, candidate * keys.length + episode, role, durationS)
 
-  private def pursuer(candidate: Policy): Policy = if role == Role.Pursuer then candidate else opponent
-  private def evader(candidate: Policy): Policy  = if role == Role.Evader then candidate else opponent
+  private def pursuer(candidate: HeadingPolicy): HeadingPolicy = if role == Role.Pursuer then candidate else opponent
+  private def evader(candidate: HeadingPolicy): HeadingPolicy  = if role == Role.Evader then candidate else opponent
 
   /** The candidate does not enter the key: all meet the same delays. */
-  private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
+  private final class Worlds(policies: Array[HeadingPolicy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                       = policies.length * keys.length
     override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
     override def episodesOfEach: Int    = keys.length
     override def asked: Set[DuelNumber] = objective.asked(role)
     def key(world: Int): Int            = keys(world % keys.length)
     def link(world: Int): Delays        = DuelEvaluator.this.link
-    def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
-    def evader(world: Int): Policy      = DuelEvaluator.this.evader(policies(world / keys.length))
+    def pursuer(world: Int): HeadingPolicy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
+    def evader(world: Int): HeadingPolicy      = DuelEvaluator.this.evader(policies(world / keys.length))

@@ -39,6 +39,13 @@ enum SearchMethod:
 
   def episodes: Int
 
+  /** Candidates that are judged together; when racing, in the first round. */
+  def together(dimension: Int): Long = this match
+    case CrossEntropy(population, _, _, _, _) => population
+    case CmaEs(population, _, _, _)           => population
+    case Racing(candidates, _)                => candidates
+    case _: (Grid | Random)                   => evaluations(dimension) / episodes
+
   /** Episodes that one candidate flies at most. */
   def mostOfOne: Long = this match
     case Racing(candidates, episodes) =>

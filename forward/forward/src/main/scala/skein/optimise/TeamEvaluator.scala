@@ -24,7 +24,10 @@ final class TeamEvaluator(
 ) extends ValueEvaluator:
 
   override def sideBySide: Int =
-    if shareEpisodes then usual.fold(LaneFunction.COUNT)(each => batch.sideBySide(candidate(each), link))
+    if shareEpisodes then
+      usual.fold(LaneFunction.COUNT)(each =>
+        batch.engine(candidate(each), shareEpisodes, Seq(link)).sideBySide
+      )
     else 1
 
   def valuesUnless(isCancelled: () => Boolean)(

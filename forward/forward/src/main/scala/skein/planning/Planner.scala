@@ -2,7 +2,7 @@ package skein.planning
 
 import skein.lanes.plant.PlantLanes
 import skein.lanes.policy.PolicyLanes
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 import skein.simd.WorldRandom
 import skein.vehicle.Plant
 
@@ -233,7 +233,7 @@ object Planner:
   def isFast: Boolean = CandidateBlocks.isFast
 
   /** Why nobody plans against an opponent of this policy: by lanes, it must be a formula. */
-  def refusal(opponent: Policy): Option[String] =
+  def refusal(opponent: HeadingPolicy): Option[String] =
     if isFast then PolicyLanes.of(opponent).left.toOption.map(_.getMessage) else None
 
   /** The same of vehicles that move by this plant. */

@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 import skein.vehicle.PlaneReading
 
 /** Where somebody will be at the end of each step of the horizon, m, world NED: x north, y east. */
@@ -60,7 +60,7 @@ enum Target(val carriesS: Option[Double] = None):
     * @param speed that it commands, m/s
     * @param headingRad commanded last to it
     */
-  case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: Policy)
+  case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: HeadingPolicy)
       extends Target(Some(vehicle.carriesS))
 
   /** Somebody or some place whose way does not depend on this vehicle. */

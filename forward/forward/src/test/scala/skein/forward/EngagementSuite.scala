@@ -8,7 +8,7 @@ import skein.vehicle.ReducedModel
 class EngagementSuite extends munit.FunSuite:
   private val duel = PaperDuel().fleet.agents
 
-  private def agent(role: Role, number: Int, north: Double, east: Double, policy: Policy): Agent =
+  private def agent(role: Role, number: Int, north: Double, east: Double, policy: HeadingPolicy): Agent =
     duel
       .find(_.role == role)
       .getOrElse(duel.head.copy(role = role))
@@ -186,7 +186,7 @@ class EngagementSuite extends munit.FunSuite:
     )
 
   /** Runs in one direction for ever. */
-  private final case class LeadAway(headingRad: Double) extends Policy:
+  private final case class LeadAway(headingRad: Double) extends HeadingPolicy:
     def heading(
         dxM: Double,
         dyM: Double,

@@ -32,7 +32,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
         2 * math.Pi * random.nextDouble()
       )
 
-  private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): Rollout =
+  private def duel(pursuer: HeadingPolicy, evader: HeadingPolicy, start: Start, durationS: Double): Rollout =
     val engaged = Duel(
       Duel.paper.pursuer.copy(policy = pursuer, startX = 0, startY = 0, startHeadingRad = 0),
       Duel.paper.evader.copy(
@@ -45,13 +45,13 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     )
     Rollout(engaged, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
 
-  private def closestM(pursuer: Policy, evader: Policy, start: Start, durationS: Double): Double =
+  private def closestM(pursuer: HeadingPolicy, evader: HeadingPolicy, start: Start, durationS: Double): Double =
     duel(pursuer, evader, start, durationS).fly(0).minDistanceM
 
   /** Flies until it is captured; without capture, until the end. */
   private def captureS(
-      pursuer: Policy,
-      evader: Policy,
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
       start: Start,
       captureM: Double,
       durationS: Double
@@ -68,7 +68,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
   /** Runs straight away; when the pursuer is γ turning radii behind, aside at a right angle, and on in that
     * direction while the pursuer turns after it.
     */
-  private val barrier: Policy = (dx, dy, _, _, own, pursuer, _) =>
+  private val barrier: HeadingPolicy = (dx, dy, _, _, own, pursuer, _) =>
     val ahead = -dx * math.cos(pursuer) - dy * math.sin(pursuer)
     val right = dx * math.sin(pursuer) - dy * math.cos(pursuer)
     val aside = math.abs(math.IEEEremainder(own - pursuer, 2 * math.Pi))
@@ -77,7 +77,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     else pursuer + (if right >= 0 then 1 else -1) * math.Pi / 2
 
   /** Crosses the barriers as steeply as it can; within the circle where it may wait, makes for the centre. */
-  private val steepest: Policy = (dx, dy, _, _, _, pursuer, _) =>
+  private val steepest: HeadingPolicy = (dx, dy, _, _, _, pursuer, _) =>
     val (cos, sin)       = (math.cos(pursuer), math.sin(pursuer))
     val (ahead, right)   = (-dx * cos - dy * sin, dx * sin - dy * cos)
     val side             = if right < 0 then -1.0 else 1.0
@@ -92,11 +92,11 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       else math.atan2(outward, forward)
     pursuer + side * course
 
-  private val hunter: Policy = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
-  private val away: Policy   = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
+  private val hunter: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
+  private val away: HeadingPolicy   = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
 
   /** Evaders by which number they have. */
-  private val evaders: Seq[(String, Int => Policy)] =
+  private val evaders: Seq[(String, Int => HeadingPolicy)] =
     val shape = NeuralShape(Vector(6))
     Seq(
       "the barrier's evader"      -> (_ => barrier),

@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.PaperDuel
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
@@ -11,8 +11,8 @@ import skein.vehicle.{PlaneReading, Plant}
 class RolloutSuite extends munit.FunSuite:
   private val loops =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
-  private val towards: Policy       = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
-  private val awayFrom: Policy      = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
+  private val towards: HeadingPolicy       = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
+  private val awayFrom: HeadingPolicy      = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
   private val lag: VelocityResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
@@ -33,7 +33,7 @@ class RolloutSuite extends munit.FunSuite:
       assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
 
   test("what a policy or a plant throws is told with its name and its line"):
-    final class Lost extends Policy:
+    final class Lost extends HeadingPolicy:
       def heading(x: Double, y: Double, vx: Double, vy: Double, own: Double, sent: Double, elapsedS: Double) =
         throw Exception("no way")
     final class Stuck extends Plant[PlaneReading]:
@@ -73,7 +73,7 @@ class RolloutSuite extends munit.FunSuite:
       assertClose(distances(Rollout(turned, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
   test("with symmetric policies the mirrored duel is the mirror image"):
-    val evader: Policy    = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
+    val evader: HeadingPolicy    = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
     val key               = WorldRandom.key(5, 0, 0)
     def fly(side: Double) =
       val duel = Duel(

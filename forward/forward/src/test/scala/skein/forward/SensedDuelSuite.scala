@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.fusion.{Exposure, SensorModel}
 import skein.lanes.{DuelBatch, DuelWorlds}
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.signal.{LatencyDistribution, SplitMix64}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -101,14 +101,14 @@ class SensedDuelSuite extends munit.FunSuite:
       val seeing = duel(Some(camera))
       val beside = seeing.copy(evader = seeing.evader.copy(startY = 2), durationS = 12)
       val batch  = DuelBatch(beside, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1)
-      val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn))
+      val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("SIMD, "), engine)
       val worlds = new DuelWorlds:
         def size: Int                   = 40
         def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
         def link(world: Int): Delays    = DelayTable.vpn
-        def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
-        def evader(world: Int): Policy  = SensedDuelSuite.this.evader
+        def pursuer(world: Int): HeadingPolicy = SensedDuelSuite.this.pursuer
+        def evader(world: Int): HeadingPolicy  = SensedDuelSuite.this.evader
       val outcomes = batch.fly(worlds)
       val rollout  = Rollout(beside, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
       for world <- 0 until worlds.size by 7 do
@@ -118,7 +118,7 @@ class SensedDuelSuite extends munit.FunSuite:
   test("eyes that no lanes know fly by the scalar engine, and are told of"):
     def told(duel: Duel, model: VelocityResponse) =
       DuelBatch(duel, predictive, model, threads = 1)
-        .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn))
+        .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
     val seeing = duel(Some(camera))
     val both   = told(
       seeing.copy(evader = seeing.evader.copy(eye = Some(camera))),
@@ -135,5 +135,5 @@ class SensedDuelSuite extends munit.FunSuite:
 
   test("a sensor whose errors floats cannot tell from none flies by the scalar engine"):
     val batch  = DuelBatch(duel(Some(exact)), predictive, PlantResponse(ReducedModel.AirSimLag), threads = 1)
-    val engine = batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn))
+    val engine = batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("scalar: the lanes know sensors with deviations of"), engine)

@@ -19,19 +19,19 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
   private val many = 0 until worlds by 7
   private val some = 0 until worlds by 19
 
-  private def drawn(family: PolicyFamily)(random: SplitMix64): Policy =
+  private def drawn(family: PolicyFamily)(random: SplitMix64): HeadingPolicy =
     family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble())))
 
-  private val pursuers: Seq[(String, SplitMix64 => Policy)] =
+  private val pursuers: Seq[(String, SplitMix64 => HeadingPolicy)] =
     PolicyFamily.all.filter(_.roles(Role.Pursuer)).map(family =>
       family.name -> drawn(family)
     ) ++ UnseenPolicySuite.Unseen
-  private val evaders: Seq[(String, SplitMix64 => Policy)] = Seq(
+  private val evaders: Seq[(String, SplitMix64 => HeadingPolicy)] = Seq(
     "paper-evader"     -> drawn(PolicyFamily.paperEvader),
     "chauffeur-evader" -> drawn(PolicyFamily.chauffeurEvader)
   )
 
-  private def each(seed: Long, draw: SplitMix64 => Policy): Int => Policy =
+  private def each(seed: Long, draw: SplitMix64 => HeadingPolicy): Int => HeadingPolicy =
     val random = SplitMix64(seed)
     Vector.fill(worlds)(draw(random))
 

@@ -23,7 +23,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   private def within(random: SplitMix64, least: Double, most: Double) =
     least + (most - least) * random.nextDouble()
 
-  private def fleet(random: SplitMix64, policies: (Role, SplitMix64 => AgentPolicy)*) =
+  private def fleet(random: SplitMix64, policies: (Role, SplitMix64 => Policy)*) =
     Fleet(policies.toVector.zipWithIndex.map:
       case ((role, draw), i) =>
         Agent(
@@ -80,7 +80,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   ): Unit =
     val all    = worlds(candidates(draw, 60, 5), over, share)
     val batch  = TeamBatch(timing, plant, threads = 1)
-    val engine = batch.engine(all.candidate(0), share, Seq(over))
+    val engine = batch.engine(all.candidate(0), share, Seq(over)).text
     assert(engine.startsWith("SIMD"), engine)
     val flown  = batch.fly(all)
     val scalar = ScalarTeam(timing, plant)
@@ -115,12 +115,12 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     val plants     = TeamBatch(LoopTiming.Stream(), lag, threads = 1)
     for policy <- Seq(Turning, Upwards) do
       val one = candidates(fleet(_, Role.Evader -> (_ => policy), Role.Pursuer -> (_ => Chase)), 1, 2).head
-      def fliesByLanes(by: TeamBatch) = by.fliesByLanes(one, shareEpisodes = true, Seq(DelayTable.vpn))
+      def fliesByLanes(by: TeamBatch) = by.engine(one, shareEpisodes = true, Seq(DelayTable.vpn)).fliesByLanes
       assert(fliesByLanes(plants))
       assert(!fliesByLanes(quadrotors))
 
   test("a policy that does something else than to fly on at its altitude is refused with its line"):
-    def refusal(policy: AgentPolicy) = intercept[IllegalArgumentException]:
+    def refusal(policy: Policy) = intercept[IllegalArgumentException]:
       Engagement.of(fleet(SplitMix64(1), Role.Evader -> (_ => policy), Role.Pursuer -> (_ => Chase)))
     assert(clue(refusal(Landing).getMessage).contains("it decides for Action.Land"))
     assert(clue(refusal(Landing).getMessage).contains("AnyPolicySimulation.scala:"))
@@ -130,7 +130,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   test("one that promises to fly in the plane flies by the scalar engine, and fails if it does not"):
     val team = fleet(_, Role.Evader -> (_ => Promising), Role.Pursuer -> (_ => Chase))
     val one  = candidates(team, 1, 5).head
-    val told = TeamBatch(LoopTiming.Stream(), lag, 1).engine(one, shareEpisodes = true, Seq(DelayTable.vpn))
+    val told = TeamBatch(LoopTiming.Stream(), lag, 1).engine(one, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(clue(told).startsWith("scalar: a policy is no formula: "))
     val failed = intercept[OwnFailure](ScalarTeam(LoopTiming.Stream(), lag).fly(one, DelayTable.vpn, 4))
     assert(clue(failed.getMessage).startsWith("the policy Promising decided for Land"))
@@ -142,7 +142,7 @@ object AnyPolicySimulation:
   private def heading(seen: Observation, way: Vector3, by: Double = 0) =
     Action.heading(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
 
-  trait Forgetful extends AgentPolicy:
+  trait Forgetful extends Policy:
     type Memory = Unit
     def start: Unit = ()
     def action(seen: Observation): Action
@@ -153,7 +153,7 @@ object AnyPolicySimulation:
     def action(seen: Observation): Action = heading(seen, towards(seen, seen.opponent))
 
   final case class Phase(angle: Double, isLeft: Boolean)
-  final case class Weaving(rate: Double) extends AgentPolicy:
+  final case class Weaving(rate: Double) extends Policy:
     type Memory = Phase
     def start: Phase                                              = Phase(0.25, true)
     def choose(seen: Observation, memory: Phase): (Action, Phase) =
@@ -179,7 +179,7 @@ object AnyPolicySimulation:
         seen.startDown
       )
 
-  case object Trailing extends AgentPolicy:
+  case object Trailing extends Policy:
     type Memory = Vector[Double]
     def start: Vector[Double]                                                       = Vector(0.0, 0.0, 0.0)
     def choose(seen: Observation, memory: Vector[Double]): (Action, Vector[Double]) =

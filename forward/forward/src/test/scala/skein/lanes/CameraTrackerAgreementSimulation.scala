@@ -7,7 +7,7 @@ import skein.lanes.loop.{LaneAgents, LoopEye, LoopLanes}
 import skein.lanes.policy.CameraTrackerLanes
 import skein.lanes.timetable.{Timetable, TimetableEye, TimetableVehicles}
 import skein.optimise.LatencyBudget
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.units.Instant
 import skein.vehicle.ReducedModel
@@ -63,8 +63,8 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     "a link that changes"         -> AlternatingDelays(wild(150, 150), DelayTable.direct, 1.0, 0.5)
   )
 
-  private def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.004 * (world % 128))
-  private def evader(world: Int): Policy  = PaperEvader(7 + 0.01 * (world % 128))
+  private def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.004 * (world % 128))
+  private def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.01 * (world % 128))
 
   for
     timing <- Seq(
@@ -111,10 +111,10 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       override def shareEpisodes: Boolean = true
       def key(world: Int): Int            = episode
       def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): Policy     = CameraTrackerAgreementSimulation.this.pursuer(world)
-      def evader(world: Int): Policy      = CameraTrackerAgreementSimulation.this.evader(world)
+      def pursuer(world: Int): HeadingPolicy     = CameraTrackerAgreementSimulation.this.pursuer(world)
+      def evader(world: Int): HeadingPolicy      = CameraTrackerAgreementSimulation.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
-    val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn))
+    val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)
     assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel(DuelNumber.MeanDistance).toSeq)
 

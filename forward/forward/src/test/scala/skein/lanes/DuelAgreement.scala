@@ -6,7 +6,7 @@ import skein.fusion.Exposure
 import skein.lanes.loop.{LoopEye, LoopLanes}
 import skein.lanes.policy.{LaneObservation, PolicyLanes}
 import skein.lanes.timetable.Timetable
-import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
+import skein.policy.{Decided, ObservingPolicy, PlanarObservation, HeadingPolicy}
 
 /** Duels flown by lanes, beside the scalar engine: decision by decision, by [[Agreement]]. All but the
   * vehicles' flight is followed to the bit: a decision's own heading and memory are those that lanes decided
@@ -22,7 +22,7 @@ private[skein] class DuelAgreement(
     link: Int => Delays,
     key: Int => Int,
     captureM: Float,
-    policies: Vector[Int => Policy],
+    policies: Vector[Int => HeadingPolicy],
     lanes: Vector[LoggedPolicy],
     val flown: DuelKernel
 ):
@@ -161,7 +161,7 @@ private[skein] object DuelAgreement:
       agent: Int,
       k: Int,
       timeS: Double,
-      policy: Policy,
+      policy: HeadingPolicy,
       seen: PlanarObservation,
       memory: Any,
       ours: LoggedPolicy.Made,
@@ -200,7 +200,7 @@ private[skein] object DuelAgreement:
       link: Delays,
       key: Int,
       captureM: Float = 0
-  )(pursuer: Int => Policy, evader: Int => Policy): DuelAgreement =
+  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): DuelAgreement =
     val lanes    = taken(pursuer, evader)
     val vehicles = LaneDynamics.under(timing, model, duel).fold(munit.Assertions.fail(_), identity)
     val kernel   = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0))
@@ -215,7 +215,7 @@ private[skein] object DuelAgreement:
       link: Int => TabledDelays,
       key: Int => Int,
       captureM: Float = 0
-  )(pursuer: Int => Policy, evader: Int => Policy): DuelAgreement =
+  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): DuelAgreement =
     val lanes  = taken(pursuer, evader)
     val kernel = flownAlone(duel, timing, model, link, key, captureM, lanes)
     DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
@@ -257,7 +257,7 @@ private[skein] object DuelAgreement:
     kernel
 
   /** Lanes that fly these, the evader's first. */
-  def taken(pursuer: Int => Policy, evader: Int => Policy): Vector[LoggedPolicy] =
+  def taken(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): Vector[LoggedPolicy] =
     Vector(evader, pursuer).map: of =>
       val lanes = LoggedPolicy(of(0))
       for world <- 0 until DuelKernel.WORLDS do lanes.take(world, of(world))
@@ -292,7 +292,7 @@ private[skein] object DuelAgreement:
       else distances += timeS -> math.hypot(x - x0, y - y0)
 
   /** Notes what a policy sees, and answers as it does. */
-  final class Log(policy: Policy) extends ObservingPolicy[Any]:
+  final class Log(policy: HeadingPolicy) extends ObservingPolicy[Any]:
     val seen: ArrayBuffer[PlanarObservation] = ArrayBuffer.empty
     val before: ArrayBuffer[Any]             = ArrayBuffer.empty
     val decided: ArrayBuffer[Double]         = ArrayBuffer.empty

@@ -49,8 +49,8 @@ class DuelBatchSimulation extends munit.FunSuite:
       val batch  = DuelBatch(short, timing, model, threads = 2)
       val worlds = mixed(20)
       val flown  = batch.fly(worlds, captureRadiusM = 5)
-      assert(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).startsWith("scalar: "))
-      assert(!batch.fliesByLanes(PaperPursuer(), PaperEvader(), false, Nil))
+      assert(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).text.startsWith("scalar: "))
+      assert(!batch.engine(PaperPursuer(), PaperEvader(), false, Nil).isFast)
       for world <- 0 until worlds.size do
         assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
 
@@ -62,9 +62,9 @@ class DuelBatchSimulation extends munit.FunSuite:
     val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))
     def batch(timing: LoopTiming) = DuelBatch(short, timing, lag, threads = 1)
     def engine(timing: LoopTiming, links: Delays*) =
-      batch(timing).engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, links)
+      batch(timing).engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, links).text
     def isFast(timing: LoopTiming, links: Delays*) =
-      batch(timing).fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = false, links)
+      batch(timing).engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, links).isFast
     assert(isFast(LoopTiming.stream(0.1), near, far))
     val slow = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(4000)))
     assert(isFast(LoopTiming.stream(0.005), near, far))
@@ -79,12 +79,12 @@ class DuelBatchSimulation extends munit.FunSuite:
     assert(isFast(LoopTiming.stream(0.1), alternating, near))
     val recorded = RecordedDelays(Vector.fill(2)(Vector.fill(4)(Array(1L))))
     assert(clue(engine(LoopTiming.stream(0.1), recorded)).startsWith("scalar: "))
-    assert(batch(LoopTiming.stream(0.1)).fliesByLanes(
+    assert(batch(LoopTiming.stream(0.1)).engine(
       PaperPursuer(),
       PaperEvader(),
       shareEpisodes = true,
       Seq(recorded)
-    ))
+    ).isFast)
     for published <- Seq(
         LoopTiming.Predictive(predictor = lag.predictor, asking = Asking(inOrder = true)),
         LoopTiming.Stream(asking = Asking(inOrder = true)),
@@ -128,7 +128,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       val backwards = DuelBatch(short, timing, lag, threads = 1)
         .fly(reordered(worlds, worlds.size - 1 - _), captureRadiusM = 5)
       assertEquals(all.flown, worlds.size)
-      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil))
+      assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).isFast)
       for world <- 0 until worlds.size do
         assertEquals(numbers(backwards, worlds.size - 1 - world), numbers(all, world), s"world $world")
       for world <- 0 until worlds.size by 29 do
@@ -151,7 +151,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       val offAxis = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val batch   = DuelBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
       val worlds  = candidates(30)
-      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil))
+      assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).isFast)
       val all       = batch.fly(worlds, captureRadiusM = 5)
       val backwards = batch.fly(reordered(worlds, worlds.size - 1 - _), captureRadiusM = 5)
       for world <- 0 until worlds.size do
@@ -169,7 +169,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       val (model, count) = (VelocityResponses.quadrotor(), 150)
       val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val all = DuelBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
-      assert(DuelBatch(offAxis, timing, model).fliesByLanes(PaperPursuer(), Straight, false, Nil))
+      assert(DuelBatch(offAxis, timing, model).engine(PaperPursuer(), Straight, false, Nil).isFast)
       val single    = DuelBatch(offAxis, timing, model, threads = 1)
       val backwards = single.fly(reordered(mixed(count), count - 1 - _), captureRadiusM = 5)
       assertEquals(all.flown, count)
@@ -182,7 +182,7 @@ class DuelBatchSimulation extends munit.FunSuite:
   test("low quadrotors fly by the scalar reference, which knows the ground"):
     val batch = DuelBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
     assertEquals(
-      batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil),
+      batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).text,
       "scalar: the lanes know no ground and fly from 5.0 m altitude on"
     )
 
@@ -214,7 +214,7 @@ class DuelBatchSimulation extends munit.FunSuite:
 
 object DuelBatchSimulation:
   /** Goes straight on, by what is no arithmetic. */
-  val Straight: Policy = (_, _, _, _, own, _, _) => own.toString.toDouble
+  val Straight: HeadingPolicy = (_, _, _, _, own, _, _) => own.toString.toDouble
 
   val lag: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
@@ -225,8 +225,8 @@ object DuelBatchSimulation:
       def size: Int                    = count
       def key(world: Int): Int         = WorldRandom.key(7, 1, world)
       def link(world: Int): DelayTable = links(world / 10 % links.size)
-      def pursuer(world: Int): Policy  = PaperPursuer(0.8 + 0.001 * world)
-      def evader(world: Int): Policy   = if world % 7 == 6 then Straight else PaperEvader(8 - 0.002 * world)
+      def pursuer(world: Int): HeadingPolicy  = PaperPursuer(0.8 + 0.001 * world)
+      def evader(world: Int): HeadingPolicy   = if world % 7 == 6 then Straight else PaperEvader(8 - 0.002 * world)
 
   /** So many candidates meet 3 episodes over 2 links; the evader of every seventh goes straight on. */
   def candidates(count: Int): DuelWorlds =
@@ -236,10 +236,10 @@ object DuelBatchSimulation:
       override def shareEpisodes: Boolean = true
       def key(world: Int): Int            = WorldRandom.key(9, 0, world % 3)
       def link(world: Int): DelayTable    = links(world % 6 / 3)
-      def pursuer(world: Int): Policy     =
+      def pursuer(world: Int): HeadingPolicy     =
         if world / 6 % 5 == 0 then PaperPursuer(stepRad = Some(0.1))
         else PaperPursuer(0.8 + 0.002 * (world / 6))
-      def evader(world: Int): Policy = if world % 7 == 6 then Straight else PaperEvader()
+      def evader(world: Int): HeadingPolicy = if world % 7 == 6 then Straight else PaperEvader()
 
   def reordered(worlds: DuelWorlds, number: Int => Int, count: Option[Int] = None): DuelWorlds =
     new DuelWorlds:
@@ -247,8 +247,8 @@ object DuelBatchSimulation:
       override def shareEpisodes: Boolean = worlds.shareEpisodes
       def key(world: Int): Int            = worlds.key(number(world))
       def link(world: Int): Delays        = worlds.link(number(world))
-      def pursuer(world: Int): Policy     = worlds.pursuer(number(world))
-      def evader(world: Int): Policy      = worlds.evader(number(world))
+      def pursuer(world: Int): HeadingPolicy     = worlds.pursuer(number(world))
+      def evader(world: Int): HeadingPolicy      = worlds.evader(number(world))
 
   def numbers(o: DuelOutcomes, world: Int): Vector[Float] =
     Vector(
@@ -281,5 +281,5 @@ object DuelBatchWithoutVectors:
   def main(args: Array[String]): Unit =
     val batch =
       DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSimulation.lag, threads = 1)
-    println(batch.engine(PaperPursuer(), PaperEvader(), false, Nil))
+    println(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).text)
     println(DuelBatchSimulation.numbers(batch.fly(DuelBatchSimulation.mixed(1), captureRadiusM = 5), 0))

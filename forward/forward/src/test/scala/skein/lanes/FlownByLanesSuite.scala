@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import skein.forward.*
 import skein.identify.Tilting
 import skein.lanes.score.Judged
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -38,7 +38,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     durationS = 3
   )
 
-  private val policies: Vector[(String, Policy)] = Vector(
+  private val policies: Vector[(String, HeadingPolicy)] = Vector(
     "a formula"                    -> PaperPursuer(),
     "a formula that remembers"     -> TrendPursuer(3, 0.5, 1),
     "a formula that asks for ages" -> AgeAwarePursuer(8, 1, 1),
@@ -82,7 +82,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       val batch = DuelBatch(duel, timing, model, threads = 1)
       val said  = table((worlds, nameOf(timing)))(plant)
       for (kind, policy) <- policies do
-        val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn))
+        val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn)).text
         // Quadrotors need no formula to fly side by side.
         val expected =
           if kind != "no formula" then said else if plant == "the quadrotor" then "vehicles" else "scalar"
@@ -97,7 +97,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     test(s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine says what is told below the table"):
       val seeing = duel.copy(pursuer = duel.pursuer.copy(eye = Some(GuideCamera.model)))
       val engine = DuelBatch(seeing, timing, model, threads = 1)
-        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
       val said    = table((worlds, nameOf(timing)))(plant)
       val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
       assertEquals(word(engine), if said == "SIMD" && isTimed then "SIMD" else "scalar", engine)
@@ -109,7 +109,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     test(s"predictive by $plant itself, ${if shared then "shared" else "own"} delays: it flies by lanes"):
       val model  = PlantResponse(plant)
       val batch  = DuelBatch(duel, LoopTiming.Predictive(predictor = model.predictor), model, threads = 1)
-      val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+      val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
       assertEquals(word(engine), "SIMD", engine)
 
   private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
@@ -118,8 +118,8 @@ class FlownByLanesSuite extends munit.FunSuite:
       override def shareEpisodes: Boolean = shared
       def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
       def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * world)
-      def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * world)
+      def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.6 + 0.004 * world)
+      def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.01 * world)
     val flown = batch.fly(all)
     for world <- 0 until all.size by 5 do
       val own =
@@ -141,7 +141,7 @@ class FlownByLanesSuite extends munit.FunSuite:
         )
       val batch = TeamBatch(timing, model, threads = 1)
       for (worlds, shared) <- Seq("teams, shared delays" -> true, "teams, own delays" -> false) do
-        val engine = batch.engine(team, shared, Seq(DelayTable.vpn))
+        val engine = batch.engine(team, shared, Seq(DelayTable.vpn)).text
         assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
   test(
@@ -153,7 +153,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       Vector(Judged(OffRing(8), Reduction.Rms, 0))
     )
     for timing <- loops(model).tail do
-      val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn))
+      val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("scalar: the lanes fly steps of"), s"$timing: $engine")
 
   test("the table has a row for all that the engines fly, and no other"):

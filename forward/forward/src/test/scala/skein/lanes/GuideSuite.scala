@@ -21,7 +21,7 @@ class GuideSuite extends munit.FunSuite:
 
   test("the example's policy is searched by lanes, and the best is better than the middle"):
     import GuideExample.*
-    val engine = batch.engine(leads.defaultPolicy, PaperEvader(), true, Seq(DelayTable.vpn))
+    val engine = batch.engine(leads.defaultPolicy, PaperEvader(), true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("SIMD"), engine)
     val middle = evaluator.tallies(Vector(leads.space.defaults), 0 until 20).head.mean
     assert(best._2.mean < middle, s"${best._2.mean} against $middle")

@@ -9,16 +9,16 @@ import skein.simd.WorldRandom
 class LanePolicySimulation extends munit.FunSuite:
   private val worlds = LanePolicy.WORLDS
 
-  private val families: Seq[(String, SplitMix64 => Policy)] =
+  private val families: Seq[(String, SplitMix64 => HeadingPolicy)] =
     (PolicyFamily.all ++ Seq("8x8", "16x16", "32x5x16").map(shape =>
       PolicyFamily.parse(s"neural:$shape").toOption.get
     ))
-      .map(family => family.name -> drawn(family)) ++ Seq[(String, SplitMix64 => Policy)](
+      .map(family => family.name -> drawn(family)) ++ Seq[(String, SplitMix64 => HeadingPolicy)](
       "paper-pursuer as published" -> (_ => PaperPursuer.asPublished),
       "keep-heading"               -> (_ => KeepHeading)
     )
 
-  private def drawn(family: PolicyFamily)(random: SplitMix64): Policy =
+  private def drawn(family: PolicyFamily)(random: SplitMix64): HeadingPolicy =
     family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble())))
 
   for (name, draw) <- families do
@@ -100,7 +100,7 @@ class LanePolicySimulation extends munit.FunSuite:
       agreement(pursuers, _ => opponent).check("seed 5", 0 until worlds by 3)
 
 /** Of another form, and no formula, where it waits for nothing. */
-private final case class Hasty(isHasty: Boolean) extends Policy:
+private final case class Hasty(isHasty: Boolean) extends HeadingPolicy:
   def heading(
       dxM: Double,
       dyM: Double,
@@ -111,7 +111,7 @@ private final case class Hasty(isHasty: Boolean) extends Policy:
       elapsedS: Double
   ): Double = if isHasty && System.nanoTime > 0 then dxM else dyM
 
-private final class Impatient extends Policy:
+private final class Impatient extends HeadingPolicy:
   def heading(
       dxM: Double,
       dyM: Double,

@@ -3,10 +3,10 @@ package skein.lanes
 import java.util.Arrays
 import scala.collection.mutable.ArrayBuffer
 import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 
 /** Notes what many worlds' decisions are made from, and what they come to. */
-private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLanes.get(of)):
+private[skein] final class LoggedPolicy(of: HeadingPolicy) extends LanePolicy(PolicyLanes.get(of)):
   import LoggedPolicy.*
   private val form   = PolicyLanes.get(of)
   private val worlds = LanePolicy.WORLDS

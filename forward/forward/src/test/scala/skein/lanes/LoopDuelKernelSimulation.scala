@@ -16,7 +16,7 @@ import skein.identify.Tilting
 import skein.lanes.loop.LoopLanes
 import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.vehicle.{ConstantVelocity, ReducedModel}
 
@@ -92,14 +92,14 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       durationS: Double,
       model: VelocityResponse
   ) =
-    unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[Policy])
+    unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[HeadingPolicy])
 
   private def unseen(timing: LoopTiming, link: TabledDelays, durationS: Double, model: VelocityResponse)(
-      pursuer: Int => Policy
+      pursuer: Int => HeadingPolicy
   ) =
     DuelAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
       pursuer,
-      duel(_, durationS).evader.policy.asInstanceOf[Policy]
+      duel(_, durationS).evader.policy.asInstanceOf[HeadingPolicy]
     )
 
   for
@@ -133,7 +133,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     ):
       agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
 
-  private val unseenPursuers = Seq[(String, Int => Policy)](
+  private val unseenPursuers = Seq[(String, Int => HeadingPolicy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
     "asks for velocities and ages" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))
   )

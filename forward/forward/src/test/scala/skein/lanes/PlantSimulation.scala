@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.forward.*
 import skein.lanes.plant.{PlantLanes, PlantStages}
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.testing.Unhurried
 import skein.vehicle.{DrivenCar, PlaneReading, Plant, ReducedModel}
@@ -21,8 +21,8 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     override def shareEpisodes: Boolean = shared
     def key(world: Int): Int            = WorldRandom.key(5, 0, world / 128)
     def link(world: Int): Delays        = DelayTable.vpn
-    def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * (world % 128))
-    def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * (world % 128))
+    def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.6 + 0.004 * (world % 128))
+    def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.01 * (world % 128))
 
   private val train = PlantResponse(Train(lagS = 0.6))
 
@@ -38,7 +38,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
   do
     test(s"$name flies by lanes under ${timing.productPrefix} as its scalar does"):
       val batch = DuelBatch(short, timing, vehicle, threads = 1)
-      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
+      assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
       val all   = worlds(shared = true)
       val flown = batch.fly(all)
       val off   = (0 until all.size by 3).map(offM(all, flown, timing, vehicle, _))
@@ -75,9 +75,9 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         def size: Int                   = 256
         def key(world: Int): Int        = WorldRandom.key(5, 1, world)
         def link(world: Int): Delays    = if world % 2 == 0 then DelayTable.vpn else DelayTable.direct
-        def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.002 * world)
-        def evader(world: Int): Policy  = PaperEvader(7 + 0.005 * world)
-      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = false, Seq(DelayTable.vpn)))
+        def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.002 * world)
+        def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.005 * world)
+      assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, Seq(DelayTable.vpn)).isFast)
       val flown = batch.fly(all)
       val off   = (0 until all.size by 3).map(offM(all, flown, timing, vehicle, _))
       assert(off.max < 1e-3, off.sorted.takeRight(5))
@@ -86,7 +86,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     test(s"what heeds one part of its command alone is predicted by lanes as by its scalar, shared: $shared"):
       val timing = LoopTiming.Predictive(predictor = train.predictor)
       val batch  = DuelBatch(short, timing, train, threads = 1)
-      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)))
+      assert(batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).isFast)
       val all   = worlds(shared)
       val flown = batch.fly(all)
       val off   = (0 until all.size by 9).map(offM(all, flown, timing, train, _))
@@ -139,7 +139,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
   test("what does not fly by lanes is told"):
     def engine(plant: Plant[?], shared: Boolean, timing: LoopTiming = LoopTiming.Stream()) =
       DuelBatch(short, timing, PlantResponse(plant), 1)
-        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
     assert(engine(bicycle.plant, shared = true).startsWith("SIMD"))
     assert(engine(bicycle.plant, shared = false).startsWith("SIMD"))
     assert(engine(

@@ -241,7 +241,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       def link(world: Int): Delays             = if world % 5 == 4 then DelayTable.none else over
       def candidate(world: Int): TeamCandidate = teams(world)
     val batch  = TeamBatch(timing, plant, threads = 2)
-    val engine = batch.engine(all.candidate(0), shareEpisodes = false, Seq(over))
+    val engine = batch.engine(all.candidate(0), shareEpisodes = false, Seq(over)).text
     assert(engine.startsWith("SIMD"), engine)
     val flown  = batch.fly(all)
     val scalar = ScalarTeam(timing, plant)
@@ -337,7 +337,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   test("twenty, more than there are rounds, avoid one another by lanes as by the scalar reference"):
     val crossing = avoiding(Crossing(20, entryM = 8, spacingM = 4), 1.5)
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
-    val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn))
+    val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("SIMD"), engine)
     val one = new TeamWorlds:
       def size: Int                            = 1
@@ -353,7 +353,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val team     = surround.copy(agents = surround.agents.map(_.copy(policy = Zigzag)))
     val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
-    val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn))
+    val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("scalar: a policy is no formula: skein.lanes.Zigzag"), engine)
     val one = new TeamWorlds:
       def size: Int                            = 1
@@ -373,8 +373,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     assert(clue(told.getMessage).startsWith("the quantity Broken failed: java.lang.IllegalStateException"))
 
   private def assertFliesByLanes(batch: TeamBatch, team: TeamCandidate): Unit =
-    val engine = batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn))
-    assert(batch.fliesByLanes(team, shareEpisodes = true, Seq(DelayTable.vpn)), engine)
+    val engine = batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).text
+    assert(batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).isFast, engine)
 
 /** How often it turns depends on what it sees. */
 object Zigzag extends TeamPolicy:

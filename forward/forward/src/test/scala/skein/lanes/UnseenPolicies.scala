@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.policy.{Decided, PlanarObservation, ObservingPolicy, Policy}
+import skein.policy.{Decided, PlanarObservation, ObservingPolicy, HeadingPolicy}
 
 /** What [[TrendPursuer]] remembers: where the opponent was seen last, and how fast that direction turns on
   * average.
@@ -43,7 +43,7 @@ final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRad
     Decided(seen.ownHeadingRad + turn.max(-most).min(most), memory)
 
 /** A network with two hidden layers of 16 rectified neurons, as one writes it who has never seen ours. */
-final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double) extends Policy:
+final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double) extends HeadingPolicy:
   require(weights.length == RectifiedNetwork.Weights)
 
   def heading(

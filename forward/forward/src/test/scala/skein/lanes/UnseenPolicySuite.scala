@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponses}
-import skein.policy.{ChauffeurEvader, Policy}
+import skein.policy.{ChauffeurEvader, HeadingPolicy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
@@ -32,12 +32,12 @@ class UnseenPolicySuite extends munit.FunSuite:
         override def shareEpisodes: Boolean = shared
         def key(world: Int): Int            = WorldRandom.key(1, 0, if shared then 0 else world)
         def link(world: Int): Delays        = DelayTable.vpn
-        def pursuer(world: Int): Policy     = pursuers(world)
-        def evader(world: Int): Policy      = UnseenPolicySuite.Evader
+        def pursuer(world: Int): HeadingPolicy     = pursuers(world)
+        def evader(world: Int): HeadingPolicy      = UnseenPolicySuite.Evader
       val batch = DuelBatch(short, timing, model, 1)
       assert(
-        batch.fliesByLanes(pursuers.head, evader, shared, Seq(DelayTable.vpn)),
-        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn))
+        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).isFast,
+        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).text
       )
       val flown = batch.fly(worlds)
       val off   = pursuers.indices.map: world =>
@@ -55,7 +55,7 @@ class UnseenPolicySuite extends munit.FunSuite:
 object UnseenPolicySuite:
   val Evader: ChauffeurEvader = ChauffeurEvader()
 
-  val Unseen: Seq[(String, SplitMix64 => Policy)] = Seq(
+  val Unseen: Seq[(String, SplitMix64 => HeadingPolicy)] = Seq(
     "memory" -> (random =>
       TrendPursuer(random.nextDouble(), 0.2 + random.nextDouble(), 0.5 + random.nextDouble())
     ),

@@ -2,7 +2,7 @@ package skein.optimise
 
 import skein.forward.{DelayTable, Duel, DuelOutcome, LoopTiming, Rollout, VelocityResponses}
 import skein.lanes.{DuelBatch, DuelOutcomes, DuelWorlds}
-import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy, Role}
 import skein.simd.WorldRandom
 
 class ObjectiveSuite extends munit.FunSuite:
@@ -53,8 +53,8 @@ class ObjectiveSuite extends munit.FunSuite:
       def size: Int                    = pursuers.size
       def key(world: Int): Int         = WorldRandom.key(1, 0, 0)
       def link(world: Int): DelayTable = DelayTable.direct
-      def pursuer(world: Int): Policy  = pursuers(world)
-      def evader(world: Int): Policy   = PaperEvader()
+      def pursuer(world: Int): HeadingPolicy  = pursuers(world)
+      def evader(world: Int): HeadingPolicy   = PaperEvader()
     val outcomes = DuelBatch(duel, LoopTiming.Futures(), model, 1).fly(worlds, captureRadiusM = 4.5)
     for (pursuer, world) <- pursuers.zipWithIndex do
       val own = duel.copy(pursuer = duel.pursuer.copy(policy = pursuer))

@@ -3,8 +3,9 @@ package skein.environment
 import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
+import skein.lanes.Engine
 import skein.lanes.LearnerDuels.WORLDS
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.simd.LaneMath
@@ -47,15 +48,15 @@ final class EnvironmentBatch private (
       Array(ScenarioGroup(side, autoreset, count, EnvironmentBuffers(block, 1, count)))
   private var isReset = false
 
-  /** What flies the environments, in a line for the user. */
-  val engine: String = config match
+  /** What flies the environments. */
+  val engine: Engine = config match
     case _: EnvironmentSettings.Resolved => EnvironmentBatch.EngineOfGame
     case side: ScenarioSide              => EnvironmentBatch.engineOf(side.settings.scenario)
 
   /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides,
     * from their next episodes on.
     */
-  def fly(policy: Policy): Unit = groups.foreach:
+  def fly(policy: HeadingPolicy): Unit = groups.foreach:
     case team: ScenarioGroup => team.fly(policy)
     case _                   => ()
 
@@ -106,12 +107,12 @@ object EnvironmentBatch:
   /** Fewer groups are flown by the caller's thread alone. */
   private val Together = 4
 
-  /** What flies environments of the paper's game, in a line for the user. */
-  val EngineOfGame: String = s"SIMD, ${LaneMath.LANES} environments at a time"
+  /** What flies environments of the paper's game. */
+  val EngineOfGame: Engine = Engine(Engine.Kind.Lanes, s"SIMD, ${LaneMath.LANES} environments at a time")
 
   /** What flies those of another scenario. */
-  def engineOf(scenario: String): String =
-    s"scalar: environments of $scenario fly one by one; those of the duel fly by SIMD"
+  def engineOf(scenario: String): Engine =
+    Engine.scalar(s"environments of $scenario fly one by one; those of the duel fly by SIMD")
 
   /** @param opponent of the side that does not learn; without one, as the settings name it
     * @return or what was expected and came

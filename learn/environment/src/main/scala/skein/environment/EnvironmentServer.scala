@@ -75,7 +75,7 @@ object EnvironmentServer:
             case 3 => batch.reset(seeds(in, batch.count), in.readNBytes(batch.count).map(_ != 0))
             case 4 => ()
             case _ => throw EOFException(s"expected 1 to 4, came $request")
-          if request == 4 then answer(out, 0, batch.engine) else out.write(0)
+          if request == 4 then answer(out, 0, batch.engine.text) else out.write(0)
         catch
           case mistake: IllegalArgumentException => answer(out, 1, Expect.refused(mistake))
           case mistake: IOException              => throw mistake

@@ -5,7 +5,7 @@ import scala.jdk.OptionConverters.*
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering}
 import skein.lanes.{LearnerDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy, Role}
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
@@ -143,8 +143,8 @@ object EnvironmentSettings:
   private[environment] final case class Resolved(
       settings: EnvironmentSettings,
       learners: Vector[Role],
-      evader: Policy,
-      pursuer: Policy,
+      evader: HeadingPolicy,
+      pursuer: HeadingPolicy,
       duel: Duel,
       timing: LoopTiming,
       link: Delays,

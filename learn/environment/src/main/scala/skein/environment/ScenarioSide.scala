@@ -3,7 +3,7 @@ package skein.environment
 import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, Rollout, VelocityResponse}
 import skein.optimise.TeamObjective
-import skein.policy.{Agent, AgentPolicy, Fleet, PaperPursuer, Policy, Role, TeamPolicy}
+import skein.policy.{Agent, Policy, Fleet, PaperPursuer, HeadingPolicy, Role, TeamPolicy}
 import skein.scenario.{Positions, Quantity, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
 import skein.signal.SplitMix64
@@ -40,12 +40,12 @@ private[environment] final case class ScenarioSide(
     * @param beside of the others of its role; without one, their own
     * @param seed of where the vehicles begin
     */
-  def engagement(learner: Int, policy: Policy, beside: Option[Policy], seed: Long): Engagement =
+  def engagement(learner: Int, policy: HeadingPolicy, beside: Option[HeadingPolicy], seed: Long): Engagement =
     val random = SplitMix64(seed)
     val flown  = agents.zipWithIndex.map: (agent, place) =>
       val (least, most)    = settings.startWithinM
       val (moved, bearing) = (least + random.nextDouble() * (most - least), 2 * math.Pi * random.nextDouble())
-      val chosen: AgentPolicy =
+      val chosen: Policy =
         if place == learner then policy
         else if agent.role == role then beside.getOrElse(agent.policy)
         else agent.policy
@@ -140,6 +140,6 @@ private[environment] object ScenarioSide:
     if scenario.agents.exists(_.kind != VehicleKind.Multirotor) then Some("which has cars")
     else if scenario.eyes.nonEmpty || scenario.equipment.nonEmpty then Some("which sees by cameras or lidars")
     else
-      scenario.agents.find(agent => !agent.policy.isInstanceOf[Policy | TeamPolicy]).map(agent =>
+      scenario.agents.find(agent => !agent.policy.isInstanceOf[HeadingPolicy | TeamPolicy]).map(agent =>
         s"whose vehicle ${agent.name} decides in three dimensions"
       )

@@ -1,12 +1,12 @@
 package skein.environment
 
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 
 /** Turns at a rate that is set from outside before each decision.
   *
   * @param rateRadPerS to the right
   */
-private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends Policy:
+private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends HeadingPolicy:
   def heading(
       dxM: Double,
       dyM: Double,
@@ -21,7 +21,7 @@ private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends
   *
   * @param turnRad to the right
   */
-private[environment] final case class Turned(turnRad: Double) extends Policy:
+private[environment] final case class Turned(turnRad: Double) extends HeadingPolicy:
   def heading(
       dxM: Double,
       dyM: Double,

@@ -4,7 +4,7 @@ import java.nio.{ByteBuffer, ByteOrder}
 import skein.forward.{Delays, Duel, DuelOutcome, PlantResponse, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.lanes.LearnerDuels.FIELDS
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.Scenarios
 import skein.signal.SplitMix64
 import skein.vehicle.ReducedModel
@@ -57,8 +57,8 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       override def shareEpisodes      = true
       def key(world: Int): Int        = runKey
       def link(world: Int): Delays    = config.link
-      def pursuer(world: Int): Policy = PaperPursuer()
-      def evader(world: Int): Policy  = PaperEvader()
+      def pursuer(world: Int): HeadingPolicy = PaperPursuer()
+      def evader(world: Int): HeadingPolicy  = PaperEvader()
     val flown = DuelBatch(duel, config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)
     (
       Rollout(duel, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),

@@ -60,10 +60,10 @@ class SideTaskSimulation extends munit.FunSuite:
       override def shareEpisodes      = true
       def key(world: Int): Int        = world
       def link(world: Int): Delays    = DelayTable.vpn
-      def pursuer(world: Int): Policy = policy
-      def evader(world: Int): Policy  = PaperEvader()
+      def pursuer(world: Int): HeadingPolicy = policy
+      def evader(world: Int): HeadingPolicy  = PaperEvader()
     val batch = DuelBatch(duel, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)
-    assert(batch.fliesByLanes(policy, PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
+    assert(batch.engine(policy, PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
     val flown   = batch.fly(worlds)
     val pursued = duel.copy(pursuer = duel.pursuer.copy(policy = policy))
     val rollout = Rollout(pursued, LoopTiming.Stream(), DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))

@@ -3,7 +3,7 @@ package skein.mujoco
 import skein.forward.*
 import skein.lanes.*
 import skein.lanes.score.Judged
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 
@@ -32,9 +32,9 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
         override def shareEpisodes: Boolean = shared
         def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
         def link(world: Int): Delays        = DelayTable.vpn
-        def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.04 * world)
-        def evader(world: Int): Policy      = PaperEvader(7 + 0.1 * world)
-      val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn))
+        def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.6 + 0.04 * world)
+        def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.1 * world)
+      val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn)).text
       assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
       val flown = batch.fly(all)
       for world <- 0 until all.size do
@@ -55,7 +55,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
       val told  = s"${timing.productPrefix}, shared delays: $shared"
       val batch = TeamBatch(timing, model, threads = 1)
       assertEquals(
-        batch.engine(team, shared, Seq(DelayTable.vpn)),
+        batch.engine(team, shared, Seq(DelayTable.vpn)).text,
         "vehicles side by side; their loops by the scalar engine",
         told
       )

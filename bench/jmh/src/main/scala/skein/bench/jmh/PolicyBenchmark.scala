@@ -4,7 +4,7 @@ import org.openjdk.jmh.annotations.*
 import skein.bench.Works
 import skein.forward.{DelayTable, Delays, LoopTiming}
 import skein.lanes.{DuelBatch, DuelWorlds}
-import skein.policy.{ChauffeurEvader, Policy, PolicyFamily}
+import skein.policy.{ChauffeurEvader, HeadingPolicy, PolicyFamily}
 
 /** What does a family of policies cost? Millions of agent-steps a second, on one thread: 1,024 candidates of
   * the family, drawn from its space, fly one episode of 60 s of `stream` over `vpn` against the chauffeur's
@@ -29,8 +29,8 @@ class PolicyBenchmark extends Rate:
       override def shareEpisodes: Boolean = true
       def key(world: Int): Int            = 1
       def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): Policy     = policies(world)
-      def evader(world: Int): Policy      = opponent
+      def pursuer(world: Int): HeadingPolicy     = policies(world)
+      def evader(world: Int): HeadingPolicy      = opponent
 
   @TearDown
   def show(): Unit = println(f"witness, mean of the last 10 s: $witness%.4f m")

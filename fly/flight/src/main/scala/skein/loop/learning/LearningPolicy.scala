@@ -20,7 +20,7 @@ final class LearningPolicy(
     seed: Long,
     lessons: Lessons,
     note: (Long, LearnerUpdate) => Unit
-) extends Policy:
+) extends HeadingPolicy:
   import LearningPolicy.*
 
   @volatile private var newest = first

@@ -8,7 +8,7 @@ import jdk.incubator.vector.FloatVector;
 import skein.simd.LaneFunction;
 
 /**
- * What the policies of many worlds see at a decision: see {@code skein.policy.Policy}. Of the two
+ * What the policies of many worlds see at a decision: see {@code skein.policy.HeadingPolicy}. Of the two
  * vehicles' readings it says where they stand: policies take the one from the other in their own pass.
  */
 public final class LaneObservation {

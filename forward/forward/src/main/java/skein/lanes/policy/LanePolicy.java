@@ -5,7 +5,7 @@ import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
-import skein.policy.Policy;
+import skein.policy.HeadingPolicy;
 import skein.simd.LaneFunction;
 
 /**
@@ -68,22 +68,22 @@ public class LanePolicy {
   }
 
   /** Lanes that fly policies of this policy's form, which must be a formula. */
-  public static LanePolicy of(Policy policy) {
+  public static LanePolicy of(HeadingPolicy policy) {
     return of(policy, true);
   }
 
-  public static LanePolicy of(Policy policy, boolean withEffort) {
+  public static LanePolicy of(HeadingPolicy policy, boolean withEffort) {
     return new LanePolicy(PolicyLanes.get(policy), withEffort);
   }
 
   /** Takes the parameters that a world flies by from now on; the policy must be of this form. */
-  public void take(int world, Policy policy) {
+  public void take(int world, HeadingPolicy policy) {
     if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
     put(world, policy);
   }
 
   /** The same of a policy that is known to be of this form. */
-  public void put(int world, Policy policy) {
+  public void put(int world, HeadingPolicy policy) {
     double[] values = form.parametersOf(policy);
     for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
     double[] remembered = form.initialOf(policy);

@@ -1,7 +1,7 @@
 package skein.lanes.policy
 
 import skein.formula.{Formula, Node, Trace, Untraceable}
-import skein.policy.{AgentPolicy, Assignment, PolicyFormula, PolicyInput, TeamObservation, TeamPolicy}
+import skein.policy.{Policy, Assignment, PolicyFormula, PolicyInput, TeamObservation, TeamPolicy}
 import skein.policy.PolicyFormula.Motion
 
 /** How one vehicle of a team decides, as a formula. */
@@ -19,16 +19,16 @@ private[lanes] trait MemberFormula:
   /** Whether it may ask its vehicle to turn. */
   def turns: Boolean
 
-  def fits(policy: AgentPolicy): Boolean
+  def fits(policy: Policy): Boolean
 
   /** The parameters of a policy that [[fits]]. */
-  def parametersOf(policy: AgentPolicy): Array[Double]
+  def parametersOf(policy: Policy): Array[Double]
 
   /** What it remembers before its first decision. */
-  def startOf(policy: AgentPolicy): Array[Double]
+  def startOf(policy: Policy): Array[Double]
 
   /** Why a policy does not keep the altitude of its vehicle's start. */
-  def leaves(policy: AgentPolicy, startDownM: Double): Option[String]
+  def leaves(policy: Policy, startDownM: Double): Option[String]
 
 private[lanes] object MemberFormula:
   /** What a policy computes at its place in a team.
@@ -36,7 +36,7 @@ private[lanes] object MemberFormula:
     * @param isPredicted whether readings are carried forward
     */
   def of(
-      policy: AgentPolicy,
+      policy: Policy,
       self: Int,
       assignment: Assignment,
       isPredicted: Boolean
@@ -67,16 +67,16 @@ private[lanes] object MemberFormula:
       Motion.Along(headingRad, speedMps)
     def memory: Vector[Node]                                            = Vector.empty
     def turns: Boolean                                                  = false
-    def fits(policy: AgentPolicy): Boolean                              = formula.fits(policy)
-    def parametersOf(policy: AgentPolicy): Array[Double]                = formula.parametersOf(policy)
-    def startOf(policy: AgentPolicy): Array[Double]                     = Array.emptyDoubleArray
-    def leaves(policy: AgentPolicy, startDownM: Double): Option[String] = None
+    def fits(policy: Policy): Boolean                              = formula.fits(policy)
+    def parametersOf(policy: Policy): Array[Double]                = formula.parametersOf(policy)
+    def startOf(policy: Policy): Array[Double]                     = Array.emptyDoubleArray
+    def leaves(policy: Policy, startDownM: Double): Option[String] = None
 
-  /** Of [[AgentPolicy.choose]]. */
+  /** Of [[Policy.choose]]. */
   private final class OfChoice(of: PolicyFormula, assignment: Assignment) extends MemberFormula:
     export of.{inputs as _, leaves as _, fits as _, formula as _, *}
     def trace: Trace                                                    = of.formula.trace
     def input(index: Int): PolicyInput                                  = of.inputs(index)
-    def fits(policy: AgentPolicy): Boolean                              = of.fits(policy, assignment)
-    def leaves(policy: AgentPolicy, startDownM: Double): Option[String] =
+    def fits(policy: Policy): Boolean                              = of.fits(policy, assignment)
+    def leaves(policy: Policy, startDownM: Double): Option[String] =
       of.leaves(policy, skein.units.Metres(startDownM))

@@ -2,11 +2,11 @@ package skein.lanes.policy
 
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
-import skein.policy.{ObservingPolicy, PlanarObservation, Policy}
+import skein.policy.{ObservingPolicy, PlanarObservation, HeadingPolicy}
 import skein.simd.{Forms, LaneCompiler, LaneFunction}
 
 /** What policies of one form have in common: how they decide in many worlds at once, compiled from the method
-  * [[Policy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers alone.
+  * [[HeadingPolicy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers alone.
   */
 private[skein] final class PolicyLanes private (formula: Formula):
   import PolicyLanes.*
@@ -111,7 +111,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
   private val indices    = derived.iterator.map(_.index).toArray
   private val evaluation = Evaluation(derived)
 
-  def parametersOf(policy: Policy): Array[Double] =
+  def parametersOf(policy: HeadingPolicy): Array[Double] =
     val own = formula.parametersOf(policy)
     if plain then indices.map(own(_))
     else evaluation(Array.emptyDoubleArray, own)
@@ -135,10 +135,10 @@ private[skein] final class PolicyLanes private (formula: Formula):
     ) ++ numbersOf(memory)
 
   /** What a policy remembers before its first decision. */
-  def initialOf(policy: Policy): Array[Double] = numbersOf(ObservingPolicy.initialOf(policy)).toArray
+  def initialOf(policy: HeadingPolicy): Array[Double] = numbersOf(ObservingPolicy.initialOf(policy)).toArray
 
   /** Whether a policy is of this form. */
-  def fits(policy: Policy): Boolean = formula.fits(policy)
+  def fits(policy: HeadingPolicy): Boolean = formula.fits(policy)
 
   private def turnOf(heading: Node): Option[Node] =
     if heading == own then Some(source.const(0))
@@ -167,7 +167,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
     trace.sub(trace.const(math.Pi), trace.mul(trace.const(2), trace.unary(Op.Acos, half)))
 
 private[skein] object PolicyLanes:
-  // The arguments of Policy.heading, by place.
+  // The arguments of HeadingPolicy.heading, by place.
   private final val Dvx             = 2
   private final val Dvy             = 3
   private final val OwnHeading      = 4
@@ -201,21 +201,21 @@ private[skein] object PolicyLanes:
     case numbers: Array[Double] => numbers.toVector
     case _                      => Vector.empty
 
-  private val known = ConcurrentHashMap[Class[?], Forms[Policy, PolicyLanes]]()
+  private val known = ConcurrentHashMap[Class[?], Forms[HeadingPolicy, PolicyLanes]]()
 
   /** Policies of a class that are no formulas, before all of it are taken for none. */
   private val MostRefused = 16
 
   /** How a policy flies by lanes, or why it does not. Compiled once for each form. */
-  def of(policy: Policy): Either[Untraceable, PolicyLanes] =
+  def of(policy: HeadingPolicy): Either[Untraceable, PolicyLanes] =
     known.computeIfAbsent(
       policy.getClass,
-      _ => Forms[Policy, PolicyLanes](_.fits(_), MostRefused)(formulaOf(_).map(PolicyLanes(_)))
+      _ => Forms[HeadingPolicy, PolicyLanes](_.fits(_), MostRefused)(formulaOf(_).map(PolicyLanes(_)))
     )(policy)
 
-  private def formulaOf(policy: Policy): Either[Untraceable, Formula] = policy match
+  private def formulaOf(policy: HeadingPolicy): Either[Untraceable, Formula] = policy match
     case observing: ObservingPolicy[?] => Formula.of(observing, "decide")
     case _ => Formula.of(policy, "heading", arguments = Some(Seq.fill(7)(classOf[Double])))
 
   /** Of a policy that is known to be a formula. */
-  def get(policy: Policy): PolicyLanes = of(policy).fold(throw _, identity)
+  def get(policy: HeadingPolicy): PolicyLanes = of(policy).fold(throw _, identity)

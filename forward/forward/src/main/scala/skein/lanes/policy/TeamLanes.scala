@@ -4,7 +4,7 @@ import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
 import skein.forward.{Engagement, RolloutAgent}
-import skein.policy.{Action, AgentPolicy, Assignment, PolicyInput}
+import skein.policy.{Action, Policy, Assignment, PolicyInput}
 import skein.policy.PolicyFormula.Motion
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
@@ -148,11 +148,11 @@ private[lanes] final class TeamLanes private (formulas: Vector[MemberFormula]):
   /** How many numbers a vehicle's policy differs by from another of its form. */
   def parameters(self: Int): Int = derived(self).size
 
-  def parametersOf(self: Int, policy: AgentPolicy): Array[Double] =
+  def parametersOf(self: Int, policy: Policy): Array[Double] =
     numbers(self)(Array.emptyDoubleArray, formulas(self).parametersOf(policy))
 
   /** What a vehicle's policy remembers before its first decision. */
-  def startOf(self: Int, policy: AgentPolicy): Array[Double] = formulas(self).startOf(policy)
+  def startOf(self: Int, policy: Policy): Array[Double] = formulas(self).startOf(policy)
 
   /** Why one of a team does not keep the altitude of its start. */
   def leaves(agents: Vector[RolloutAgent]): Option[String] =
@@ -221,7 +221,7 @@ private[lanes] object TeamLanes:
     case Parameter(number: Int)
     case Shared(number: Int)
 
-  private final case class Team(policies: Vector[AgentPolicy], assignment: Assignment, isPredicted: Boolean)
+  private final case class Team(policies: Vector[Policy], assignment: Assignment, isPredicted: Boolean)
 
   /** By what is not in a policy. */
   private val known = ConcurrentHashMap[(Assignment, Boolean), Forms[Team, TeamLanes]]()
@@ -231,7 +231,7 @@ private[lanes] object TeamLanes:
     * @param isPredicted whether readings are carried forward
     */
   def of(
-      policies: Vector[AgentPolicy],
+      policies: Vector[Policy],
       assignment: Assignment,
       isPredicted: Boolean
   ): Either[Untraceable, TeamLanes] =

@@ -2,15 +2,14 @@ package skein.lanes.gpu
 
 import skein.forward.{Delays, LoopTiming, VelocityResponse}
 import skein.gpu.Gpu
-import skein.lanes.{AcceleratedDuels, AcceleratedTeams, Accelerator, DuelEpisodes, TeamForm}
+import skein.lanes.{AcceleratedDuels, AcceleratedTeams, Accelerator, DuelEpisodes, Engine, TeamForm}
 import skein.lanes.timetable.Timetable
 import skein.units.Expect
 
 /** A GPU as an [[skein.lanes.Accelerator]]: each thread flies one candidate through one episode. */
 final class GpuAccelerator(gpu: Gpu) extends Accelerator:
-  def engine: String = s"GPU, ${gpu.name}: a thread a candidate"
-
-  private[lanes] def sideBySide: Int = 1 << 14
+  def engine: Engine =
+    Engine(Engine.Kind.Gpu, s"GPU, ${gpu.name}: a thread a candidate", sideBySide = 1 << 14)
 
   private[lanes] def duels(
       episodes: DuelEpisodes,

@@ -6,7 +6,7 @@ import skein.lanes.{DuelKernel, DuelNumber}
 import skein.lanes.policy.PolicyLanes
 import skein.lanes.score.ScoreLanes
 import skein.lanes.timetable.Timetable
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 
 /** Duels on a GPU: the evader is vehicle 0, and the first side.
   *
@@ -36,7 +36,7 @@ private[lanes] final class GpuDuelKernel(
   protected val withVelocity: Boolean = forms.exists(_.needsVelocity)
 
   /** What one policy flies by: its parameters, then what it remembers at first. */
-  def numbersOf(side: Int, policy: Policy): Array[Float] =
+  def numbersOf(side: Int, policy: HeadingPolicy): Array[Float] =
     (forms(side).parametersOf(policy) ++ forms(side).initialOf(policy)).map(_.toFloat)
 
   /** Where a number is among all that a world of an episode comes to, and what it tells. */

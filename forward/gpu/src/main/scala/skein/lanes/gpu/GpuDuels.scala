@@ -5,7 +5,7 @@ import scala.collection.mutable
 import skein.gpu.Gpu
 import skein.lanes.{Accelerated, AcceleratedDuels, DuelEpisodes, DuelNumber, DuelOutcomes, DuelWorlds}
 import skein.lanes.policy.PolicyLanes
-import skein.policy.Policy
+import skein.policy.HeadingPolicy
 
 /** Flies duels' candidates on a GPU, each through the same episodes, by [[GpuDuelKernel]]. Mutable; one call
   * at a time.
@@ -90,7 +90,7 @@ private object GpuDuels:
   private val Chunk = 256
 
   /** Who flies one side of many candidates. */
-  private final class Side(candidates: Int, threads: Int, of: Int => Policy):
+  private final class Side(candidates: Int, threads: Int, of: Int => HeadingPolicy):
     private val policies = Array.tabulate(candidates)(of)
     private val forms    = Array.ofDim[PolicyLanes](candidates)
     // Nearly always all of one side are the very same.
@@ -103,9 +103,9 @@ private object GpuDuels:
     def formOf(candidate: Int): PolicyLanes = forms(candidate)
 
     /** What these candidates fly by, each policy's numbers once, and which of them a candidate's are. */
-    def numbersOf(some: Array[Int])(read: Policy => Array[Float]): (Array[Float], Array[Int]) =
-      val known    = IdentityHashMap[Policy, Integer]()
-      val used     = mutable.ArrayBuffer.empty[Policy]
+    def numbersOf(some: Array[Int])(read: HeadingPolicy => Array[Float]): (Array[Float], Array[Int]) =
+      val known    = IdentityHashMap[HeadingPolicy, Integer]()
+      val used     = mutable.ArrayBuffer.empty[HeadingPolicy]
       val numberOf = some.map: candidate =>
         val policy = policies(candidate)
         val number = known.putIfAbsent(policy, used.size)

@@ -6,13 +6,13 @@ import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.lanes.plant.QuadrotorLanes
 import skein.lanes.policy.PolicyLanes
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
 @main def gpuKernels(folder: String): Unit =
   val layout                                                        = GpuLayout(2, shows = false)
-  def duels(name: String, model: VelocityResponse, pursuer: Policy) =
+  def duels(name: String, model: VelocityResponse, pursuer: HeadingPolicy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
     val forms   = Vector(PaperEvader(), pursuer).map(PolicyLanes.get)
     val asked   = Set(DuelNumber.MeanLast10s)

@@ -55,7 +55,7 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
     val onCpu  = TeamBatch(timing, model, threads = 1)
     val onGpu  = TeamBatch(timing, model, threads = 1, Some(GpuAccelerator(gpu)))
     assertEquals(
-      onGpu.engine(candidates(0), shareEpisodes = true, Seq(DelayTable.vpn)),
+      onGpu.engine(candidates(0), shareEpisodes = true, Seq(DelayTable.vpn)).text,
       s"GPU, ${gpu.name}: a thread a candidate"
     )
     val (told, wanted) = (onGpu.fly(worlds), onCpu.fly(worlds))

@@ -1,0 +1,57 @@
+package skein.policy
+
+import skein.units.Radians
+
+/** Chooses a heading for one vehicle from what it knows of its opponent. A pure function of its arguments, on
+  * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same
+  * object without allocation.
+  *
+  * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its
+  * calls: deciding twice as often must not turn twice as fast.
+  */
+trait HeadingPolicy extends PlanarPolicy:
+
+  /** The heading to command now, rad, from north (+x) towards east (+y); any number of turns.
+    *
+    * @param dxM opponent's position minus own, north, m
+    * @param dyM opponent's position minus own, east, m
+    * @param dvxMps opponent's velocity minus own, north, m/s
+    * @param dvyMps opponent's velocity minus own, east, m/s
+    * @param ownHeadingRad heading commanded last to the own vehicle
+    * @param opponentHeadingRad heading commanded last to the opponent, as far as known to this controller
+    * @param elapsedS time since the own last decision; 0 at the first
+    */
+  def heading(
+      dxM: Double,
+      dyM: Double,
+      dvxMps: Double,
+      dvyMps: Double,
+      ownHeadingRad: Double,
+      opponentHeadingRad: Double,
+      elapsedS: Double
+  ): Double
+
+  /** The same from an observation. */
+  final def headingFor(seen: PlanarObservation): Double =
+    import seen.*
+    heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
+
+  /** A guess at this policy by somebody who knows it roughly, such as a planner that plays against it: its
+    * parameters are off by what is drawn. By default the policy is known exactly.
+    *
+    * @param draw normal numbers of mean 0 and deviation 1, by place
+    */
+  def guessed(draw: Int => Double): HeadingPolicy = this
+
+  final override def isAgainstOne: Boolean = true
+
+  /** For pursuers alone: a plan's only goal is to be near the opponent. */
+  final override def isPlannedFor(role: Role): Boolean = role == Role.Pursuer
+
+  type Memory = Any
+
+  /** Nothing, but for an [[ObservingPolicy]]. */
+  def start: Any = ()
+
+  def planar(seen: Observation, memory: Any): (Planar, Any) =
+    (Planar(Radians(headingFor(PlanarObservation.of(seen))), None), memory)
