@@ -1,0 +1,338 @@
+"""Which observation is seen and which action acts, step by step: what a link decides, and no environment.
+
+Delays do not depend on what is sent. So the schedule is made ahead, in blocks of steps, on the host, and for all links at
+once; :class:`skein_uav.delay.Delay` applies it to arrays wherever they are.
+
+A *row* is a step of the wrapped environment, of ``step_s``; row r begins at ``r * step_s``. Rows count on over episodes:
+the link does not begin anew with them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .profiles import SIZE, Delays
+
+MOST_ROWS = 1000
+_BLOCK = 512
+_TINY = 1e-6  # of a row: what is due so little after its begin is due at it
+_NEVER = 2**15 - 1
+
+Floats = NDArray[np.float64]
+Lags = NDArray[np.int16]
+Timed = tuple[Floats, "NDArray | None"]
+"""Delays in rows; or a table of them, and where each stands in it."""
+
+
+class Schedule:
+    """Deterministic in its seeds.
+
+    Parameters
+    ----------
+    count : int
+        Links.
+    step_s : float
+        Of a row, s.
+    observation, action : Delays
+        The two directions. The very same object twice is one link, of which a correlated delay holds in both.
+    compute_s : float
+        From an observation to the departure of the action chosen upon it, s.
+    dropout : float
+        Share of observations and of actions that are lost.
+    moves_in_flight : int, optional
+        Actions that may be unanswered; others wait, and are superseded by newer ones.
+    every : int
+        Rows from one decision to the next.
+    shares : bool
+        Whether :attr:`weights` are told.
+
+    Attributes
+    ----------
+    first, rows : int
+        The block's first row, and how many it has.
+    seen : ndarray of int16, shape (rows, count)
+        How many rows ago the newest observation was sampled that has arrived when a row begins.
+    acts : ndarray of int16, shape (rows, count)
+        How many decisions ago the newest action was chosen that has arrived when a row begins; 0: at the last decision.
+    weights : ndarray of float64, shape (rows, decisions, count), optional
+        The share of each row in which the newest decision, the one before it, and so on act.
+    oldest_seen, oldest_acting : int
+        How many rows, and decisions, ago at most; where nothing has arrived yet, one more.
+    action_delay_rows : int
+        From a decision until it acts from the begin of a row on, on the mean.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        step_s: float,
+        observation: Delays,
+        action: Delays,
+        *,
+        compute_s: float = 0.0,
+        dropout: float = 0.0,
+        moves_in_flight: int | None = None,
+        every: int = 1,
+        shares: bool = False,
+    ) -> None:
+        self.count, self.every = count, every
+        self.rows = max(_BLOCK // every, 1) * every
+        self._moves, self._compute, self._dropout = moves_in_flight, compute_s / step_s, dropout
+        # So many losses in a row are one in 10^9.
+        self._most_lost = math.ceil(-9 / math.log10(dropout)) if dropout else 0
+        to, back = self._compute + action.longest_s / step_s, observation.longest_s / step_s
+        if moves_in_flight is not None:
+            to = 2 * to + back + every + 1
+        self.oldest_seen = math.ceil(back - _TINY) + self._most_lost
+        self.oldest_acting = math.ceil(to / every - _TINY) + self._most_lost
+        if max(self.oldest_seen, self.oldest_acting * every) > MOST_ROWS:
+            raise ValueError(
+                f"expected delays of at most {MOST_ROWS} steps of {step_s:g} s, came up to "
+                f"{observation.longest_s:g} s for observations and {action.longest_s:g} s for actions"
+            )
+        self.action_delay_rows = round(action.mean_of(lambda delay: np.ceil(delay / step_s + self._compute - _TINY)))
+        self._back = _Direction(observation, count, step_s, lines=1 if moves_in_flight is None else 2)
+        self._to = _Direction(action, count, step_s, lines=1, link=self._back if action is observation else None)
+        self._is_exact = shares or moves_in_flight is not None
+        self._shares = shares
+
+    def seed(self, seeds: Sequence[np.random.SeedSequence], line: int = 0) -> None:
+        """Begins anew at row 0.
+
+        Parameters
+        ----------
+        seeds : sequence of SeedSequence
+            One a link; equal ones give equal delays.
+        line : int
+            Which of several vehicles over one link: correlated delays and the link's state are common to all.
+        """
+        self._links = [np.random.default_rng(spawned(seed, 0)) for seed in seeds]
+        self._lines = [np.random.default_rng(spawned(seed, line + 1)) for seed in seeds]
+        self._back.seed(self._links)
+        self._to.seed(self._links)
+        count, long_ago = self.count, -math.inf
+        self._lost = np.zeros((2, count), dtype=np.int64)
+        self._before = np.zeros((self.oldest_acting + 1, count), np.int16)
+        self._arrived, self._answered = np.full(count, long_ago), np.full(count, long_ago)
+        self._answers = np.full(((self._moves or 2) - 1, count), long_ago)
+        self._underway = [np.full((oldest, count), _NEVER, np.int16) for oldest in (self.oldest_seen, self.oldest_acting)]
+        self._past = np.full((self.oldest_acting + 1, count), math.inf)
+        self.first = 0
+        self._make()
+
+    def row(self, row: int) -> int:
+        """The place of a row in the block, which is replaced if it is past; rows have to ascend."""
+        while row >= self.first + self.rows:
+            self.first += self.rows
+            self._make()
+        return row - self.first
+
+    def _make(self) -> None:
+        decided = slice(None, None, self.every)
+        back, back_lost = self._back.block(self.first, self.rows, self._links, self._lines, self._dropout)
+        (to,), to_lost = self._to.block(self.first, self.rows, self._links, self._lines, self._dropout)
+        to_lost = None if to_lost is None else to_lost[decided]
+        self.seen = self._newest(0, self._kept(0, _whole(back[0]), back_lost), 1)
+        if not self._is_exact:
+            late = self._kept(1, _whole(to, self._compute)[decided], to_lost)
+            self.acts = self._newest(1, self._in_order(late), self.every)
+            return
+        chosen = np.arange(0.0, self.rows, self.every)[:, None]
+        leaves = chosen + self._compute
+        if self._moves is None:
+            arrives = self._in_exact_order(self._kept(1, leaves + _exact(to)[decided], to_lost))
+        else:
+            arrives = self._paced(leaves, _exact(to)[decided], _exact(back[1])[decided])
+        arrives = _snapped(arrives)
+        self.acts = self._newest(1, _whole((np.minimum(arrives - chosen, _NEVER), None)), self.every)
+        self.weights = self._weights(arrives) if self._shares else None
+
+    def _kept(self, line: int, late: NDArray, lost: NDArray[np.bool_] | None) -> NDArray:
+        """What is lost arrives never; not more than so many in a row are."""
+        if lost is None:
+            return late
+        numbers = np.arange(len(lost))[:, None]
+        since = numbers - np.maximum.accumulate(np.where(lost, -1 - self._lost[line], numbers), axis=0)
+        since %= self._most_lost + 1
+        self._lost[line] = since[-1]
+        return np.where(since > 0, math.inf if late.dtype == np.float64 else _NEVER, late)
+
+    def _in_order(self, late: Lags) -> Lags:
+        """No action overtakes another: how late each is, in rows, may be by those before it."""
+        lost = late == _NEVER
+        all = np.concatenate([self._before, np.where(lost, 0, late)])
+        reach = 1
+        while reach < len(self._before):  # twice as many before it each time
+            np.maximum(all[reach:], all[:-reach] - np.int16(reach * self.every), out=all[reach:])
+            reach *= 2
+        self._before = all[len(late) :]
+        return np.where(lost, np.int16(_NEVER), all[len(self._before) :])
+
+    def _in_exact_order(self, arrives: Floats) -> Floats:
+        last = self._arrived
+        for one in arrives:
+            lost = np.isinf(one)
+            np.maximum(one, last, out=one, where=~lost)
+            last = np.where(lost, last, one)
+        self._arrived = last - self.rows
+        return arrives
+
+    def _paced(self, leaves: Floats, to: Floats, answer: Floats) -> Floats:
+        """An action leaves once the one ``moves_in_flight`` before it is answered, unless a newer one is chosen first.
+
+        An action is answered when its successor arrives, the newest not at all.
+        """
+        arrives = np.full_like(to, math.inf)
+        for number, chosen in enumerate(leaves[:, 0]):
+            leave = np.maximum(chosen, self._answers[0])
+            goes = leave < chosen + self.every
+            at = np.maximum(self._arrived, leave + to[number])
+            answered = np.where(np.isinf(self._arrived), -math.inf, np.maximum(self._answered, at + answer[number]))
+            arrives[number] = np.where(goes, at, math.inf)
+            self._arrived = np.where(goes, at, self._arrived)
+            self._answered = np.where(goes, answered, self._answered)
+            self._answers = np.where(goes, np.concatenate([self._answers[1:], answered[None]]), self._answers)
+        self._arrived -= self.rows
+        self._answered -= self.rows
+        self._answers -= self.rows
+        return arrives
+
+    def _newest(self, line: int, late: Lags, every: int) -> Lags:
+        """How old the newest is of what has arrived, row by row; each is so late as told, in rows."""
+        oldest = len(self._underway[line])
+        all = np.concatenate([self._underway[line], late])
+        self._underway[line] = all[len(all) - oldest :]
+        newest = np.full((len(late) * every, self.count), oldest + 1, np.int16)
+        least = int(all.min()) // every
+        for offset in range(every):
+            rows = newest[offset::every]
+            for lag in range(least, oldest + 1):
+                is_late = all[oldest - lag : oldest - lag + len(late)] > lag * every + offset
+                np.minimum(rows, is_late * np.int16(oldest + 1) + np.int16(lag), out=rows)
+        return newest
+
+    def _weights(self, arrives: Floats) -> Floats:
+        past = len(self._past)
+        begins = np.concatenate([self._past, arrives])
+        ends = np.full_like(begins, math.inf)
+        ends[:-1] = np.minimum.accumulate(begins[::-1], axis=0)[::-1][1:]
+        self._past = begins[-past:] - self.rows
+        row = np.arange(self.rows)
+        newest = row // self.every + past
+        weights = np.empty((self.rows, past, self.count))
+        for lag in range(past):
+            begin, end = begins[newest - lag], ends[newest - lag]
+            weights[:, lag] = np.maximum(np.minimum(end, row[:, None] + 1.0) - np.maximum(begin, row[:, None]), 0)
+        return weights
+
+
+class _Direction:
+    """Delays of one direction; of the other one as well, where they hold in both.
+
+    Parameters
+    ----------
+    lines : int
+        How many messages it carries a row.
+    link : _Direction, optional
+        Whose state it shares.
+    """
+
+    def __init__(self, delays: Delays, count: int, step_s: float, lines: int, link: _Direction | None = None) -> None:
+        self._delays, self._count, self._step_s, self._lines, self._link = delays, count, step_s, lines, link
+        self._draws = 0 if delays.is_constant or delays.trace is not None or delays.correlation_s else lines
+        if delays.trace is not None and delays.trace.ndim == 2 and delays.trace.shape[1] != count:
+            raise ValueError(f"expected delays of shape (times,) or (times, {count}), came {delays.trace.shape}")
+
+    def seed(self, links: list[np.random.Generator]) -> None:
+        self._last: dict[str, NDArray[np.float32]] = {}
+        trace = self._delays.trace
+        if trace is not None and self._link is None:
+            self._begin = np.array([0 if trace.ndim == 2 else one.integers(len(trace)) for one in links])
+
+    def block(
+        self,
+        first: int,
+        rows: int,
+        links: list[np.random.Generator],
+        lines: list[np.random.Generator],
+        dropout: float,
+    ) -> tuple[list[Timed], NDArray[np.bool_] | None]:
+        """Of each line the delays, and which of the first one's messages are lost, shape (rows, count)."""
+        delays, h = self._delays, self._step_s
+        drawn = _drawn(lines, rows, self._draws + (dropout > 0))
+        lost = drawn[-1] < round(dropout * 2**16) if dropout else None
+        if delays.trace is not None:
+            begin = self._begin if self._link is None else self._link._begin
+            share = h / (delays.every_s or h)
+            at = (np.arange(first, first + rows)[:, None] * share + _TINY + begin).astype(np.int64)
+            at %= len(delays.trace)
+            values = delays.trace[at] if delays.trace.ndim == 1 else delays.trace[at, np.arange(self._count)]
+            return [(values / h, None)] * self._lines, lost
+        if delays.is_constant:
+            return [(np.full((rows, self._count), delays.busy[0] / h), None)] * self._lines, lost
+        if self._link is None:
+            self._held, self._is_busy = None, None
+            if delays.correlation_s:
+                self._held = (self._state("held", links, rows, delays.correlation_s) * SIZE).astype(np.int64)
+            if delays.mixing_s:
+                self._is_busy = self._state("busy", links, rows, delays.mixing_s) < delays.busy_share
+        state = self._link or self
+        told = []
+        for line in range(self._lines):
+            at = drawn[line] % SIZE if state._held is None else state._held
+            if state._is_busy is not None:
+                at = np.where(state._is_busy, at, at + np.asarray(SIZE, at.dtype))
+            told.append((np.concatenate([delays.busy, delays.quiet]) / h, at))
+        return told, lost
+
+    def _state(
+        self, name: str, links: list[np.random.Generator], rows: int, over_s: float
+    ) -> NDArray[np.float32]:
+        """A number that is drawn anew after exponentially distributed times of this mean, read once a row."""
+        uniform = np.stack([one.random((rows, 2), dtype=np.float32) for one in links], axis=-1)
+        is_new = uniform[:, 0] < -math.expm1(-self._step_s / over_s)
+        last = self._last.get(name)
+        is_new[0] |= last is None
+        at = np.maximum.accumulate(np.where(is_new, np.arange(rows)[:, None], -1), axis=0)
+        held = np.take_along_axis(uniform[:, 1], np.maximum(at, 0), axis=0)
+        if last is not None:
+            held = np.where(at < 0, last, held)
+        self._last[name] = held[-1]
+        return held
+
+
+def _exact(delays: Timed) -> Floats:
+    rows, at = delays
+    return rows if at is None else rows[at]
+
+
+def _whole(delays: Timed, more: float = 0.0) -> Lags:
+    """In how many rows a message is there, that leaves so much of a row later."""
+    rows, at = delays
+    lags = np.ceil(rows + more - _TINY).astype(np.int16)
+    return lags if at is None else lags.take(at)
+
+
+def _snapped(rows: Floats) -> Floats:
+    """A millionth of a row beside its begin is at its begin."""
+    whole = np.rint(rows)
+    with np.errstate(invalid="ignore"):
+        return np.where(np.abs(rows - whole) < _TINY, whole, rows)
+
+
+def _drawn(generators: list[np.random.Generator], rows: int, kinds: int) -> NDArray[np.uint16]:
+    """Numbers below 2**16, shape (kinds, rows, generators); rows is a multiple of 4."""
+    if kinds == 0:
+        return np.empty((0, rows, len(generators)), dtype=np.uint16)
+    raw = np.stack([one.bit_generator.random_raw(-(-rows * kinds // 4)) for one in generators])
+    drawn = raw.astype("<u8", copy=False).view("<u2")[:, : rows * kinds].reshape(len(generators), rows, kinds)
+    return np.ascontiguousarray(drawn.transpose(2, 1, 0))
+
+
+def spawned(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
+    """A seed that is independent of this one, and of others of it."""
+    return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, number))

@@ -1,0 +1,83 @@
+"""Delay around an environment of Gymnasium."""
+
+from __future__ import annotations
+
+from typing import Any, SupportsFloat
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector.utils import create_empty_array
+
+from .arrays import each
+from .core import Delay
+from .spaces import Telling, batched, idle
+
+
+class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
+    """Lets a link and a loop's timing stand between a policy and an environment.
+
+    Observations come late, the newest that has arrived is seen, its age is told, and actions act once they have arrived.
+    Rewards and the ends of episodes are those of the environment itself, at once. After an end, what was under way is
+    void.
+
+    Parameters
+    ----------
+    env : gymnasium.Env
+        Whose observations and actions are arrays, numbers, or dicts and tuples of them.
+    step_s : float
+        Simulated time of a step of the environment, s.
+    ages : bool
+        Whether ages are told beside the observation (:class:`skein_uav.delay.spaces.Telling`).
+    pending : int
+        How many of the last decisions are told as well.
+    substeps : int
+        Steps of the environment from one decision to the next; rewards are added. What is sent arrives to the step.
+    idle_action : array, number, or a tree of them, optional
+        What acts before an action of the episode has arrived; by default 0, or the nearest action to it.
+    **settings
+        ``link``, ``observation_delay``, ``action_delay``, ``compute_s``, ``dropout``, ``moves_in_flight``, ``arrival``,
+        ``first``, ``predict`` and ``seed``, as of :class:`skein_uav.delay.Delay`.
+    """
+
+    def __init__(
+        self,
+        env: gym.Env,
+        step_s: float,
+        *,
+        ages: bool = True,
+        pending: int = 0,
+        substeps: int = 1,
+        idle_action: Any = None,
+        **settings: Any,
+    ) -> None:
+        gym.utils.RecordConstructorArgs.__init__(
+            self, step_s=step_s, ages=ages, pending=pending, substeps=substeps, idle_action=idle_action, **settings
+        )
+        gym.Wrapper.__init__(self, env)
+        self._idle = idle(env.action_space) if idle_action is None else idle_action
+        self._like = create_empty_array(env.action_space, 1, fn=np.zeros)
+        self._substeps = substeps
+        self._delay = Delay(1, step_s, pending=pending, every=substeps, idle_action=self._idle, **settings)
+        self._telling = Telling(env.observation_space, env.action_space, self._delay.longest_age_s, ages, pending)
+        self.observation_space = self._telling.space
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode; a seed is the link's, too."""
+        observation, info = self.env.reset(seed=seed, options=options)
+        return self._told(self._delay.begin(batched(observation), seed=[seed], actions=self._like)), info
+
+    def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
+        """Decides, upon what the last call told."""
+        acting = self._delay.acting(batched(action))
+        for number in range(self._substeps):
+            if number:
+                acting = self._delay.acting()
+            observation, more, terminated, truncated, info = self.env.step(each(lambda one: one[0], acting))
+            reward = reward + more if number else more
+            seen = self._delay.seen(batched(observation))
+            if terminated or truncated:
+                break
+        return self._told(seen), reward, terminated, truncated, info
+
+    def _told(self, seen: Any) -> Any:
+        return each(lambda one: one[0], self._telling.told(seen))

@@ -1,0 +1,117 @@
+"""What a policy is told, as a space of Gymnasium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.spaces import Box, Dict, Discrete, MultiBinary, MultiDiscrete, Tuple
+
+from .arrays import Tree, cast, joined, namespace, on
+from .core import Seen
+
+
+class Telling:
+    """Joins observation, age and pending actions.
+
+    Where observations are vectors of floats, the result is one: the observation, its age in s, and the pending actions,
+    the oldest first, those of a ``Discrete`` space as so many 0 and a 1. Other observations become a dict of
+    ``observation``, ``age_s`` and ``pending``. With neither ages nor pending actions they stay as they are.
+
+    Parameters
+    ----------
+    observation, action : Space
+        Of one environment.
+    longest_age_s : float
+        In s.
+    ages : bool
+        Whether ages are told.
+    pending : int
+        Actions that are told.
+
+    Attributes
+    ----------
+    space : Space
+        Of one environment.
+    """
+
+    def __init__(self, observation: gym.Space, action: gym.Space, longest_age_s: float, ages: bool, pending: int) -> None:
+        if pending and not isinstance(action, (Box, Discrete)):
+            raise ValueError(f"pending: expected 0 with actions other than Box and Discrete, came {pending} of {action}")
+        self._ages, self._pending, self._action = ages, pending, action
+        is_vector = isinstance(observation, Box) and len(observation.shape) == 1
+        self._is_flat = is_vector and np.issubdtype(observation.dtype, np.floating)
+        if not ages and not pending:
+            self.space = observation
+        elif self._is_flat:
+            least, most = [observation.low], [observation.high]
+            if ages:
+                least.append(np.zeros(1))
+                most.append(np.full(1, longest_age_s))
+            if pending:
+                one_hot = isinstance(action, Discrete)
+                least.append(np.tile(np.zeros(action.n) if one_hot else action.low.ravel(), pending))
+                most.append(np.tile(np.ones(action.n) if one_hot else action.high.ravel(), pending))
+            low, high = (np.concatenate(parts).astype(observation.dtype) for parts in (least, most))
+            self.space = Box(low, high, dtype=observation.dtype)
+        else:
+            parts = {"observation": observation}
+            if ages:
+                parts["age_s"] = Box(0, longest_age_s, (1,), np.float32)
+            if pending and isinstance(action, Discrete):
+                parts["pending"] = MultiDiscrete(np.full(pending, action.n), start=np.full(pending, action.start))
+            elif pending:
+                parts["pending"] = Box(np.stack([action.low] * pending), np.stack([action.high] * pending), dtype=action.dtype)
+            self.space = Dict(parts)
+
+    def told(self, seen: Seen) -> Tree:
+        """For a batch."""
+        observation = seen.observation
+        if not self._ages and not self._pending:
+            return observation
+        if not self._is_flat:
+            told = {"observation": observation}
+            if self._ages:
+                told["age_s"] = cast(seen.age_s[:, None], namespace(seen.age_s).float32)
+            if self._pending:
+                told["pending"] = cast_like(seen.pending, self._action)
+            return told
+        parts = [observation]
+        if self._ages:
+            parts.append(seen.age_s[:, None])
+        if self._pending:
+            pending = seen.pending
+            if isinstance(self._action, Discrete):
+                values = on(pending, np.arange(self._action.start, self._action.start + self._action.n))
+                pending = pending[:, :, None] == values
+            parts.append(pending.reshape(len(pending), -1))
+        return joined(parts, self.space.shape[0])
+
+
+def cast_like(pending: Any, action: gym.Space) -> Any:
+    return cast(pending, action.dtype) if namespace(pending) is np else pending
+
+
+def idle(space: gym.Space) -> Any:
+    """The action that stands for none: 0, or the nearest of the space."""
+    if isinstance(space, Box):
+        return np.clip(np.zeros(space.shape, space.dtype), space.low, space.high)
+    if isinstance(space, (Discrete, MultiDiscrete)):
+        return space.start
+    if isinstance(space, MultiBinary):
+        return np.zeros(space.shape, space.dtype)
+    if isinstance(space, Dict):
+        return {name: idle(one) for name, one in space.items()}
+    if isinstance(space, Tuple):
+        return tuple(idle(one) for one in space)
+    raise ValueError(f"idle_action: expected one, since there is none for {space}")
+
+
+def batched(tree: Tree) -> Tree:
+    """A batch of one."""
+    if isinstance(tree, dict):
+        return {name: batched(one) for name, one in tree.items()}
+    if isinstance(tree, tuple):
+        return tuple(batched(one) for one in tree)
+    return np.asarray(tree)[None]

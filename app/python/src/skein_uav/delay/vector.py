@@ -1,0 +1,101 @@
+"""Delay around a vector environment of Gymnasium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
+from gymnasium.vector.utils import batch_space, create_empty_array
+
+from .arrays import each
+from .core import Delay
+from .spaces import Telling, idle
+
+
+class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
+    """Lets a link and a loop's timing stand between a policy and many environments; each has a link of its own.
+
+    As :class:`skein_uav.delay.single.DelayEnv`. With seeds s, s + 1, …, each environment meets the delays of a single one
+    with its seed, in its first episode. All modes of automatic resets work; ``final_obs`` is what is seen at the end.
+    Arrays may be of NumPy, PyTorch or JAX; what is told is of the environment's kind.
+
+    Parameters
+    ----------
+    env : VectorEnv
+        Whose ``metadata["autoreset_mode"]`` says how it begins anew.
+    step_s, ages, pending, idle_action, **settings
+        As there. Where a decision lasts several steps, wrap each environment before a vector is made of them.
+    """
+
+    def __init__(
+        self,
+        env: VectorEnv,
+        step_s: float,
+        *,
+        ages: bool = True,
+        pending: int = 0,
+        idle_action: Any = None,
+        **settings: Any,
+    ) -> None:
+        gym.utils.RecordConstructorArgs.__init__(
+            self, step_s=step_s, ages=ages, pending=pending, idle_action=idle_action, **settings
+        )
+        VectorWrapper.__init__(self, env)
+        if "substeps" in settings or "every" in settings:
+            raise ValueError("substeps: wrap each environment in DelayEnv before a vector is made of them")
+        if env.metadata.get("autoreset_mode") is None:
+            raise ValueError("env: expected metadata['autoreset_mode'], one of gymnasium.vector.AutoresetMode, came none")
+        self._mode = AutoresetMode(env.metadata["autoreset_mode"])
+        self._idle = idle(env.single_action_space) if idle_action is None else idle_action
+        self._delay = Delay(env.num_envs, step_s, pending=pending, idle_action=self._idle, **settings)
+        self._telling = Telling(
+            env.single_observation_space, env.single_action_space, self._delay.longest_age_s, ages, pending
+        )
+        self.single_observation_space = self._telling.space
+        self.observation_space = batch_space(self.single_observation_space, env.num_envs)
+        self._like = create_empty_array(env.single_action_space, env.num_envs, fn=np.zeros)
+        self._ended: Any = None
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins episodes; seeds are the links', too, but beside a ``reset_mask``, where links go on."""
+        mask = None if options is None else options.get("reset_mask")
+        observations, infos = self.env.reset(seed=seed, options=options)
+        seeds = None
+        if mask is None:
+            self._ended = None
+            if seed is not None:
+                seeds = [seed + number for number in range(self.num_envs)] if np.ndim(seed) == 0 else list(seed)
+        elif self._ended is not None:
+            self._ended = self._ended & ~mask
+        seen = self._delay.begin(observations, mask, seeds, actions=self._like)
+        return self._telling.told(seen), infos
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """Decides in every environment, upon what the last call told."""
+        observations, rewards, terminated, truncated, infos = self.env.step(self._delay.acting(actions))
+        if self._mode is AutoresetMode.SAME_STEP and "final_obs" in infos:
+            seen = self._finals(observations, terminated | truncated, infos)
+        elif self._mode is AutoresetMode.NEXT_STEP:
+            seen = self._delay.seen(observations, self._ended)
+            self._ended = terminated | truncated
+        else:
+            seen = self._delay.seen(observations)
+        return self._telling.told(seen), rewards, terminated, truncated, infos
+
+    def _finals(self, observations: Any, done: Any, infos: dict[str, Any]) -> Any:
+        """Where episodes have ended and others have begun within this step."""
+        finals = infos["final_obs"]
+        is_list = isinstance(finals, np.ndarray) and finals.dtype == object
+        last = each(np.copy, observations) if is_list else finals
+        for at in np.flatnonzero(done) if is_list else ():
+            each(lambda all, one: all.__setitem__(at, one), last, finals[at])
+        told = self._telling.told(self._delay.seen(last))
+        if is_list:
+            infos["final_obs"] = np.full(self.num_envs, None, dtype=object)
+            for at in np.flatnonzero(done):
+                infos["final_obs"][at] = each(lambda one: one[at], told)
+        else:
+            infos["final_obs"] = told
+        return self._delay.begin(observations, done)
