@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** Functions that move one vehicle, and answer when the move ends. Angles in radians where the name says roll
-  * and pitch, in degrees for yaw modes and rotations, as in AirSim.
+/** Functions that move one vehicle, and answer when the move ends. Angles are in radians for roll and pitch,
+  * in degrees for yaw modes and rotations, as in AirSim.
   */
 private[simulator] object MoveMethods:
   import ServerMethod.many
@@ -106,7 +106,7 @@ private[simulator] object MoveMethods:
       case (simulation, (first, second, third, fourth, duration, name)) =>
         fly(simulation, name)(Move.hold(duration)(_ => goal(first, second, third, fourth)))
 
-  /** North and east of a velocity to the front and to the right, by the heading now. */
+  /** Rotates a velocity to the front and right by the current heading, to north and east. */
   private def turned(vehicle: SimulatedMultirotor, front: Double, right: Double): (Double, Double) =
     val yaw = vehicle.state.yawRad
     (

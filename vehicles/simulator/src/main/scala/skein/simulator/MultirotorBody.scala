@@ -4,8 +4,8 @@ import skein.scene.{Placement, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Airframe
 
-/** What a multirotor looks like: its box, two beams across, four rotors, and tags on its sides where the
-  * scene wants them.
+/** A multirotor's shape: its box, two crossed beams, four rotors, and tags on its sides if the scene has
+  * them.
   */
 private[skein] object MultirotorBody:
   import SceneObject.Part
