@@ -15,7 +15,7 @@ import skein.training.*
 import skein.units.Decimals.significant
 import skein.units.{Expect, Span}
 
-/** Options of `./skein learn`. */
+/** Command-line options of `./skein learn`, with their help texts. */
 final case class LearnOptions(
     @arg(doc = "sac, ddpg or ppo (default: sac)")
     algorithm: Option[String],
@@ -187,7 +187,7 @@ final class LearnCommand(program: String)(using Scenarios)
     state.best.fold("not judged yet"): best =>
       s"now ${state.scores.last.mean.significant(4)} $unit, best ${best.mean.significant(4)} $unit"
 
-  /** Measures the best policy and writes it and the curve. */
+  /** Evaluates the best policy and writes it and the learning curve. */
   private def conclude(
       setup: LearnSetup,
       measure: Measuring,
@@ -210,7 +210,7 @@ final class LearnCommand(program: String)(using Scenarios)
       )
     yield shown.say(s"written: ${(file ++ pictures).mkString(", ")}")
 
-  /** Flies the policy in virtual time, against the scenario's own of the other side. */
+  /** Runs the policy in virtual time, against the scenario's own policy of the other side. */
   private def virtual(
       setup: LearnSetup,
       measure: Measuring,
@@ -225,7 +225,7 @@ final class LearnCommand(program: String)(using Scenarios)
       Right(None)
     else measure.distances(policy, flights).map(distances => Some(RunningStats.of(distances.size)(distances)))
 
-  /** Who measures what was learned: this process, or workers, with the same bits. */
+  /** Chooses who evaluates the learned policy: this process, or workers, with identical bits. */
   private def measuring(
       setup: LearnSetup,
       options: Option[ClusterOptions.Checked],
@@ -257,12 +257,12 @@ final class LearnCommand(program: String)(using Scenarios)
         finally line.end()
 
 object LearnCommand:
-  /** So many at most measure the best of learning that was stopped. */
+  /** Most fresh episodes that evaluate the best policy of a stopped run. */
   private val FreshIfStopped = 100
 
-  /** What the options ask.
+  /** The question of the options.
     *
-    * @return or what was expected, what came, and in which option
+    * @return Left states what was expected, what was given, and in which option
     */
   def question(options: LearnOptions)(using scenarios: Scenarios): Either[String, LearnQuestion] =
     import options.forward
@@ -312,7 +312,7 @@ object LearnCommand:
       set
     )
 
-  /** Conditions in which a scenario's team flies: as high as it does. */
+  /** Conditions of a scenario's team, at the altitude that it flies at. */
   private def ofTeam(
       scenario: String,
       set: Map[String, String],
@@ -335,8 +335,10 @@ object LearnCommand:
         Right((least, most))
       case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
 
-  /** @param distances what so many flights in virtual time with a policy come to: [[LearnGame.came]]
-    * @param isElsewhere whether workers do it
+  /** Evaluates learned policies.
+    *
+    * @param distances results of a number of virtual flights with a policy: [[LearnGame.came]]
+    * @param isElsewhere whether workers compute
     */
   private final case class Measuring(
       judge: Judge => Evaluator,
@@ -344,12 +346,12 @@ object LearnCommand:
       isElsewhere: Boolean
   )
 
-  /** What flights in virtual time with a policy come to, flown by this process. */
+  /** Results of virtual flights with a policy, run by this process. */
   private[skein] def flown(setup: LearnSetup, policy: PolicyFile, count: Int)(using
       Scenarios
   ): Either[String, Vector[Double]] = summaries(setup, policy, count).map(_.flatMap(setup.game.came))
 
-  /** Such flights. */
+  /** Summaries of virtual flights with a policy, run by this process. */
   private[skein] def summaries(setup: LearnSetup, policy: PolicyFile, count: Int)(using
       Scenarios
   ): Either[String, Vector[FlightSummary]] =

@@ -23,19 +23,19 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   Locale.setDefault(Locale.ROOT)
   Terminal.adapt()
 
-  /** Families of policies of your own, for the duel's roles: `search`, `budget`, policy files, `--opponent`
-    * and `--fallback` know them by name. It is read before the object's own fields are set, so it must not
+  /** Your own families of policies, for the duel's roles: `search`, `budget`, policy files, `--opponent` and
+    * `--fallback` accept their names. Read before the object's own fields are initialised, so it must not
     * refer to them.
     */
   def policyFamilies: Seq[PolicyFamily] = Nil
 
-  /** Structures of plants of your own: `identify` fits them, and `--plant FILE` and `--predictor FILE` know
-    * them. It is read as [[policyFamilies]] is.
+  /** Your own structures of plants: `identify` fits them, and `--plant FILE` and `--predictor FILE` accept
+    * them. Read as early as [[policyFamilies]].
     */
   def structures: Seq[Structure] = Nil
 
-  /** Loops of your own: `fly` and `spread` fly them by `--loop`, and `report` and `replay` know them. It is
-    * read as [[policyFamilies]] is.
+  /** Your own loops: `fly` and `spread` run them by `--loop`, and `report` and `replay` accept them. Read as
+    * early as [[policyFamilies]].
     */
   def loops: Seq[OwnLoop] = Nil
 
@@ -44,7 +44,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   private def program = getClass.getName.stripSuffix("$")
 
-  /** By what they are for, as `--help` lists them. */
+  /** The commands by purpose, as `--help` lists them. */
   private val groups: Seq[(String, Seq[Command])] = Seq(
     "Fly" -> Seq(
       FlyCommand(),
@@ -79,7 +79,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     if !Edge.isInterrupted then
       sys.exit(if status == 0 then written(System.out, FileOutputStream(FileDescriptor.out)) else status)
 
-  /** What was said must have come through. Who closes a pipe has seen enough of it. */
+  /** Flushes the outputs; a reader that closed its pipe early is no failure. */
   private[skein] final def written(out: PrintStream, again: OutputStream): Int =
     val why = Option.when(out.checkError()):
       try
@@ -95,8 +95,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   /** Runs one command, for tests.
     *
-    * @return the exit status: 0 success; 1 failure, or something that cannot be done; 2 unknown options, or
-    *   values of the wrong kind
+    * @return the exit status: 0 success; 1 failure, or a request that cannot be fulfilled; 2 unknown options,
+    *   or values of the wrong kind
     */
   final def run(arguments: Seq[String]): Int =
     arguments.headOption match
@@ -125,7 +125,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
             )
             2
 
-  /** Says what nothing expected, last, behind whatever other threads still print.
+  /** Reports an unexpected exception, after all that other threads still print.
     *
     * @return an exit status of its own
     */
@@ -140,7 +140,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
         Console.err.println(s"skein $word: ended by an error that nothing expected: $error")
     1
 
-  /** Where the locale knows ASCII alone, Java is not told what else a name holds. */
+  /** Explains names that Java cannot decode because the locale is ASCII. */
   private def wrongName(mistake: InvalidPathException): String =
     if mistake.getReason.contains("unmappable") then
       s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot tell a file's name, " +

@@ -2,9 +2,9 @@ package skein.search
 
 import skein.settings.VehicleChoice
 
-/** How many episodes are flown unless told otherwise: fewer where one costs more.
+/** Default numbers of episodes: fewer where one costs more.
   *
-  * @param freshEpisodes that a search's winner is measured on
+  * @param freshEpisodes for evaluating a search's winner
   * @param landscapeEpisodes for each point of the objective's landscape
   * @param onMap points on each side of a landscape of two parameters
   * @param cellEpisodes for each cell of a budget's map
@@ -17,11 +17,11 @@ final case class Effort(
     cellEpisodes: Int,
     onCurve: Int = Landscape.OnCurve
 ):
-  /** With no more episodes for a point of the landscape than the winner is measured on. */
+  /** This effort with at most `fresh` episodes for a point of the landscape. */
   def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
 
 object Effort:
-  /** Episodes that one core flies in about half a second. */
+  /** Episodes that one core simulates in about half a second. */
   def blockEpisodes(byLanes: Boolean, vehicle: VehicleChoice): Int =
     (byLanes, vehicle.fliesInSteps) match
       case (true, false)  => 32768
@@ -34,12 +34,12 @@ object Effort:
   private val Dear   = Effort(512, 16, 21, 30)
   private val Dearer = Effort(64, 4, 13, 4)
 
-  /** Of duels.
+  /** The effort of duels.
     *
-    * @param together whether candidates that share their episodes fly by lanes
-    * @param alone whether worlds with delays of their own do
-    * @param sees whether somebody knows of the other by a sensor: what follows from images costs several
-    *   times what all else does, and more with images of a world's own
+    * @param together whether candidates with shared episodes use SIMD
+    * @param alone whether worlds with delays of their own use SIMD
+    * @param sees whether a player observes the other through a sensor: simulating images costs several times
+    *   as much as everything else, and more with images of a world's own
     */
   def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice, sees: Boolean): Effort =
     def level(byLanes: Boolean, isDear: Boolean) = (byLanes, isDear) match
@@ -52,14 +52,14 @@ object Effort:
     val worlds = level(alone, vehicle.fliesInSteps || sees)
     Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
 
-  /** Fresh episodes of a team: so few that the scalar engine, too, flies them in seconds. */
+  /** Fresh episodes of a team: few enough for the scalar engine to simulate in seconds. */
   val TeamsFresh = 256
 
-  /** Of flights in virtual time, some a second. */
+  /** The effort of flights in virtual time, which run at some a second. */
   val OfFlights: Effort = Effort(16, 1, 5, 2, onCurve = 9)
 
   def ofTeam(byLanes: Boolean): Effort =
     if byLanes then Effort(TeamsFresh, 16, 21, 300) else Effort(TeamsFresh, 2, 7, 10)
 
-  /** Of a team whose measures are of whole flights, by the scalar engine. */
+  /** The effort of a team whose measures are of whole flights, with the scalar engine. */
   val OfScalarFlights: Effort = ofTeam(byLanes = false).copy(cellEpisodes = 4)
