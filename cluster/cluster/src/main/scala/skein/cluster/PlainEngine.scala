@@ -6,9 +6,9 @@ import javax.net.ssl.{SSLContext, SSLEngine, SSLEngineResult, SSLException, SSLS
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.remote.artery.tcp.SSLEngineProvider
 
-/** Of connections on loopback without certificates: passes bytes on as they are, and refuses a connection
-  * whose frames have false lengths ([[FrameCheck]]). An engine of TLS is where Pekko's transport lets others
-  * see what comes; this one encrypts nothing. Its handshake is over with the first call.
+/** An engine for connections on loopback without certificates: passes bytes through unchanged, and refuses a
+  * connection whose frames have invalid lengths ([[FrameCheck]]). Pekko's transport lets only a TLS engine
+  * see received bytes; this one encrypts nothing. Its handshake ends with the first call.
   */
 private[cluster] final class PlainEngine(mostFrame: Int) extends SSLEngine:
   private val check     = FrameCheck(mostFrame)

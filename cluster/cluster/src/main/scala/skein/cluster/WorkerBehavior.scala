@@ -8,12 +8,13 @@ import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
 import skein.units.Decimals.fixed
 
-/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the
-  * question before it is a member, and for blocks once it is: whoever is no member would not be missed.
+/** Requests blocks from the coordinator, has them computed by a pool of threads, and answers. It requests the
+  * question before it is a member, and blocks once it is: the loss of a process that is no member would go
+  * unnoticed.
   *
-  * @param pool of as many threads as cores
-  * @param tell what it does, in lines for a person
-  * @param onEnd why it ended
+  * @param pool with as many threads as cores
+  * @param tell called with progress, in lines for a person
+  * @param onEnd called with the reason of the end
   */
 private[cluster] final class WorkerBehavior private (
     context: ActorContext[WorkerBehavior.Command],
@@ -135,7 +136,7 @@ private[cluster] object WorkerBehavior:
       solvers: BlockSolverFactory,
       startedAt: Long
   ):
-    /** For a person; it started at `startedAt` by `System.nanoTime`. */
+    /** The block's age for a person; it started at `startedAt` by `System.nanoTime`. */
     def age: String = s"${((System.nanoTime() - startedAt) * 1e-9).fixed(1)} s after its start"
 
   enum End:
