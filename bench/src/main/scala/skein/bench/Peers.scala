@@ -7,8 +7,8 @@ import scala.sys.process.*
 /** How fast is forward simulation beside its peers? On one machine in one run: a hand-vectorised C kernel of
   * the yardstick's work, its Numba and JAX twins and ours; the `stream` loop's full event timing; the
   * quadrotor beside Crazyflow. All sides take turns, round after round, on one thread and on all cores, so
-  * that other load meets all alike; the best round of each counts. Every row prints a witness. `bench/peers`
-  * prepares the tools and runs this.
+  * that other load affects all equally; the best round of each counts. Every row prints a witness.
+  * `bench/peers` prepares the tools and runs this.
   *
   * Arguments: rounds, the compiled C program, Python with the twins' packages (`-`: without them), the folder
   * of the peers' programs.
@@ -84,7 +84,7 @@ object Peers:
 
   private val InPython = """(?s).*rate ([\d.]+) cpu ([\d.]+) witness ([-\d.]+).*""".r
 
-  /** On so many cores. */
+  /** Runs a Python twin on `threads` cores. */
   private def inPython(python: String, program: Path, twin: String, threads: Int): Either[String, Rate] =
     val errors  = new StringBuilder
     val command = Seq("taskset", "-c", s"0-${threads - 1}", python, program.toString, twin)
