@@ -3,10 +3,10 @@ package ridge
 import skein.policy.*
 import skein.units.*
 
-/** Flies north at a height above the ground ahead, and waits while the other would be lost from view: a
-  * policy in three dimensions, without a memory.
+/** Flies north at a height above the ground ahead, and waits while it would lose sight of the other vehicle:
+  * a policy in three dimensions, without a memory.
   *
-  * @param laneM east, that it keeps to
+  * @param laneM its position east, which it keeps
   */
 final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Double, other: Int)
     extends AgentPolicy:
