@@ -5,7 +5,7 @@ import java.lang.classfile.{ClassFile, CodeElement}
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 
-/** What a flight computes with must be the same on every machine, and so must a recording. The functions of
+/** A flight's computations must have equal bits on every machine, and so must a recording. The functions of
   * `java.lang.Math` listed here may differ in the last bit between processors; those of `StrictMath` may not.
   */
 class StrictMathSuite extends munit.FunSuite:

@@ -5,7 +5,7 @@ import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.util.Using
 
-/** Every command that a program of one's own has, as a command. */
+/** Runs every command of a user's own program. */
 class CommandsSimulation extends munit.FunSuite:
   override val munitTimeout: Duration = 3.minutes
 
@@ -15,7 +15,7 @@ class CommandsSimulation extends munit.FunSuite:
       Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
   )
 
-  /** Exit status, and both outputs together. */
+  /** Exit status, and both outputs combined. */
   private def run(words: String*): (Int, String) =
     val said   = ByteArrayOutputStream()
     val stream = PrintStream(said, true)

@@ -9,7 +9,7 @@ import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{DuckDbRecorder, RecordingReader}
 import skein.units.*
 
-/** Over TCP on loopback, in real time, recorded on disk. */
+/** Drives over TCP on loopback, in real time, recorded on disk. */
 class RoverLiveSuite extends munit.FunSuite:
   import Program.scenarios
   private given system: ActorSystem = ActorSystem("rovers")

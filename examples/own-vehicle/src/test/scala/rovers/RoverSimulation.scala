@@ -21,14 +21,14 @@ import skein.units.*
 import skein.vehicle.{PlantModel, Setpoint, VehicleModel}
 import skein.vtime.VirtualTime
 
-/** Stays where it was seen: a model without a plant. */
+/** A model without a plant: the vehicle stays at its last reading. */
 private object Coasting extends VehicleModel[Kinematics]:
   def start(seen: Kinematics): Kinematics                                         = seen
   def advanced(state: Kinematics, setpoint: Setpoint, span: Span): Kinematics     = state
   def corrected(state: Kinematics, seen: Kinematics, sinceSeen: Span): Kinematics = seen
   def kinematics(state: Kinematics): Kinematics                                   = state
 
-/** Two robots drive round a circuit whose turns are narrower than they drive at that speed. */
+/** Two robots on a circuit whose turns are too narrow for their speed. */
 private final case class Laps(mps: Double = 2) extends Scenario:
   val circuit: Racetrack    = Racetrack(straightM = 8, radiusM = 1.5)
   def agents: Vector[Agent] =
@@ -72,11 +72,11 @@ class RoverSimulation extends munit.FunSuite:
     assert(recorder.writeTo(file).isRight)
     file
 
-  /** By the command `replay`. */
+  /** Replays a recording by the command `replay`. */
   private def replayed(recorder: MemoryRecorder): Replayed =
     Replayed.of(fileOf(recorder)).fold(fail(_), identity)
 
-  /** How far the hound is off the place behind the hare after 10 s, on the average, m. */
+  /** Mean distance of the hound from its goal behind the hare after 10 s, m. */
   private def offM(recording: Recording): Double =
     val hare  = recording.readings.filter(_.vehicle == "Hare").map(_.state)
     val hound = recording.readings.filter(_.vehicle == "Hound").map(_.state)
@@ -157,7 +157,7 @@ class RoverSimulation extends munit.FunSuite:
     val page   = Files.readString(report.page)
     for id <- Seq("stream-rovers-virtual", "turns-rovers-virtual") do assert(page.contains(id), id)
 
-  /** What `identify` writes of a minute's drive. */
+  /** The output of `identify` for a minute's drive. */
   private def identified(seed: Long, link: LatencyProfile): Path =
     val folder = Files.createTempDirectory("rovers")
     val file   = folder.resolve("drive.duckdb")

@@ -41,7 +41,6 @@ final case class BudgetMap(
       case Bound.Below(mean)  => s"does not hold $within even at ${ms(mean)} ms mean and $jitter $end"
       case Bound.Unknown      => s"no link of the map has $jitter $end"
 
-  /** One line of text for each marked link. */
   def markLines: Vector[String] = marks.map: mark =>
     val (factor, offUnit)                = tolerance.shown(unit)
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
@@ -61,7 +60,6 @@ final case class BudgetMap(
   def isOnMap(mark: BudgetMark): Boolean =
     mark.roundTrip.mean.toMillis <= budget.meansMs.last && mark.roundTrip.jitter.toMillis <= budget.jittersMs.last
 
-  /** The rows of the CSV table, one per cell. */
   def csvRows: Vector[String] = cells.map: (cell, count) =>
     Vector(periodMs, cell.meanMs, cell.jitterMs, cell.objective, cell.sd, count, cell.deviation).mkString(",")
 

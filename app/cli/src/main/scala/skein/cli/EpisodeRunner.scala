@@ -17,7 +17,6 @@ private[cli] trait EpisodeRunner:
 
 private[cli] object EpisodeRunner:
 
-  /** Evaluates in this process. */
   private def here(ready: ReadySearch, threads: Int): EpisodeRunner = new EpisodeRunner:
     private val judges                             = ready.judges(threads)
     def apply(judge: Judge): Evaluator             = judges(judge)

@@ -25,7 +25,6 @@ private object Misuse:
         .mkString("\n")
     case other => other.toString
 
-  /** The message for an unknown option. */
   def noSuch(word: String, options: Seq[String]): String =
     val option = word.takeWhile(_ != '=')
     renamed.get(option).flatMap(_.find(options.contains)) match

@@ -44,7 +44,6 @@ private[cli] final class OnShow(
     case FlightControl.Continue => requests.continue(id, "continued from the page")
     case FlightControl.Abort    => requests.stop(id, "ended from the page")
 
-  /** Sets the flights that are running. */
   def flying(flights: LiveFlights): Unit =
     for
       (id, graph) <- flights.graphs

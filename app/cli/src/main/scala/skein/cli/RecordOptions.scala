@@ -70,7 +70,6 @@ object RecordOptions:
   final class Sinks(options: RecordOptions, folder: Path, scene: Scene):
     private val opened = ConcurrentLinkedQueue[(flight: String, sink: RowSink)]()
 
-    /** Opens the outputs of a starting flight. */
     def open(plan: FlightPlan, heading: RecordingHeader): Either[String, Vector[RowSink]] =
       val (wrong, sinks) = options.sinksOf(plan, folder, heading, scene).partitionMap(identity)
       if wrong.isEmpty then

@@ -16,7 +16,7 @@ import skein.scenario.{ScenarioKind, Scenarios}
   * object Patrol extends SkeinApp(ScenarioKind(OverTheRidge()))
   * }}}
   *
-  * @param kinds at least one; the first is flown where none is named
+  * @param kinds at least one; the first is the default
   */
 open class SkeinApp(kinds: ScenarioKind[?]*):
   // First of all: numbers, dates and what libraries do with letters are the same wherever the machine stands.

@@ -61,7 +61,6 @@ private[cli] object SpreadQuestion:
           "--link, --policy, --predictor or --scene names another content here?"
     yield () => (Ready(settings).answer(_)): BlockSolver
 
-  /** A question that is ready to run. */
   final case class Ready(settings: FlySettings)(using Scenarios):
     private val plans = settings.plans
 

@@ -90,7 +90,6 @@ object LatencyFigure:
     val longest = samples.most.min(1.25 * samples.p99)
     profile.fold(longest)(known => known.quantile(1).toMillis.max(longest))
 
-  /** Legend of the marks that are drawn. */
   private def legend(measured: Seq[Measured], width: Double): Drawing =
     val profiles = measured.flatMap(one => profileOf(one.link))
     val items    = Seq(

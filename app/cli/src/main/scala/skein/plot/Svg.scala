@@ -23,7 +23,6 @@ object Svg:
       drawing.shapes.map(render)
     )
 
-  /** A complete SVG file with its XML header. */
   def file(drawing: Drawing, description: String): String =
     s"""<?xml version="1.0" encoding="UTF-8"?>\n${element(drawing, description).render}\n"""
 

@@ -45,7 +45,6 @@ object PlanTable:
 
   val title = "Plans"
 
-  /** Explains the table's columns. */
   def note(set: FlightSet): String =
     "Candidates: manoeuvres simulated per vehicle and tick, in all searches together. Slices: steps in " +
       "which searches improved the plans of all vehicles together. ms: from the tick to the decision. " +

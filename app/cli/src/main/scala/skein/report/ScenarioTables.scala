@@ -35,7 +35,6 @@ object ScenarioTables:
       NamedScene.shipped(flown.scenario.scene).exists(!_.isEmpty) || flown.flights.exists(contacts(_) > 0)
     )("contacts")
 
-  /** Number of contacts of vehicles. */
   private def contacts(flight: ScenarioFlights.Flown): Int = flight.summary.count(EventKind.Contact)
 
   /** Inserts a cell after the first measure, if there is any. */
@@ -71,7 +70,6 @@ object ScenarioTables:
       )
   )
 
-  /** Explains the table of [[violations]]. */
   def limits(scenario: Scenario): String =
     s"Limits: ${scenario.limits.map(_.text).mkString("; ")}. A row is a stretch of time in which a " +
       s"vehicle or a pair broke one; the first $MostListed of each flight and limit are listed."
@@ -128,6 +126,5 @@ object ScenarioTables:
     case Some(value) if measured.measure.isCount => value.fixed(0)
     case Some(value)                             => value.fixed(2)
 
-  /** Explains the table's columns. */
   def note(scenario: Scenario): String =
     s"${scenario.note} Off truth: root mean square distance of the vehicles from where they are in the paused truth at the same time.".trim

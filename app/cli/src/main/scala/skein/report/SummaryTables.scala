@@ -114,7 +114,6 @@ object SummaryTables:
         spread(seen.errorsM, 2)
     )
 
-  /** Explains the table of [[seen]]. */
   val seenNote: String =
     "Images: searched until the last detection, if there was one. Found: detections that were used. " +
       "Took: duration of recognition. Age: from the exposure to each decision made from the detection. " +
@@ -213,7 +212,6 @@ object SummaryTables:
   /** Mean interval between moves, in periods, from which a remark is made: some moves are always late. */
   private val WaitingFrom = 1.25
 
-  /** Explains the table of [[twins]]. */
   val twinsNote: String =
     "Kolmogorov-Smirnov distances between live and virtual decisions, by role: of the age of the " +
       "vehicle's own data, and of the time since its last move. 0: distributed alike; 1: no overlap. " +

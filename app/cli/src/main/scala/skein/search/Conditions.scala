@@ -27,7 +27,6 @@ final case class Conditions(
     movesInFlight: Int = Moves.MostOutstanding
 ) derives ReadWriter:
 
-  /** The loop's description for a person. */
   def loopText: String =
     if movesInFlight == Moves.MostOutstanding || loop == LoopKind.Paused.label then loop
     else s"$loop with ${Decimals.counted(movesInFlight, "move")} in flight"

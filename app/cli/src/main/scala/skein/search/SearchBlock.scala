@@ -29,7 +29,6 @@ final case class SearchBlock(
       val values = by(judge).valuesUnless(() => false)(candidates, episodes).get
       Answer.Values(values.flatMap(_.toVector))
 
-  /** Decodes a block's answer. */
   private def read(answer: ArraySeq[Byte]): Either[String, Answer] =
     BlockBytes
       .read[Answer](answer, "an answer to a block of a search")

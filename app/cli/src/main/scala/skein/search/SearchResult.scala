@@ -14,7 +14,6 @@ final case class SearchResult(ready: ReadySearch, found: Found):
 
   private val parameters = ready.space.axes.map(_.name).zip(found.best)
 
-  /** The result in lines for the terminal. */
   def summary: String =
     val shown = parameters.take(MostShown).map((name, value) => s"$name = ${value.significant(4)}")
     val more  = parameters.size - shown.size
@@ -25,7 +24,6 @@ final case class SearchResult(ready: ReadySearch, found: Found):
 
   private def interval(tally: RunningStats) = SearchResult.interval(tally, ready.unit)
 
-  /** The result and the baseline as a table. */
   def section: Section =
     def row(name: String, parameters: Seq[(String, Double)], tally: RunningStats, engine: String) = Vector(
       name,

@@ -221,7 +221,6 @@ final case class LearnSetup(
   /** Whether learning used the scenario's own policies for all others, as its flights do. */
   def isFlownAsTaught: Boolean = game.opponent.forall(other => other == PolicyFile.paperOf(other.role))
 
-  /** The policy with an actor's weights. */
   def policy(weights: Vector[Double]): PolicyFile =
     PolicyFile(role, family, weights ++ bounds)
 

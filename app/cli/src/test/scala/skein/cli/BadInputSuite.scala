@@ -7,7 +7,7 @@ import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** What is wrong is told in a line, before anything long is begun. */
+/** Mistakes are reported in one line each, before any long work begins. */
 class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 

@@ -3,7 +3,7 @@ package skein.cli
 import com.typesafe.config.ConfigFactory
 import java.util.concurrent.TimeoutException
 
-/** Commands on a machine that has much else to do. */
+/** Start of commands on a busy machine. */
 class BusyStartSuite extends munit.FunSuite:
 
   test("what a start waits for may take ten minutes, and an accepted connection a minute"):

@@ -21,13 +21,13 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       .split(' ')
       .toSeq
 
-  /** Half a second's blocks would be too few to be interrupted in. */
+  /** Options for blocks large enough that a search can be interrupted between them. */
   private def elsewhere(workers: Int) = Seq("--workers", workers.toString, "--block", "256")
 
   private lazy val parent          = temporaryFolder()
   private def folder(name: String) = parent.resolve(name)
 
-  /** By this process alone. */
+  /** The result of a search in this process alone. */
   private lazy val alone: Path =
     searched(question ++ Seq("--out", folder("alone").toString))
     folder("alone")
@@ -48,7 +48,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     val file = folder.resolve(s"worker-$worker.log")
     if Files.exists(file) then Files.readString(file) else ""
 
-  /** Asks again and again, since other processes tell when they have come so far. */
+  /** Polls a condition that other processes bring about. */
   private def until(isSo: => Boolean)(unless: => Boolean): Boolean =
     val deadline = 4.minutes.fromNow
     while !isSo && !unless && deadline.hasTimeLeft() do Thread.sleep(20)

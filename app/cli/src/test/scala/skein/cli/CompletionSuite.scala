@@ -2,7 +2,7 @@ package skein.cli
 
 import scala.sys.process.{Process, ProcessLogger}
 
-/** What shells are told; bash is asked itself. */
+/** Completion scripts, tested with bash itself. */
 class CompletionSuite extends munit.FunSuite:
 
   private def printed(words: String*): (Int, String) =

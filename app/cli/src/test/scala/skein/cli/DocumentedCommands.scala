@@ -18,14 +18,14 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.{Lengthy, Optimised}
 import skein.units.Clock
 
-/** Flights by the clock. */
+/** Runs the documented flights in real time. */
 class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Flight), Lengthy
 
-/** What takes several processes. */
+/** Runs the documented commands that use several processes. */
 class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Lengthy,
       Optimised
 
-/** Forward simulation, by vectors. */
+/** Runs the documented commands of forward simulation with SIMD. */
 class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Lengthy,
       Optimised
 
@@ -65,7 +65,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       .find(_.toString.endsWith("scenario.conf"))
       .get
 
-  /** Of a pursuer that sees; as long as a model needs to be identified. */
+  /** A recording with camera images, long enough to identify a sensor model. */
   private lazy val seeing: Path =
     made("fly", "--scenario", "blind-pursuit", "--clock", "virtual", "--loop", "stream", "--link", "none")(
       "--duration",
@@ -115,7 +115,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         out.toString
       )).toSeq.flatten
 
-  /** The words but for options that others state, and their values. */
+  /** The words without the options that `others` set, and their values. */
   private def without(words: Seq[String], others: Seq[String]): Seq[String] =
     words.indices
       .filterNot(i =>
@@ -125,7 +125,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       )
       .map(words)
 
-  /** As many as are flown, where a command says so. */
+  /** Reduces the number of flights, where a command states one. */
   private def few(words: Seq[String]): Seq[String] = words.indexOf("--seeds") match
     case -1 if words.head == "spread"           => words ++ Seq("--seeds", "2")
     case at if at > 0 && words.head == "spread" => words.updated(at + 1, "2")
@@ -137,12 +137,12 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     assertEquals(status, 0, told)
     out
 
-  /** Exit status, and everything that was said. */
+  /** Exit status and all output of a command. */
   private def run(words: Seq[String]): (Int, String) =
     val ran = Ran.of(Main.run(words))
     (ran.status, ran.said)
 
-  /** A flight by the clock that a busy machine may have spoilt flies once more, and longer. */
+  /** Runs a flight in real time; repeats it once, longer, if a busy machine may have disturbed it. */
   private def flown(words: Seq[String]): (Int, String) =
     def out                    = Files.createTempDirectory(folder, "out").resolve("flown")
     def isSilent(said: String) =
@@ -157,7 +157,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         assume(false, "inconclusive")
       second
 
-  /** Until it says that it listens; then it is told to end. */
+  /** Runs a command until it prints that it listens, then stops it. */
   private def runUntilItListens(words: Seq[String]): (Int, String) =
     val said  = ByteArrayOutputStream()
     val ended = Future(blocking(Console.withOut(said)(Console.withErr(said)(Main.run(words)))))
@@ -169,7 +169,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       Thread.sleep(20)
     (Await.result(ended, 1.second), said.toString)
 
-  /** The same in a process of its own, which is ended as by Ctrl-C. */
+  /** Runs such a command in a process of its own, and stops it as Ctrl-C would. */
   private def runAProcessUntilItListens(words: Seq[String]): (Int, String) =
     val jvm     = ProcessHandle.current.info.command.get
     val agents  = java.lang.management.ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
@@ -303,24 +303,24 @@ object DocumentedCommands:
   enum Kind:
     case Flight, Cluster, Search, Other
 
-  /** The guides' flights by the clock, where the clock is not what they are about: those of the README are
-    * flown live.
+  /** Runs the guides' real-time flights in virtual time, where the clock is not their subject; those of the
+    * README run live.
     */
   private def inVirtualTime(command: String, readme: Seq[String]): String =
     val isLive = Seq("--clock", "--view", "--record", "--simulator", "unix:").exists(command.contains)
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
 
-  /** Not run: what stands for many commands, and `identify` where it names no recording. Examples show
-    * `./sbtw …` and `python …` besides. The tests of those projects run the same programs (`./sbtw
-    * NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other Python programs want frameworks that
-    * are not installed here.
+  /** Commands that are not run: placeholders for many commands, and `identify` without the name of a
+    * recording. Examples also show `./sbtw …` and `python …`. The tests of those projects run these programs
+    * (`./sbtw NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other Python programs need
+    * frameworks that are not installed here.
     */
   private def leftOut(command: String): Boolean =
     val standsForMany = Seq("--algorithm …", "--scenario NAME", "--loop …").exists(command.contains)
     standsForMany || command == "identify"
 
-  /** Commands that suites of their own run, with options that make them short. */
+  /** Commands that other suites run, with options that make them short. */
   private val runElsewhere: Map[String, Class[?]] = Map(
     "search --family lead-pursuit --workers 2" -> classOf[ClusterCommandsLiveSuite],
     "torture --workers 2"                      -> classOf[ElsewhereLiveSuite],

@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.file.Path
 
-/** Programs that end while they run: in other processes. */
+/** Programs that are ended while they run, each in a process of its own. */
 class EdgeLiveSuite extends munit.FunSuite:
 
   for place <- Seq("main", "virtual") do

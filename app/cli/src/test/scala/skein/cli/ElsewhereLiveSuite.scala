@@ -6,8 +6,8 @@ import scala.util.Using
 import skein.blocks.Ledger
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Flights and lessons by processes of this machine, over loopback. Like this JVM they spare optimising,
-  * which takes more of the processor's time than so few flights.
+/** Flights and lessons by processes of this machine, over loopback. Like this JVM they skip optimising
+  * compilation, which takes more processor time than these few flights.
   */
 class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 

@@ -6,12 +6,11 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Commands as users start them, each in a process of its own, in environments that are not ours. */
+/** Commands as users start them, each in a process of its own, in unusual environments. */
 class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private case class Ended(status: Int, out: String, err: String)
 
-  /** @param before what the shell does first, for example a limit
-    */
+  /** @param before shell commands to run first, for example a limit */
   private def skein(in: Path, before: String, jvm: Seq[String], arguments: String*): Ended =
     val agent =
       ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.filter(_.startsWith("-javaagent"))

@@ -6,7 +6,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.testing.TemporaryFolders
 
-/** `./skein` itself, in a checkout whose build is a script, so that each start takes a moment. */
+/** The script `./skein`, in a checkout with a fake build, so that each start takes a moment. */
 class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
@@ -38,7 +38,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     Files.writeString(file, s"#!/usr/bin/env bash\n$body\n")
     file.toFile.setExecutable(true): Unit
 
-  /** Exit status, and both outputs together. */
+  /** Exit status, and both outputs combined. */
   private def run(in: Path, environment: Map[String, String], command: String*): (Int, String) =
     val builder = ProcessBuilder(command*).directory(in.toFile).redirectErrorStream(true)
     builder.environment.keySet.asScala.toSeq

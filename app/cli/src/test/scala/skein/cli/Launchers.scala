@@ -7,12 +7,12 @@ import scala.concurrent.ExecutionContext.Implicits.global
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 
-/** The programs' launchers, as they are started. */
+/** Starts programs through their launchers. */
 object Launchers:
   private val checkout: Path =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get.toPath
 
-  /** As `./sbtw cli/stage` makes it; it need not be there. */
+  /** The staged launcher, made by `./sbtw cli/stage`; it may not exist. */
   val staged: Path = checkout.resolve("app/cli/target/universal/stage/bin/skein")
 
   private def prepared(command: Seq[String], javaHome: String): ProcessBuilder =
@@ -20,13 +20,13 @@ object Launchers:
     builder.environment.put("JAVA_HOME", javaHome): Unit
     builder
 
-  /** Starts a launcher; what it says is written to `log`. */
+  /** Starts a launcher; its output is written to `log`. */
   def start(launcher: Path, log: Path, words: Seq[String]): Process =
     prepared(launcher.toString +: words, sys.props("java.home")).redirectOutput(log.toFile).start()
 
   /** Runs it to its end, within minutes.
     *
-    * @return its exit status, and what it said
+    * @return its exit status and output
     */
   def run(
       launcher: Path,

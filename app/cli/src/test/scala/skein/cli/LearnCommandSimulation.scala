@@ -276,7 +276,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
 private def LearnOptionsOf(words: Seq[String]): LearnOptions =
   mainargs.ParserForClass[LearnOptions].constructOrThrow(words)
 
-/** Its quantity fails from some time on, after the policy has been judged for the first time. */
+/** A scenario whose quantity starts to fail after the policy was first evaluated. */
 final case class LearnedUntilItFails() extends Scenario:
   def agents: Vector[Agent] = Vector(
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Surrounding(1, 8, 4)),

@@ -28,7 +28,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
     Vector.tabulate(setup.family.space.dimension)(number => math.sin(number.toDouble))
   )
 
-  /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
+  /** A worker that knows only the question's bytes; it answers the last block first. */
   private lazy val worker: BlockExecutor =
     val solver =
       QuestionKind.solvers.of(QuestionKind.Learn.of(LearnWork.question(setup))).fold(fail(_), identity)()

@@ -12,7 +12,9 @@ import skein.settings.FlySettings
 import skein.policy.Role
 import skein.optimise.Objective
 
-/** Skein does the same where i has no dot, where digits are Arabic, and where the point is a comma. */
+/** Skein's behaviour does not depend on locales in which i has no dot, digits are Arabic, or the decimal
+  * point is a comma.
+  */
 class LocaleSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
@@ -74,7 +76,7 @@ class LocaleSuite extends munit.FunSuite:
   private def folderOf(some: Class[?]): Path =
     Path.of(some.getProtectionDomain.getCodeSource.getLocation.toURI)
 
-  /** Of our modules' classes; what others wrote stands in jars. */
+  /** Folders with our own modules' classes; libraries are in jars. */
   private def folders: Seq[Path] =
     sys.props(
       "java.class.path"
@@ -86,7 +88,7 @@ class LocaleSuite extends munit.FunSuite:
     try found.iterator.asScala.filter(_.toString.endsWith(".class")).toVector
     finally found.close()
 
-  /** Every call: where, and the method's name with its type. */
+  /** Every call in a class: its place, and the method's name with its type. */
   private def calls(file: Path): Seq[(String, String)] =
     for
       method <- ClassFile.of().parse(file).methods.asScala.toSeq

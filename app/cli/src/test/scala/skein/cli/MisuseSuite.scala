@@ -6,7 +6,7 @@ import skein.scenario.Scenarios
 class MisuseSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  /** Exit status and what was said before the hint at `--help`. */
+  /** Exit status and the output before the hint at `--help`. */
   private def misused(command: Command, arguments: String*): (Int, Seq[String]) =
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.err.linesIterator.toSeq.dropRight(1))

@@ -4,7 +4,7 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** A few of what `tryMutants` tries by the thousand. */
+/** Tries a few of the mutants of `tryMutants`. */
 class MutatedFilesSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 

@@ -1,6 +1,6 @@
 package skein.cli
 
-/** Walks all commands: one word means one thing in every one of them. */
+/** Compares the options of all commands: a word has one meaning in all of them. */
 class OptionsAgreeSuite extends munit.FunSuite:
   private val options: Seq[(Command, CommandOption)] =
     for command <- Main.commands; option <- command.options yield (command, option)

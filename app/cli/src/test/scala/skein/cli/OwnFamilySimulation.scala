@@ -6,7 +6,7 @@ import skein.policy.*
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
-/** Turns towards where the opponent is, the less the older that is known to be. */
+/** Turns towards the opponent's last known position, less the older it is. */
 final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
   def initial: Double = 0
 

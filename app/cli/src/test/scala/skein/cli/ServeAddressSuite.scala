@@ -3,7 +3,7 @@ package skein.cli
 import skein.airsim.WorldSettings
 import skein.link.Address
 
-/** Where `serve` listens. */
+/** Chooses the listening address of `serve`. */
 class ServeAddressSuite extends munit.FunSuite:
   private val world = WorldSettings.Default
 

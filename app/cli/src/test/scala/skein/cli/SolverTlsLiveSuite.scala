@@ -18,7 +18,7 @@ import skein.solver.*
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
 
-/** Solvers that show certificates, and ask for them, on loopback. */
+/** Solvers with certificates that require clients' certificates, on loopback. */
 class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given system: ActorSystem = ActorSystem("SolverTlsLiveSuite")
   private given Scenarios           = Scenarios.ours
@@ -39,7 +39,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private val loopback = Address("127.0.0.1", 0)
 
-  /** Answers what it hears, and counts it. */
+  /** A server that echoes its input, and counts it. */
   private def echoing[A](shows: SSLContext)(body: (Listening, AtomicInteger) => A): A =
     val heard = AtomicInteger()
     val echo  = Flow[ByteString].map: bytes =>

@@ -25,7 +25,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
 
   private def ready(words: String) = SpreadQuestion.Ready(options(words).settings.fold(fail(_), identity))
 
-  /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
+  /** A worker that knows only the question's bytes; it answers the last block first. */
   private def worker(words: String)(change: ArraySeq[Byte] => ArraySeq[Byte] = identity): BlockExecutor =
     val solver =
       QuestionKind.solvers.of(QuestionKind.Spread.of(question(words).bytes)).fold(fail(_), identity)()

@@ -28,7 +28,7 @@ class TortureQuestionSimulation extends munit.FunSuite, Unhurried:
     val question = TortureQuestion.of(duration, Some("unknown"), None)
     assert(clue(TortureQuestion.read(question.bytes)).left.exists(_.startsWith("--scenario: ")))
 
-/** Whose policy gives up. */
+/** A scenario whose policy throws after some time. */
 final case class Failing(afterS: Double = 4) extends Scenario:
   def agents: Vector[Agent] =
     Vector(Agent("Lone", Role("Lone"), MetresPerSecond(6), Vector3(0, 0, -10), Radians(0), GivesUp(afterS)))

@@ -16,7 +16,7 @@ import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 import skein.units.Clock
 import skein.view.{RecordedShow, Shows, ViewServer}
 
-/** Flights that are looked at while they fly: by Foxglove's own client, and in a browser. */
+/** Flights that are viewed while they run: by Foxglove's own client, and in a browser. */
 class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   import ViewLiveSuite.*
   private given Scenarios = DuelReport.scenarios
@@ -186,7 +186,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         assert(vehicle(3).num > 3)
       replayed(file, recorded)
 
-  /** What the page shows at a time is what the recording held by then. */
+  /** Checks that the page shows at a time exactly what the recording held by then. */
   private def replayed(file: Path, recorded: Recording): Unit =
     val shows = Shows()
     val rows  = RecordingReader.records(file).fold(error => fail(error.message), identity)
@@ -226,7 +226,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
 object ViewLiveSuite:
   private val SeenReadings = 60
 
-  /** For as long as a busy machine may need to serve all; they end it. */
+  /** Options for flights long enough for a busy machine to serve all viewers; the viewers end them. */
   private val Flown = Seq(
     "--loop",
     "predictive",
@@ -242,7 +242,7 @@ object ViewLiveSuite:
 
   private val Vehicles = Vector("Pursuer", "Evader")
 
-  /** What is not to move when a flight has ended. */
+  /** A script that reads what must not move once a flight has ended. */
   private val Standing =
     "[skein.flight.now, document.getElementById('time').textContent, " +
       "[...skein.flight.vehicles.values()].map(one => [one.trail.length, one.north]), " +
@@ -264,10 +264,10 @@ object ViewLiveSuite:
       ) ++
       Seq("/scene", "/vehicles/Pursuer/front_center/image", "/vehicles/Evader/front_center/calibration")
 
-  /** What waits for other processes, each on a thread of its own. */
+  /** Threads for waiting on other processes. */
   private val threads = ExecutionContext.fromExecutor(Executors.newCachedThreadPool())
 
-  /** `./skein fly --view` in this process. */
+  /** `./skein fly --view`, run in this process. */
   final class Flying(err: ByteArrayOutputStream, status: Future[Int]):
     private def told(what: String): String = s"$what(\\S+)".r
       .findFirstMatchIn(err.toString)
@@ -277,14 +277,14 @@ object ViewLiveSuite:
     def token: String = told("controls: ")
     def port: Int     = url.split(':').last.toInt
 
-    /** Until viewers find it. */
+    /** Waits until viewers can find the flight. */
     def awaitStart(flight: String): Unit =
       val listed = HttpRequest.newBuilder(URI.create(s"$url/flights")).build()
       Using.resource(HttpClient.newHttpClient()): client =>
         while !status.isCompleted && !client.send(listed, BodyHandlers.ofString).body.contains(flight) do
           Thread.sleep(50)
 
-    /** As the page's button does. */
+    /** Aborts a flight as the page's button does. */
     def abort(flight: String): Unit =
       val request = HttpRequest.newBuilder(URI.create(s"$url/flights/$flight/abort"))
         .header("X-Skein-Token", token)
@@ -293,7 +293,7 @@ object ViewLiveSuite:
       val answer = Using.resource(HttpClient.newHttpClient())(_.send(request, BodyHandlers.ofString))
       if answer.statusCode != 200 then throw IllegalStateException(answer.body)
 
-    /** Waits for its end. */
+    /** Waits for the command's end. */
     def land(): Unit =
       val ended = Await.result(status, 3.minutes)
       if ended != 0 then throw IllegalStateException(s"it ended with $ended: $err")

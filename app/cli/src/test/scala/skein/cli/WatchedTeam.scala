@@ -16,15 +16,16 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.view.{Feed, LiveShow, Shows, ViewServer}
 
-/** Twenty vehicles at 20 Hz on the page in a real browser: what the server's thread needs, and how many
-  * frames the page draws. The rows are those of a flight in virtual time, told at their times, so that
-  * nothing else runs here.
+/** Twenty vehicles at 20 Hz on the page in a real browser: processor time of the server's thread, and frames
+  * that the page draws. The rows are those of a flight in virtual time, sent at their times, so that nothing
+  * else runs here.
   *
-  * On a busy machine the frames say little: then the processor time of all of the browser's processes for one
-  * frame says how many one core could draw. `cli/Test/runMain skein.cli.watchedTeam 20 true`.
+  * On a busy machine the number of frames says little: then the processor time of all of the browser's
+  * processes for one frame states how many one core could draw. `cli/Test/runMain skein.cli.watchedTeam 20
+  * true`.
   *
-  * @param plain whether the browser draws by software alone, else by software that imitates a graphics card,
-  *   which costs more
+  * @param plain whether the browser draws by software alone, else by software that imitates a graphics
+  *   card, which costs more
   */
 @main def watchedTeam(seconds: Int, plain: Boolean): Unit =
   val settings = FlySettings(
@@ -104,7 +105,7 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
       f"load ${load()}; problems: ${seen("problems")}"
   )
 
-/** Processor time of a process and all below it, s. */
+/** Processor time of a process and all its descendants, s. */
 private def browsing(process: Process): Double =
   (process.toHandle +: process.descendants.toArray(new Array[ProcessHandle](_)).toVector)
     .flatMap(one => Try(Files.readString(Path.of(s"/proc/${one.pid}/stat"))).toOption)

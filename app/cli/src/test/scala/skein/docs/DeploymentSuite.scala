@@ -6,12 +6,14 @@ import java.util.concurrent.TimeUnit
 import org.yaml.snakeyaml.Yaml
 import scala.jdk.CollectionConverters.*
 
-/** What `deploy` holds fits together, and passes the programs that will read it, where they are installed. */
+/** The files in `deploy` agree with each other, and are accepted by the programs that will read them, where
+  * these are installed.
+  */
 class DeploymentSuite extends munit.FunSuite:
   private val root      = Documentation.root
   private val manifests = root.resolve("cluster/deploy/kubernetes")
 
-  /** A document's values by their paths; elements of lists have their place for a name. */
+  /** A document's values by their paths; list elements have their index as a name. */
   private def paths(of: Any, at: String = ""): Map[String, String] = of match
     case map: java.util.Map[?, ?] => map.asScala.flatMap((key, value) => paths(value, s"$at/$key")).toMap
     case list: java.util.List[?]  =>
@@ -31,7 +33,7 @@ class DeploymentSuite extends munit.FunSuite:
   private def below(document: Map[String, String], path: String): Set[String] =
     document.collect { case (at, value) if at.startsWith(path) => value }.toSet
 
-  /** What it says, or the reason that it is not asked. */
+  /** A program's output, or the reason why it is not run. */
   private def said(words: String*): Either[String, (Int, String)] =
     try
       val process = ProcessBuilder(words*).directory(root.toFile).redirectErrorStream(true).start()

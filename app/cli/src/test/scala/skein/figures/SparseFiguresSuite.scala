@@ -6,7 +6,7 @@ import skein.report.{DuelReport, Report, SyntheticFlight}
 import skein.scenario.Scenarios
 import skein.training.{LearnScore, LearningCurve}
 
-/** Figures of very little, and of what lies far apart. */
+/** Figures of very few data, and of data that are far apart. */
 class SparseFiguresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 

@@ -12,7 +12,7 @@ import skein.testing.TemporaryFolders
 import skein.units.Span
 import skein.vehicle.{ReducedModel, PlantModel, VehicleModel}
 
-/** AirSim's vehicles lag the more the higher they fly: models hold at one altitude. */
+/** AirSim's vehicles lag more the higher they fly: a model is valid at one altitude. */
 class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
@@ -23,12 +23,12 @@ class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
       .resolve()
   )
 
-  /** By what each vehicle's readings are carried forward. */
+  /** The models that predict each vehicle's readings. */
   private def models(hocon: String): Set[VehicleModel[?]] =
     val read = settings(hocon).fold(fail(_), identity)
     read.fleet.agents.indices.map(read.loopSettings.model).toSet
 
-  /** A model file of flights at 20 m. */
+  /** A model file, identified from flights at 20 m. */
   private val file = FunFixture[Path](
     _ =>
       Files.writeString(

@@ -15,7 +15,7 @@ import skein.testing.{Lengthy, Optimised}
 import skein.torture.Torture
 import skein.units.*
 
-/** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in
+/** A pursuer that observes the evader only through its camera, with rendering, links and recognition, in
   * virtual time.
   */
 class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:

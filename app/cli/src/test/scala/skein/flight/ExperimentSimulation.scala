@@ -9,7 +9,7 @@ import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** The paper's experiment in virtual time, held to what AirSim's own flight code gave. */
+/** The paper's experiment in virtual time, compared with the results of AirSim's own flight code. */
 class ExperimentSimulation extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 

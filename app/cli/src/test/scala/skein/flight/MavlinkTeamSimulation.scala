@@ -10,7 +10,7 @@ import skein.signal.LatencyProfile
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 import skein.units.*
 
-/** A team over one MAVLink connection, and its report. */
+/** A team over one MAVLink connection, with its report. */
 class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private given Scenarios = OurScenarios.all
 

@@ -5,7 +5,7 @@ import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.testing.Unhurried
 
-/** Real sockets, real time and real threads, of which virtual time has one. */
+/** Real sockets, real time and many threads; virtual time has only one. */
 class ReplayLiveSuite extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 

@@ -13,7 +13,7 @@ class WarmUpSimulation extends munit.FunSuite, Lengthy:
   private val settings =
     TwinFlights.settings(List(LoopKind.Paused, LoopKind.Stream), seconds = 60, LatencyProfile.vpn)
 
-  /** A second passes from reading to reading. */
+  /** A clock that advances by a second with each reading. */
   private def everySecond: Clock =
     val seconds = AtomicLong()
     Clock.ofNanos(() => Span.ofSeconds(seconds.getAndIncrement().toDouble).toNanos)

@@ -6,8 +6,8 @@ import skein.loop.{GraphLayout, LoopKind, OwnLoop}
 import skein.plot.Svg
 import skein.scenario.PaperDuel
 
-/** The graphs in `docs/pictures` are those that run. `cli/Test/runMain skein.report.drawLoops` draws them
-  * anew.
+/** The graphs in `docs/pictures` equal the running ones. `cli/Test/runMain skein.report.drawLoops` draws them
+  * again.
   */
 class LoopPicturesLiveSuite extends munit.FunSuite:
 

@@ -5,14 +5,14 @@ import skein.record.*
 import skein.scenario.Scenarios
 import skein.units.*
 
-/** What a report shows of flights that have no result, and of those that a busy machine flew. */
+/** A report on flights without a result, and on flights that a busy machine disturbed. */
 class NoResultSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
   private val paused = SyntheticFlight("paused", "none", seed = 1, seconds = 12)
   private val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 12)
 
-  /** The flight as it would be recorded if the simulator's clock showed something else, s since its begin. */
+  /** The recording as if the simulator's clock had shown another time, s since its begin. */
   private def shown(recording: Recording)(clockS: Double => Double): Recording =
     val begun = recording.readings.map(_.state.validAt).min
     recording.copy(readings = recording.readings.map(reading =>

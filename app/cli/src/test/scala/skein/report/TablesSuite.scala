@@ -18,7 +18,7 @@ import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.{brief, fixed}
 
-/** What the tables say, held against the flights that they are about. */
+/** The tables, compared with the flights that they describe. */
 class TablesSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
@@ -99,7 +99,7 @@ class TablesSuite extends munit.FunSuite:
     for title <- Seq("Prediction error", PlanTable.title, "Live against virtual", "Results: surround") do
       assert(!text.contains(title), s"$title though there is none")
 
-  /** A duel of 20 s whose pursuer is so far north of the evader. */
+  /** A duel of 20 s whose pursuer is at a given distance north of the evader. */
   private def duel(loop: String, seed: Long)(distanceM: Double => Double): Recording =
     val flight   = SyntheticFlight(loop, "direct", seed, seconds = 20)
     val like     = flight.readings.head
@@ -118,7 +118,7 @@ class TablesSuite extends munit.FunSuite:
         )
     flight.copy(readings = readings)
 
-  /** Closes at 1 m/s, is 1.01 m apart at 10 s, and falls behind at 0.2 m/s. */
+  /** A distance that falls by 1 m/s to 1.01 m at 10 s, and then grows by 0.2 m/s. */
   private def pass(more: Double)(second: Double) =
     more + (if second < 10 then 11.01 - second else 1.01 + 0.2 * (second - 10))
 

@@ -8,12 +8,11 @@ import skein.record.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** Measures of flights whose vehicles fly where they are told. */
+/** Measures of flights whose vehicles follow given trajectories. */
 class TeamMeasuresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  /** @param placeM north and east of a vehicle at a time, s
-    */
+  /** @param placeM north and east of a vehicle at a time, s */
   private def flown(scenario: Scenario, seconds: Int, loop: String = "stream")(
       placeM: (Int, Double) => (Double, Double)
   ): Recording =

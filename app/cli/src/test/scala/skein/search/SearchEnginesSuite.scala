@@ -5,7 +5,7 @@ import skein.optimise.{Evaluator, RunningStats}
 import skein.scenario.Scenarios
 import skein.testing.{Optimised, TemporaryFolders}
 
-/** What flies a search's candidates, and what its fresh episodes, is told apart. */
+/** The engine of a search's candidates, and that of its fresh episodes, are reported separately. */
 class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 

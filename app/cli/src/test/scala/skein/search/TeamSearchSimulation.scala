@@ -141,7 +141,7 @@ object TeamSearchSimulation:
   import skein.forward.{Engagement, LoopObserver, Rollout}
   import skein.simd.WorldRandom
 
-  /** Where all were in the last 10 s of an episode, flown by the scalar engine. */
+  /** Positions of all vehicles in the last 10 s of an episode, simulated by the scalar engine. */
   private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Positions] =
     val (conditions, delays) = setup.flownBy match
       case TeamEngine.Reduced(conditions, delays) => (conditions, delays)

@@ -70,7 +70,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     assert(cancelled.isIdle)
     assertEquals(cancelled.answered("anna", 0, 1)._2, AnswerKind.Repeated)
 
-  /** Flown to the end, with what its ledger holds. */
+  /** Runs a simulation to its end, and checks its result and ledger. */
   private def assertRight(flown: CoordinatorSimulation, blocks: Int, clue: String): Unit =
     assert(flown.isDone, s"$clue: not done")
     assertEquals(flown.acceptedTwice, 0, clue)

@@ -12,7 +12,7 @@ import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
 import skein.testing.TemporaryFolders
 
-/** Coordinator and worker, each alone, with what it says in a queue. */
+/** Coordinator and worker, each tested alone, with its messages in a queue. */
 class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
 
   private val question = ArraySeq[Byte](1, 2, 3)

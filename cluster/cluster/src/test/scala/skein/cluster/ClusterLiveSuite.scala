@@ -23,7 +23,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def bytes(text: String): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(text.getBytes("UTF-8"))
 
-  /** Reverses, and counts how often it was asked.
+  /** A solver that reverses bytes, and counts its calls.
     *
     * @param before called before each block
     */
@@ -62,7 +62,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       Await.result(node.close(), 30.seconds)
       ledger.close()
 
-  /** A failure of the body is told even if closing fails, too. */
+  /** Runs the body with a coordinator; the body's failure is reported even if closing fails, too. */
   private def coordinating(tls: Option[Tls])(body: Coordinating => Unit): Unit =
     Using.resource(Coordinating(temporaryFolder(), tls = tls))(body)
 
@@ -82,7 +82,9 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       WorkerNode(to, loopback, tls, cores, solvers, patience, name, build)(told.add(_): Unit)
     (node, Future(blocking(node.run())), told)
 
-  /** Folders of a lab, of a host each. Made by other processes while other tests run, which mostly wait. */
+  /** Certificate folders of a lab, one for each host. Made by other processes, since waiting for them is most
+    * of the work.
+    */
   private def certificates(hosts: String*): Future[Vector[Path]] = Future(blocking(
     Certificates.make(temporaryFolder(), hosts).fold(fail(_), identity)
   ))
@@ -154,7 +156,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     Garbage.send(port, 0 until 330)(Garbage.of)
     Garbage.send(port, 0 until 40)(Garbage.endless)
 
-  /** A worker is there before the garbage and while it comes, another one afterwards. */
+  /** Checks workers before, during and after an attack with garbage. */
   private def assertUnharmed(coordinator: Coordinating, tls: Option[Tls])(send: Int => Unit): Unit =
     val to           = coordinator.node.address
     val sent         = CountDownLatch(1)

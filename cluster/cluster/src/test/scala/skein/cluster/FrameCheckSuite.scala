@@ -13,7 +13,7 @@ class FrameCheckSuite extends munit.FunSuite:
     for length <- lengths do bytes.putInt(length).put(Array.fill(length.max(0).min(most))(-1.toByte)): Unit
     bytes.array
 
-  /** Of the same bytes, in pieces of each size. */
+  /** Checks the bytes in pieces of each size; the results must agree. */
   private def refused(bytes: Array[Byte]): Option[Int] =
     val found = (1 to bytes.length).map: size =>
       val check = FrameCheck(most)

@@ -6,16 +6,15 @@ import java.nio.ByteOrder.LITTLE_ENDIAN
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Random
 
-/** What a stranger sends, by seed: noise, other protocols, Pekko's own wire and TLS's with lengths that lie.
-  */
+/** A stranger's data, by seed: noise, other protocols, Pekko's own wire and TLS's with false lengths. */
 private[cluster] object Garbage:
 
-  /** Of the kind that the number says, in turns. */
+  /** Data of the kind that the number selects, in turns. */
   def of(number: Int): Array[Byte] =
     val random = Random(number)
     kinds(number % kinds.size)(random)
 
-  /** Sends each over a connection of its own, which it leaves in one of three ways. */
+  /** Sends each over a connection of its own, and closes it in one of three ways. */
   def send(port: Int, numbers: Range)(kind: Int => Array[Byte]): Unit =
     for number <- numbers do
       val socket = Socket("127.0.0.1", port)
@@ -28,7 +27,7 @@ private[cluster] object Garbage:
       catch case _: IOException => () // It is cut off midway.
       finally socket.close()
 
-  /** What Pekko would read for ever: [[FrameCheck]]. */
+  /** Data that Pekko would read endlessly: see [[FrameCheck]]. */
   def endless(number: Int): Array[Byte] =
     val random = Random(number)
     lying(random, if random.nextBoolean() then Int.MaxValue else -1 - random.nextInt(1 << 30))
@@ -43,7 +42,7 @@ private[cluster] object Garbage:
 
   private def text(of: String) = of.getBytes("US-ASCII")
 
-  /** What a connection of Pekko's begins with, and the stream's number. */
+  /** The first bytes of a Pekko connection, with the stream's number. */
   private def pekko(stream: Int) = text("AKKA") :+ stream.toByte
 
   private def length(bytes: Int, order: ByteOrder) = ByteBuffer.allocate(4).order(order).putInt(bytes).array

@@ -165,7 +165,6 @@ private final class DuelGroup(
       )
     java.util.Arrays.fill(beganS, 0f)
 
-  /** Starts an environment's next episode. */
   private def begin(world: Int): Unit =
     val start = Start.of(config.duel, settings.startWithinM, SplitMix64.seedOf(seeds(world), episodes(world)))
     episodes(world) += 1

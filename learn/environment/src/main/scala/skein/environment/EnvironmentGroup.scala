@@ -18,7 +18,6 @@ private trait EnvironmentGroup extends AutoCloseable:
   /** An environment that has ended and was not reset, or −1. */
   def ended: Int
 
-  /** Advances every environment by one step. */
   def step(): Unit
 
   def close(): Unit = ()

@@ -12,7 +12,7 @@ import skein.vehicle.ReducedModel
 class EnvironmentBatchSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
-  /** A batch, and what a learner reads and writes. */
+  /** A batch, with a learner's view of its buffers. */
   private final class Learner(
       settings: EnvironmentSettings,
       count: Int,
@@ -42,12 +42,12 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     def isDue(agent: Int): Boolean                 = block.get(endsAt + 2 * count + agent * count) != 0
     def reset(seeds: Long*): Unit                  = batch.reset(seeds.toArray)
 
-    /** The paper's pursuer, by what is seen. */
+    /** The paper's pursuer, computed from an observation. */
     def paper(number: Int, agent: Int = 0): Float =
       val (ahead, right) = (seen(number, 0, agent), seen(number, 1, agent))
       if right != 0 then math.signum(right) else if ahead < 0 then 1 else 0
 
-  /** What the engine says of the paper's pursuer over the link of a run. */
+  /** The engine's result for the paper's pursuer over the link of a run. */
   private def engine(settings: EnvironmentSettings, seed: Long): (DuelOutcome, Float, Float) =
     val config = settings.resolved.fold(fail(_), identity)
     val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)

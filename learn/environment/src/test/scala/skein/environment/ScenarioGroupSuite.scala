@@ -34,7 +34,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     def ended(number: Int): Boolean          = truncated(number) || buffers.terminations.get(number) != 0
     def truncated(number: Int): Boolean      = buffers.truncations.get(number) != 0
 
-  /** Towards the opponent, by what is seen. */
+  /** The turn towards the opponent, computed from an observation. */
   private def towards(right: Double): Double = (right / 10).max(-1).min(1)
 
   private object steered extends ObservingPolicy[Unit]:
@@ -190,7 +190,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     for (scenario, why) <- Seq("convoy" -> "which has cars", "forest" -> "which sees by cameras or lidars") do
       assert(clue(refused(surround.copy(scenario = scenario, set = Map.empty))).contains(why))
 
-/** An evader whose policy, and a pursuer whose quantity, answers what a setting says. */
+/** An evader's policy and a pursuer's quantity with values that settings choose. */
 final case class Own(policy: String = "", quantity: String = "") extends Scenario:
   def agents: Vector[Agent] = Vector(
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),

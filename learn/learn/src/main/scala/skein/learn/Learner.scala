@@ -21,5 +21,4 @@ trait Learner extends Saved:
   /** Learns from the rest of the round's steps. */
   def end(): Unit = ()
 
-  /** Whether all of its numbers are finite. */
   def isFinite: Boolean

@@ -12,7 +12,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
   private def begun(algorithm: Algorithm, updates: Double = 1, role: Role = Role.Pursuer) =
     LearnerInFlight.of(algorithm, settings, role, bounds, updates, 10, seed)(_ => Right(()))
 
-  /** To turn right brings the opponent near. */
+  /** Transitions in which turning right brings the opponent nearer. */
   private def transitions(count: Int, nearer: Double = 20): Vector[Transition] =
     val random = SplitMix64(seed)
     Vector.fill(count):

@@ -39,7 +39,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
     math.tanh(pass.output(0))
 
   test("a task that comes to no number, and weights that do, end the round with what it was"):
-    /** Shows or rewards what is no number at its last step. */
+    /** A task with an observation or reward of NaN at its last step. */
     final class Broken(reward: Float, shown: Float) extends SmallTask(4, 2, 1):
       private var steps                    = 0
       protected def start(row: Int): Unit  = ()

@@ -2,7 +2,7 @@ package skein.learn
 
 import skein.signal.SplitMix64
 
-/** What each learner's update goes by, against its definition computed otherwise. */
+/** Each learner's update, compared with an independent computation of its definition. */
 class UpdateSuite extends munit.FunSuite:
   private val settings =
     LearnerSettings(hidden = Vector(6), discount = 0.9, rate = 1e-2, batch = 4, replay = 16, randomSteps = 0)

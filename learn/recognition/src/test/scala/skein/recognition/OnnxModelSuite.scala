@@ -12,7 +12,7 @@ class OnnxModelSuite extends munit.FunSuite:
 
   override def afterAll(): Unit = model.close()
 
-  /** Grey 10, and one pixel of the given blue, green, red. */
+  /** A grey image of value 10, with one pixel of the given blue, green, red. */
   private def image(blue: Int, green: Int, red: Int): Image =
     val bytes = Array.fill[Byte](8 * 4 * 3)(10)
     bytes(33) = blue.toByte

@@ -12,7 +12,7 @@ import skein.signal.{LatencyProfile, SplitMix64}
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Policies of ONNX files beside onnxruntime's own evaluation, and those that only it runs. */
+/** Policies of ONNX files compared with onnxruntime's own evaluation, and those that only it can run. */
 class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
   for name <- Seq("learned:64x64", "learned:32tanhx32tanh:clip") do
     folder.test(s"$name: onnxruntime answers what our network does, within 2e-6"): folder =>

@@ -4,7 +4,9 @@ import java.nio.ByteBuffer
 import java.nio.file.Path
 import skein.testing.Optimised
 
-/** The shipped detector on images of a seed that it was not taught by. `measureDetector` has more of them. */
+/** The shipped detector on images of a seed that its training did not use. `measureDetector` uses more of
+  * them.
+  */
 class VehicleDetectorSuite extends munit.FunSuite, Optimised:
   private val camera = DetectorAccuracy.Camera
 

@@ -14,8 +14,8 @@ class FramesSuite extends munit.FunSuite:
 
   private def ms(instant: Instant): Long = instant.toNanos / 1_000_000
 
-  /** A frame is asked for each 10 ms; `frames` gives each one's exposure and the delay of its answer, ms, or
-    * a failure.
+  /** Requests a frame each 10 ms; `frames` has each one's exposure and the delay of its answer, ms, or a
+    * failure.
     */
   private def taken(
       slow: FiniteDuration = Duration.Zero,

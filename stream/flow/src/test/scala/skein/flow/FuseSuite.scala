@@ -9,7 +9,7 @@ import skein.vtime.VirtualTime
 class FuseSuite extends munit.FunSuite:
   private def at(ms: Int): Instant = Instant.Epoch + Span.ofMillis(ms)
 
-  /** On its way north at 8 m/s. */
+  /** A measurement of a vehicle that flies north at 8 m/s. */
   private def measured(ms: Int, variance: Double = 0.01) =
     Measurement(at(ms), Vector3(0.008 * ms, 0, 0), Matrix3.diagonal(variance))
 

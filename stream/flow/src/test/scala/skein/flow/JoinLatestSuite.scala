@@ -10,7 +10,7 @@ import skein.vtime.VirtualTime
 
 class JoinLatestSuite extends munit.FunSuite:
 
-  /** What is emitted, with its time in ms, for arrivals at times in ms; and what was stale. */
+  /** Emissions with their times in ms, for arrivals at times in ms; and the stale values. */
   private def joined(patienceMs: Double)(arrivals: (Int, (String, Int))*) =
     var stale = Vector.empty[(String, Int)]
     val run   = VirtualTime.run(seed = 1): system =>

@@ -10,8 +10,8 @@ import skein.vtime.VirtualTime
 
 class MetronomeSuite extends munit.FunSuite:
 
-  /** When ticks came, in ms, and how many at once, to a source that starts `startsAt` after the first was due
-    * and takes `slow` for each.
+  /** Times of emissions in ms, with their numbers of ticks, for a source that starts `startsAt` after the
+    * first was due and takes `slow` for each.
     */
   private def ticked(startsAt: FiniteDuration, slow: FiniteDuration): Seq[(Long, Int)] =
     VirtualTime

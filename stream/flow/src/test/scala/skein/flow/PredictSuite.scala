@@ -13,7 +13,7 @@ class PredictSuite extends munit.FunSuite:
   private val skew   = Span.ofSeconds(-77)
   private val oneWay = Span.ofMillis(30)
 
-  /** Of a vehicle on an accelerating course north, 2 m/s²; the other one rests. */
+  /** The motion of a vehicle that accelerates north, 2 m/s²; the other one rests. */
   private def north(t: Span) =
     Kinematics(
       Vector3(t.toSeconds * t.toSeconds, 0, 0),
@@ -22,7 +22,7 @@ class PredictSuite extends munit.FunSuite:
       Vector3.Zero
     )
 
-  /** Estimates made upon readings every 100 ms, and what became of them. */
+  /** Estimates from readings every 100 ms, and their verified errors. */
   private def predicted(lead: Span = Span.Zero): (Seq[Vector[Estimate]], Seq[Verified]) =
     var verified = Vector.empty[Verified]
     val run      = VirtualTime.run(seed = 1): system =>

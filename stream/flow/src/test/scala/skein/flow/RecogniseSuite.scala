@@ -18,8 +18,7 @@ class RecogniseSuite extends munit.FunSuite:
       mostAtOnce: Int
   )
 
-  /** Frames as often as a camera takes them, the newest of which waits; each takes as long as `tookMs` says.
-    */
+  /** Frames at a camera's rate, the newest of which waits; recognition of each takes `tookMs`. */
   private def run(
       perSecond: Int,
       count: Int,

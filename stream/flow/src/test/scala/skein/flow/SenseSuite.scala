@@ -10,7 +10,7 @@ import skein.vtime.VirtualTime
 
 class SenseSuite extends munit.FunSuite:
 
-  /** Answers with the question's number after its delay; over 500 ms with an error at 500 ms. */
+  /** Answers with the request's number after its delay; above 500 ms with an error at 500 ms. */
   private def sensed(window: Int, early: Sense.Early, isNewer: Option[(Int, Int) => Boolean] = None)(
       delaysMs: Long*
   ) =

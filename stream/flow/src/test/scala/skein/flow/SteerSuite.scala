@@ -39,8 +39,8 @@ class SteerSuite extends munit.FunSuite:
       flying.foreach(_.success("superseded"))
       flying = next
 
-  /** What came of ten commands over a link: events in order, with their times in ms from the start; how many
-    * calls were outstanding at most; and which commands were replaced before they were sent.
+  /** Results of ten commands over a link: events in order, with their times in ms from the start; the
+    * greatest number of outstanding calls; and the commands that were replaced before they were sent.
     */
   private def steered(oneWay: FiniteDuration, every: FiniteDuration, minInterval: Span) =
     var replaced = Vector.empty[Int]
@@ -177,13 +177,13 @@ class SteerSuite extends munit.FunSuite:
       .value
     assertEquals(sent, Seq(0 -> 0L, 1 -> 10_200L, 2 -> 20_400L, 3 -> 30_600L))
 
-  /** What reached a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail `failures`
-    * times.
+  /** Commands received by a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail
+    * `failures` times.
     */
   private def afterLoss(failures: Int, every: FiniteDuration = 200.millis): Vector[(Long, String)] =
     afterLossUs(failures, every).map((us, what) => (us / 1000, what))
 
-  /** The same with times in µs. */
+  /** Commands received by such a vehicle, with times in µs. */
   private def afterLossUs(failures: Int, every: FiniteDuration): Vector[(Long, String)] =
     VirtualTime
       .run(seed = 1): system =>

@@ -6,8 +6,8 @@ import skein.units.*
 /** Counts of a link since its start.
   *
   * @param connections opened over it
-  * @param bytesToServer that came out at the server's side
-  * @param bytesToClient that came out at the client's side
+  * @param bytesToServer delivered to the server
+  * @param bytesToClient delivered to the client
   * @param bytesLost lost in a silence, or in transit when the link broke
   * @param stalls a stall counts once for each direction of each connection that it held up
   * @param disconnects connections that the link broke

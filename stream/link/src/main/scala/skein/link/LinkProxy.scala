@@ -84,7 +84,6 @@ object LinkProxy:
 
   private val Silence = Span.ofSeconds(5)
 
-  /** One client's connection over the link. */
   private final class Crossing(switch: SharedKillSwitch) extends Places.Guest:
     @volatile private var crossedNs = System.nanoTime()
     @volatile private var crossed   = false

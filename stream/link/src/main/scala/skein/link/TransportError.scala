@@ -44,7 +44,6 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
   case Foreign(from: Address, what: String)
       extends TransportError(s"connection from $from closed: expected this port's own protocol, came $what")
 
-  /** Any other failure to connect. */
   case Failed(to: Address, reason: Throwable)
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)
 

@@ -4,7 +4,7 @@ import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch, ThreadFactor
 import scala.jdk.CollectionConverters.*
 import skein.units.Span
 
-/** On threads. */
+/** Runs tasks on real threads. */
 class BackgroundExecutorLiveSuite extends munit.FunSuite:
 
   private def made(threads: ConcurrentLinkedQueue[Thread]): ThreadFactory = work =>
@@ -19,7 +19,7 @@ class BackgroundExecutorLiveSuite extends munit.FunSuite:
     background.clear()
     usual.clear()
 
-  /** The threads on which work ran that is given so, in its order. */
+  /** The threads on which 100 tasks ran, in order. */
   private def ran(patience: Span): Vector[Thread] =
     val on       = ConcurrentLinkedQueue[(Int, Thread)]()
     val all      = CountDownLatch(100)

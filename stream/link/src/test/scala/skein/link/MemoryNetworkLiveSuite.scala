@@ -7,7 +7,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.signal.*
 import skein.units.{Clock, Span}
 
-/** The real clock and many threads. */
+/** Uses the real clock and many threads. */
 class MemoryNetworkLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("memory-network", PreciseScheduler.config)
   private given ExecutionContext    = system.dispatcher

@@ -36,7 +36,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     def connected(): Future[Done] =
       Source.maybe[ByteString].viaMat(controller.connect(simulator))(Keep.right).to(Sink.ignore).run()
 
-    /** Sends a byte each 10 ms and ends with the connection. */
+    /** Sends a byte each 10 ms until the connection ends. */
     def talk(): Future[Done] =
       Source.tick(
         0.millis,

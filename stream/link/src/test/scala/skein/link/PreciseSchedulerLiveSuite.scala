@@ -8,7 +8,7 @@ import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import skein.signal.SplitMix64
 import skein.testing.Timing
 
-/** The real clock. */
+/** Uses the real clock. */
 class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
   private val system             = ActorSystem("precise-scheduler", PreciseScheduler.config)
   private given ExecutionContext = system.dispatcher
@@ -24,8 +24,8 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
   test("an actor system takes it from its configuration"):
     assertEquals(scheduler.getClass, classOf[PreciseScheduler])
 
-  /** What a measurement came to when it first was as it should be, or at the fifth try: what the scheduler
-    * does is the same each time, what a busy machine adds is not.
+  /** The first measurement that passes, or the fifth: the scheduler's part is equal each time, a busy
+    * machine's is not.
     */
   private def untilItHolds[A](measure: => Future[A], tries: Int = 5)(holds: A => Boolean): Future[A] =
     measure.flatMap: result =>

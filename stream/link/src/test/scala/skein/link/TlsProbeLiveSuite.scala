@@ -6,10 +6,10 @@ import java.util.concurrent.FutureTask
 import scala.util.Using
 import skein.units.Span
 
-/** On loopback. */
+/** Probes real sockets on loopback. */
 class TlsProbeLiveSuite extends munit.FunSuite:
 
-  /** Who reads a little and then answers so. */
+  /** Probes a server that reads a little and then sends this answer. */
   private def asked(answer: Int*): Boolean =
     Using.resource(ServerSocket(0, 1, InetAddress.getLoopbackAddress)): server =>
       val heard = FutureTask: () =>
@@ -26,7 +26,7 @@ class TlsProbeLiveSuite extends munit.FunSuite:
     assert(asked(22, 3, 3, 0, 2, 0, 0))
     assert(asked(21, 3, 3, 0, 2, 2, 70))
 
-  /** Whether each connection's bytes are waited for before it is ended. */
+  /** Probes a server that closes connections, and optionally waits for their first bytes. */
   private def refused(waits: Boolean): Boolean =
     Using.resource(ServerSocket(0, 1, InetAddress.getLoopbackAddress)): server =>
       Thread.ofPlatform().daemon().start: () =>

@@ -6,7 +6,7 @@ import org.apache.pekko.stream.{KillSwitches, OverflowStrategy}
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.Future
 
-/** Equal seeds give equal runs: in one JVM, in several, and beside one another. */
+/** Equal seeds give equal runs: in one JVM, in several, and in parallel. */
 class DeterminismSimulation extends munit.FunSuite:
 
   test("a graph gives the same log over repeats, and another one for another seed"):

@@ -9,7 +9,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import skein.testing.Unhurried
 
-/** What cannot be right in virtual time stops the run and names the culprit. */
+/** Anything that would make virtual time wrong stops the run and names the culprit. */
 class EscapesSimulation extends munit.FunSuite, Unhurried:
   private def stopped(limits: RunLimits = RunLimits(), config: String = "")(
       body: ActorSystem => Future[?]

@@ -9,10 +9,10 @@ import org.apache.pekko.util.Timeout
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 
-/** Each operator that reads a clock or sets a timer, against the exact times it must act at. */
+/** Each operator that reads a clock or sets a timer, compared with its exact times. */
 class OperatorsSuite extends munit.FunSuite:
 
-  /** Milliseconds since the start, per element. */
+  /** Times of the elements, milliseconds since the start. */
   private def times[A](source: ActorSystem => Source[A, ?]): Seq[(A, Double)] =
     VirtualTime.run(1): system =>
       given ActorSystem = system

@@ -7,7 +7,7 @@ import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
 
-/** Needs the real clock: shows that real time goes on beside virtual time. */
+/** Needs the real clock: shows that real time advances beside virtual time. */
 class RealClockLiveSuite extends munit.FunSuite:
 
   test("a task that waits for a latch is ended, and shows where it stood"):

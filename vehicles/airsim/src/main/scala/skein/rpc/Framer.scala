@@ -87,7 +87,6 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
   /** Whether the peer has sent part of a value: a stream that ends now cuts a message. */
   def midway: Boolean = earlierBytes > 0 || position > frameStart
 
-  /** Bytes held for an incomplete value. */
   def heldBytes: Int = earlierBytes
 
   /** Approximate memory of the last completed value once it is decoded, bytes. */

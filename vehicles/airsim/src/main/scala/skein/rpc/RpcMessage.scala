@@ -23,7 +23,6 @@ enum RpcMessage:
 object RpcMessage:
   val MaxId: Long = 0xffffffffL
 
-  /** Decodes one value received by a server. */
   def fromClient(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) =>
       fields.length match
@@ -59,7 +58,6 @@ object RpcMessage:
       if at(id) < 0x80 then Some(at(id).toLong)
       else Option.when(bytes > 0)((1 to bytes).foldLeft(0L)((value, i) => value << 8 | at(id + i)))
 
-  /** Decodes one value received by a client. */
   def fromServer(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) if fields.length == 4 => idOf(fields(1)).map(Reply(_, fields(2), fields(3)))
     case Arr(fields)                       => Right(Ignored(s"an array of ${fields.length}"))

@@ -19,7 +19,9 @@ class BulkSimulation extends munit.FunSuite:
   private enum Images:
     case None, OwnLane, ControlLane
 
-  /** Round trips of a small question each 20 ms for 10 s, ascending, ms; and images that came meanwhile. */
+  /** Round trips of a small request each 20 ms for 10 s, ascending, ms; and the number of images received
+    * meanwhile.
+    */
   private def fly(images: Images): (Vector[Double], Int) =
     VirtualTime
       .run(1): system =>

@@ -9,7 +9,7 @@ class ChannelStateSuite extends munit.FunSuite:
 
   private val address = Address("sim", 41451)
 
-  /** A channel whose sends, ends and reconnects are only noted; time is given in milliseconds. */
+  /** A channel that only records sends, ends and reconnects; time is in milliseconds. */
   private final class Channel(settings: RpcSettings) extends ChannelEffects:
     val counters   = RpcCounters()
     val sent       = mutable.Buffer.empty[Call]

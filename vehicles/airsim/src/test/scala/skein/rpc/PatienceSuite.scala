@@ -10,7 +10,7 @@ class PatienceSuite extends munit.FunSuite:
     idle = Span.ofSeconds(100)
   )
 
-  /** After how many watches it ends, and why. */
+  /** Number of watches until it ends, and the reason. */
   private def lasts(watch: Int => Option[(ServerLimit, String)]): (Int, ServerLimit, String) =
     Iterator
       .from(1)

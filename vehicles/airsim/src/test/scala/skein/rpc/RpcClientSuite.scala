@@ -30,7 +30,6 @@ class RpcClientSuite extends munit.FunSuite:
     def call(method: String, options: CallOptions = CallOptions()): Future[Either[RpcError, Msg]] =
       client.call(method, Seq.empty, options)
 
-    /** Waits for an event of this kind. */
     def await[E <: RpcEvent: reflect.ClassTag](): Unit =
       Iterator
         .continually(events.poll(5, java.util.concurrent.TimeUnit.SECONDS))

@@ -19,14 +19,14 @@ class RpcSimulation extends munit.FunSuite:
   private val address            = Address("simulator", 41451)
   private val calls              = 600
 
-  /** What one flight of calls came to: each call's end, in order of ending, and all that was observed. */
+  /** The log of one run: each call's end, in order of ending, and all observed events. */
   private final case class Log(
       ends: Seq[(Int, Either[RpcError, Msg], Long)],
       events: Seq[RpcEvent],
       stats: RpcStats
   )
 
-  /** Calls every 10 ms, each echoing its number from a server that takes its time, over a bad VPN. */
+  /** Runs calls every 10 ms, each echoing its number from a slow server, over a bad VPN. */
   private def fly(seed: Long): Log =
     VirtualTime
       .run(seed): system =>

@@ -15,7 +15,7 @@ class ServerConnectionSuite extends munit.FunSuite:
   override def afterAll(): Unit =
     val _ = system.terminate()
 
-  /** One served connection whose handler answers when the test says so. */
+  /** One served connection whose handler answers at the test's command. */
   private final class Rig(limits: ServerLimits = ServerLimits()):
     val asked    = LinkedBlockingQueue[(RpcRequest, Promise[Either[String, Msg]])]()
     val events   = LinkedBlockingQueue[ServerEvent]()

@@ -209,7 +209,6 @@ final case class Autopilot(
             )
           )
 
-  /** Enters a mode, or states why it cannot. */
   private def enter(wanted: FlightMode, motion: VehicleMotion): Either[Refusal, Heard] =
     def rejected(why: String) = Left(Refusal(Result.Rejected, s"Switching to ${wanted.title} denied: $why"))
     wanted match

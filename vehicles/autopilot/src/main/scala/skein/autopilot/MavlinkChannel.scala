@@ -34,7 +34,6 @@ final class MavlinkChannel(
 
   private val reader = FrameReader()
 
-  /** Decodes the frames that the peer sent. */
   def read(bytes: Array[Byte]): Vector[Frame] =
     if isDatagrams then reader.readDatagram(bytes) else reader.read(bytes)
 

@@ -6,7 +6,7 @@ import skein.units.Decimals.fixed
 
 /** A mission with its progress.
   *
-  * @param current the item that is flown to
+  * @param current the item it flies to
   * @param reachedAt since when the vehicle is at that item
   */
 final case class Mission(
@@ -43,7 +43,7 @@ object Mission:
     */
   val FarthestM = 20_000.0
 
-  /** Why an item cannot be flown: the acknowledgement's result, and lines of at most 50 characters. */
+  /** Why an item is refused: the acknowledgement's result, and lines of at most 50 characters. */
   def mistake(item: MissionItemInt, home: GeoLocation): Option[(Int, Vector[String])] =
     import CommonDialect.Command.*
     import CommonDialect.Frame

@@ -7,8 +7,8 @@ import skein.vehicle.{GoTo, Setpoint}
 
 /** A setpoint from outside the autopilot, for offboard mode. */
 enum OffboardSetpoint:
-  /** Per axis a position, a velocity, or nothing; in the vehicle's own frame. A position with a velocity is
-    * flown to with that velocity added.
+  /** Per axis a position, a velocity, or nothing; in the vehicle's own frame. With both, the vehicle flies to
+    * the position with the velocity added.
     *
     * @param inBody whether the velocity is front, right and down
     */
@@ -36,7 +36,7 @@ object OffboardSetpoint:
   /** Reads a setpoint from a message.
     *
     * @param home the origin of the vehicle's own frame
-    * @return None where it is no setpoint; Left states why it cannot be flown
+    * @return None where it is no setpoint; Left states why it is refused
     */
   def of(message: Message, home: GeoLocation): Option[Either[String, OffboardSetpoint]] = message match
     case one: SetPositionTargetLocalNed =>

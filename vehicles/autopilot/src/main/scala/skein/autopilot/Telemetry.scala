@@ -25,7 +25,7 @@ object Telemetry:
     331 -> 50    // ODOMETRY
   ).view.mapValues(millis => Span.ofMillis(millis)).toMap
 
-  /** The shortest interval of any message. */
+  /** The shortest interval at which any message is sent. */
   val Shortest: Span = Span.ofMillis(5)
 
   /** Encodes a message; None where the number is not one of these messages. */

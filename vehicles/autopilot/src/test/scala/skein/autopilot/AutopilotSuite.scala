@@ -5,7 +5,7 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{HorizontalMode, Setpoint, VerticalMode}
 
-/** An autopilot's decisions, one message and one look at the vehicle at a time. */
+/** An autopilot's decisions, one message and one vehicle state at a time. */
 class AutopilotSuite extends munit.FunSuite:
   private val home  = GeoLocation(47.641468, -122.140165, Metres(122))
   private val gcs   = (system = 245, component = 190)

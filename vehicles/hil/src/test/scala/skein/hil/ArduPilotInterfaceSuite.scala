@@ -7,7 +7,7 @@ import skein.units.*
 import skein.vehicle.Setpoint
 
 object ArduPilotInterfaceSuite:
-  /** As ArduPilot sends it. */
+  /** A datagram with servo pulses, encoded as by ArduPilot. */
   def servos(frame: Long, rate: Int, pulses: Seq[Int], magic: Int = 18458, count: Int = 16): Array[Byte] =
     val packet = ByteBuffer.allocate(8 + 2 * count).order(ByteOrder.LITTLE_ENDIAN)
     packet.putShort(magic.toShort).putShort(rate.toShort).putInt(frame.toInt)

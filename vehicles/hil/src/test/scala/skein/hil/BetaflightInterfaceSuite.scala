@@ -64,7 +64,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
       assertEqualsDouble(math.Pi / 2 - math.acos(-m20), -turn.pitchRad, 1e-7)
       assertEqualsDouble(-math.atan2(m10, m00), turn.yawRad, 1e-9)
 
-  /** What it tells, and when: its due states up to a time, with the vehicle at rest. */
+  /** The due states up to a time with their send times, for a vehicle at rest. */
   private def states(one: BetaflightInterface, from: Int, until: Int): Vector[(upMs: Long, toldMs: Long)] =
     Iterator
       .iterate(one.stop(Span.ofMillis(from)))(up => one.stop(up + Span.ofMillis(1)))

@@ -16,7 +16,6 @@ class Px4InterfaceSuite extends munit.FunSuite:
     def say(message: Message): Unit =
       assertEquals(interface.hear(writer.write(message), Span.Zero), Vector.empty)
 
-    /** The next stop. */
     def tick(): Vector[Message] =
       val up = interface.stop(Span.Zero)
       sensedUsec = up.toNanos / 1000
@@ -24,7 +23,6 @@ class Px4InterfaceSuite extends munit.FunSuite:
 
     private var sensedUsec = 0L
 
-    /** Answers the newest sensors. */
     def answers(flags: Long = 1): Unit = say(answer(sensedUsec, 1, flags))
 
     def ticks(seconds: Double): Vector[Message] = Vector.fill((seconds * 250).toInt)(tick()).flatten

@@ -6,7 +6,7 @@ import skein.units.*
 object SensorsSuite:
   private[hil] val home = GeoLocation(47.641468, -122.140165, Metres(122))
 
-  /** Of a vehicle at rest, so long after the start. */
+  /** The truth of a vehicle at rest, at a time since the start. */
   private[hil] def atRest(up: Span, velocityNed: Vector3 = Vector3.Zero): SensorTruth = SensorTruth(
     Instant.ofNanos(1_000_000_000_000L) + up,
     up,

@@ -3,7 +3,7 @@ package skein.mavlink
 class FrameReaderSuite extends munit.FunSuite:
   private val beat = FrameWriter(245, 190).write(Heartbeat(6, 8, 0, 0, 4, 3))
 
-  /** The same in MAVLink 1. */
+  /** A frame with this message in MAVLink 1. */
   private val older =
     val payload = Array[Byte](0, 0, 0, 0, 6, 8, 0, 4, 3)
     val frame   = Array[Byte](0xfe.toByte, 9, 0, 245.toByte, 190.toByte, 0) ++ payload

@@ -2,7 +2,7 @@ package skein.mavlink
 
 import scala.util.Random
 
-/** Streams that are almost, or not at all, what a peer should send. */
+/** Streams that are similar to, or very different from, what a peer should send. */
 class FuzzSuite extends munit.FunSuite:
 
   test(

@@ -3,7 +3,7 @@ package skein.mavlink
 import java.util.HexFormat
 import scala.io.Source
 
-/** Frames and values that pymavlink made: `pymavlink.py` beside them. */
+/** Frames and values made by pymavlink; `pymavlink.py` beside them makes them. */
 class PymavlinkGolden extends munit.FunSuite:
   private case class Made(name: String, isSigned: Boolean, bytes: Array[Byte], fields: Vector[String])
 

@@ -31,14 +31,11 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
     val start = MujocoCalls.component(batch, component, size)
     Part(((start.address - rows.address) / 8).toInt, size.get(JAVA_INT, 0))
 
-  /** Reads a model's field of doubles. */
   def doubles(field: String): Array[Double] =
     fieldOf(field, 8)((at, index) => at.getAtIndex(JAVA_DOUBLE, index))
 
-  /** Reads a model's field of integers. */
   def ints(field: String): Array[Int] = fieldOf(field, 4)((at, index) => at.getAtIndex(JAVA_INT, index))
 
-  /** Reads a model's field of booleans. */
   def flags(field: String): Array[Boolean] =
     fieldOf(field, 1)((at, index) => at.get(JAVA_BYTE, index) != 0)
 

@@ -24,7 +24,7 @@ private[mujoco] final class MujocoBody(
     val standingRow: Array[Double]
 )
 
-/** Measures whether and how a model can be flown: each actuator is held at a control until it has settled,
+/** Measures whether and how a model can fly: each actuator is held at a control until it has settled,
   * and the accelerations are read.
   *
   * @param one a simulation of the model
@@ -55,7 +55,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
     Array.tabulate(count)(i => if limited(i) then ranges(2 * i + 1) else Double.PositiveInfinity)
   private val resting = Array.tabulate(count)(i => 0.0.max(lowest(i)).min(highest(i)))
 
-  /** The measured body, or why it cannot be flown. */
+  /** The measured body, or why it cannot fly. */
   def body: Either[String, MujocoBody] =
     for
       _ <- expect(place.size >= 7 && one.ints("jnt_type").head == FreeJoint)(

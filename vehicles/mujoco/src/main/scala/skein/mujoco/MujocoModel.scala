@@ -14,7 +14,6 @@ final class MujocoModel private (
     compiled: MemorySegment,
     private[mujoco] val body: MujocoBody
 ):
-  /** Duration of one simulation step, s. */
   def stepS: Double = body.stepS
 
   /** Whether its actuators are exactly four rotors, one at each corner, so that rotors can be controlled
@@ -29,7 +28,7 @@ final class MujocoModel private (
 object MujocoModel:
   /** Reads a model and measures its actuators: some 50 ms.
     *
-    * @return Left states why it cannot be flown, or that MuJoCo is not installed
+    * @return Left states why it cannot fly, or that MuJoCo is not installed
     */
   def read(file: Path): Either[String, MujocoModel] =
     for

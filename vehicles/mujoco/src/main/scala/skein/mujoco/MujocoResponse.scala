@@ -5,8 +5,8 @@ import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
-/** A model's multirotor in forward simulation, flown behind AirSim's API as in the built-in simulator; many
-  * at a time by MuJoCo's batch, with identical bits.
+/** A model's multirotor in forward simulation, controlled through AirSim's API as in the built-in simulator;
+  * many at a time by MuJoCo's batch, with identical bits.
   */
 final class MujocoResponse(model: MujocoModel) extends SteppedResponse:
   def stepS: Double    = model.stepS

@@ -3,8 +3,8 @@ package skein.mujoco
 import skein.units.Vector3
 import skein.vehicle.*
 
-/** One multirotor whose body is a MuJoCo model, flown by AirSim's flight controller ([[MujocoControls]]) at
-  * each of the model's steps. One instance for each vehicle.
+/** One multirotor whose body is a MuJoCo model, controlled by AirSim's flight controller ([[MujocoControls]])
+  * at each of the model's steps. One instance for each vehicle.
   */
 final class MujocoRotorcraft private (
     model: MujocoModel,

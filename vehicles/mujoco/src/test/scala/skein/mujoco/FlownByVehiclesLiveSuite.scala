@@ -7,8 +7,8 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 
-/** What docs/engines.md says of MuJoCo's bodies beside its table: they fly as vehicles. `FlownByLanesSuite`
-  * holds the plants that need nothing installed to that table.
+/** Checks the statement in docs/engines.md that MuJoCo bodies are simulated as vehicles. `FlownByLanesSuite`
+  * checks its table for the plants that need nothing installed.
   */
 class FlownByVehiclesLiveSuite extends MujocoHere:
   private lazy val model = MujocoResponse(MujocoRotorcraftLiveSuite.example("quadrotor"))

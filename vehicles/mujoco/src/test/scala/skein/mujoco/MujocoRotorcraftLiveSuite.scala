@@ -6,7 +6,7 @@ import skein.testing.Waiting
 import skein.units.Vector3
 import skein.vehicle.*
 
-/** Models of MuJoCo's as bodies, flown by AirSim's flight controller. */
+/** MuJoCo models as bodies, controlled by AirSim's flight controller. */
 class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
   import MujocoRotorcraftLiveSuite.*
 
@@ -189,7 +189,7 @@ private object MujocoRotorcraftLiveSuite:
     file.toFile.deleteOnExit()
     Files.writeString(file, xml)
 
-  /** Crazyflie 2's body, turned about front, right and down by these accelerations at most, rad/s². */
+  /** Crazyflie 2's model, with these greatest angular accelerations about front, right and down, rad/s². */
   def crazyflie(turning: Seq[Double]): String =
     val moments = turning.zip(Seq(2.3951e-5, 2.3951e-5, 3.2347e-5)).map((rate, inertia) =>
       java.math.BigDecimal(rate * inertia).toPlainString

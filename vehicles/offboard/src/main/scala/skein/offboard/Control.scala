@@ -16,7 +16,7 @@ import skein.units.Decimals.fixed
   * @param sampleEvery interval of motion samples that the vehicle is requested to send
   * @param timeout of every answer
   * @param farthestM the geofence: greatest horizontal distance from the flight's origin, m; a vehicle that
-  *   leaves it holds its position and is not flown any more
+  *   leaves it holds its position and accepts no further actions
   * @param highestM greatest height above the flight's origin, m
   * @param exchanges number of TIMESYNC exchanges after which a vehicle is ready; until then, one is sent
   *   every [[Control.Tick]]
@@ -66,10 +66,11 @@ final case class Control(
 ):
   import Control.*
 
-  /** Whether it can be flown: it has sent messages, and its clock and the origin of its frame are known. */
+  /** Whether it is ready to fly: it has sent messages, and its clock and the origin of its frame are known.
+    */
   def isReady: Boolean = missing.isEmpty
 
-  /** The information still missing before it can be flown. */
+  /** The information still missing before it is ready to fly. */
   def missing: Vector[String] =
     if heardAt.isEmpty then Vector("any message")
     else
@@ -195,7 +196,6 @@ final case class Control(
   private def refused(token: Long, why: String): Step =
     Step(this, answers = Vector(token -> Left(VehicleError.Refused(why))))
 
-  /** Marks the newest action as replaced. */
   private def replacing(now: Instant): Control =
     copy(asked =
       asked.dropRight(1).map(one =>

@@ -42,7 +42,6 @@ final class MavlinkLink private (
   /** Datagrams dropped because the connection had no room. */
   def dropped: Long = unsent.get
 
-  /** The current control state of a vehicle. */
   def control(number: Int): Control = controls(number)
 
   /** The flight's clock, which is the first vehicle's, against the controller's; None until its first

@@ -7,7 +7,7 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A MAVLink vehicle as a loop's vehicle port: flown in PX4's offboard mode, or in Guided of ArduPilot's
+/** A MAVLink vehicle as a loop's vehicle port: controlled in PX4's offboard mode, or in Guided of ArduPilot's
   * copter. Not for real aircraft.
   *
   * A reading is the next sample that the vehicle sends. An action ends as replaced when the vehicle has

@@ -12,7 +12,6 @@ final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
   private[skein] def eachSolid(visit: Solid => Unit): Unit = solids.foreach(visit)
 
-  /** The item number of a vehicle. */
   def itemOf(vehicle: Int): Int = Item.FirstObject + scene.objects.size + vehicle
 
   def items: Int = itemOf(vehicles.size)

@@ -19,7 +19,7 @@ final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
     for index <- bodies.indices do sectorsOf(bodies(index)).foreach(lists(_) += index)
     lists.map(_.result())
 
-  /** The item that the last ray has hit. */
+  /** The item that the last ray has hit; `Item.Nothing` if none. */
   var item: Int = Item.Nothing
 
   /** Distance along a unit direction to the first hit, m; infinite if nothing is within range. */

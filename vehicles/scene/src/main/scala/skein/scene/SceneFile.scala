@@ -19,7 +19,6 @@ object SceneFile:
   /** Names of the scenes in the distribution. */
   val Names: Vector[String] = Vector("empty", "forest", "pursuit", "street")
 
-  /** Most objects that a scene may have. */
   val MostObjects = 2000
 
   /** Loads a scene of the distribution; None if there is none of this name. */

@@ -63,7 +63,6 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
   private def tell(system: Int, messages: Vector[Message]): Unit =
     for message <- messages; (_, peer) <- channels do peer.write(system, message)
 
-  /** One vehicle's autopilot. */
   private final class OnBoard(val index: Int) extends Pilot:
     val system: Int          = index + settings.firstSystem
     private val vehicle      = world.multirotor(index)

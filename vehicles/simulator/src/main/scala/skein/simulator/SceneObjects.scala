@@ -43,7 +43,6 @@ final private[simulator] class SceneObjects(world: World):
 
   def id(name: String): Option[Int] = Option.when(exists(name))(idOf(name))
 
-  /** All segmentation ids, by item number. */
   def ids: Vector[Int] = names.iterator.map(idOf).toVector
 
   private def idOf(name: String): Int = chosen.getOrElse(
@@ -61,8 +60,8 @@ final private[simulator] class SceneObjects(world: World):
 
   def moment: Moment = Moment(world.scene, world.bodies(world.now))
 
-  /** Everything as it is now, each vehicle as its bounding box, a camera rig as nothing: for tests of lines
-    * of sight.
+  /** Everything as it is now, each vehicle as its bounding box, a camera rig as nothing: to test whether a
+    * line between two points is free.
     */
   def boxes: Moment = Moment(
     world.scene,

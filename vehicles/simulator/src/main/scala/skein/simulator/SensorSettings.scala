@@ -49,7 +49,6 @@ private[simulator] object SensorSettings:
   /** A distance sensor, which measures along its front. */
   final case class Ranger(place: Placement, leastM: Double = 0.2, mostM: Double = 40)
 
-  /** Most pixels that one image may have. */
   val MostPixels: Int = 8192 * 4096
 
   val None: SensorSettings = SensorSettings(Map.empty, Map.empty, Map.empty, Map.empty)

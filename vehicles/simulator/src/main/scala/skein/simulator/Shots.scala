@@ -44,7 +44,6 @@ private[simulator] object Shots:
   /** @param response its fields that are known before drawing */
   final case class Wanted(view: View, kind: Kind, response: ImageResponse)
 
-  /** Most images that one call may request. */
   val MostImages = 64
 
   /** Most bytes of one answer: what our own client accepts. */

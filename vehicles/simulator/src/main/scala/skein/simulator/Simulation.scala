@@ -128,7 +128,6 @@ final class Simulation(
       val next     = if running.isEmpty then handover else running.map(end => handover.fold(end)(_.min(end)))
       next.map(_.max(at))
 
-  /** Takes the answers since the last call. */
   def takeAnswers(): Seq[SimulatorAnswer] =
     val all = answers.toSeq
     answers.clear()

@@ -12,7 +12,7 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** A car as a loop sees it, over a link of 40 ms there and back. */
+/** A car as a loop's vehicle port, over a link with 40 ms round trips. */
 class AirSimCarSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
@@ -21,7 +21,6 @@ class AirSimCarSuite extends munit.FunSuite:
   ):
     given ExecutionContext = system.dispatcher
 
-    /** Since the drive began, ms. */
     def nowMs: Long = clock.now().toNanos / 1_000_000
 
     def pass(ms: Double): Future[Unit] = after(Span.ofMillis(ms).toDuration)(Future.unit)

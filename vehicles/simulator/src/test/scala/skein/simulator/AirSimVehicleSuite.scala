@@ -13,11 +13,11 @@ import skein.rpc.{Framed, Framer, RpcMessage, RpcClient}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Answers to moves that are lost on a connection that lives. */
+/** Answers to moves that are lost on a live connection. */
 class AirSimVehicleSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** The simulator's transport; of the messages that it sends, `isLost` takes away some. Messages are whole
+  /** The simulator's transport without those of its messages for which `isLost` is true. Messages are whole
     * segments here.
     */
   private final class Lossy(transport: Transport, isLost: RpcMessage => Boolean) extends Transport:
@@ -41,8 +41,8 @@ class AirSimVehicleSuite extends munit.FunSuite:
       .filterNot(frame => isLost(RpcMessage.fromServer(frame)))
       .map(ByteString.fromArrayUnsafe)
 
-  /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the
-    * second's sending, and how the first ended, and what was said of lost answers.
+  /** Two moves 100 ms apart over a link with 40 ms round trips, and then nothing: when, in ms from the
+    * second's sending, and how the first ended, and the reports on lost answers.
     */
   private def firstOfTwo(isLost: RpcMessage => Boolean)
       : (Long, Either[VehicleError, Boolean], Vector[String]) =

@@ -4,7 +4,7 @@ import skein.airsim.wire.*
 import skein.units.Instant
 import upack.*
 
-/** What AirSim's server makes of arguments, seen on its own RPC code. */
+/** Conversions of arguments, as observed with AirSim's own RPC code. */
 class ArgumentSuite extends munit.FunSuite:
 
   private def read[A](value: Msg)(using argument: Argument[A]): Either[String, A] =

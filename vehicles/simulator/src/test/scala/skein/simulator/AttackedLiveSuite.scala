@@ -15,7 +15,7 @@ import upack.*
 import upickle.default.writeMsg
 import skein.airsim.wire.YawMode
 
-/** What strangers do to the simulator's ports, over real sockets. */
+/** Attacks by strangers on the simulator's ports, over real sockets. */
 class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
   private given system: ActorSystem = ActorSystem("attacked", PreciseScheduler.config)
 
@@ -55,7 +55,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
     socket.setSoTimeout(120_000)
     socket
 
-  /** Whether the other side ends it, without a word before. */
+  /** Whether the peer closes the connection without sending anything. */
   private def isClosed(socket: Socket): Boolean =
     try socket.getInputStream.read() < 0
     catch
@@ -67,7 +67,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
     for ((method, params), id) <- calls.zipWithIndex do writer.request(id, method, params)
     writer.take().toArray
 
-  /** What a browser sends for a page, with the page's own bytes behind it. */
+  /** A browser's requests for a page, followed by the page's own bytes. */
   private def posts(body: Array[Byte]): Seq[Array[Byte]] =
     val methods = Seq("POST", "PUT", "GET", "OPTIONS", "HEAD", "DELETE", "PATCH")
     methods.map: method =>

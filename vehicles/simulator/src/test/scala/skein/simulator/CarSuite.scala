@@ -7,7 +7,7 @@ import skein.units.*
 import upack.{Bool, Obj, Str}
 import upickle.default.writeMsg
 
-/** AirSim's car API, on a world with a car and a multirotor. */
+/** AirSim's car API, in a world with a car and a multirotor. */
 class CarSuite extends munit.FunSuite:
   private val car = Str("Car")
 

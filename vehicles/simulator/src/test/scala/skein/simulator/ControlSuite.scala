@@ -6,8 +6,8 @@ import skein.units.*
 import upack.{Bool, Float32, Str}
 import upickle.default.writeMsg
 
-/** Who has control, and what taking and giving it does to a vehicle in flight: as AirSim's SimpleFlight has
-  * it.
+/** API control, and its effect on a vehicle in flight when it is taken or released: as in AirSim's
+  * SimpleFlight.
   */
 class ControlSuite extends munit.FunSuite:
 

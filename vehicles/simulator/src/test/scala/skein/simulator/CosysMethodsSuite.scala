@@ -6,8 +6,8 @@ import skein.airsim.wire.*
 import upack.*
 import upickle.default.writeMsg
 
-/** What Cosys-AirSim's published client calls otherwise than AirSim's. `methods.txt` is written by
-  * `list_methods.py` from the client itself; [[CosysClientLiveSuite]] holds it to that.
+/** Functions that Cosys-AirSim's published client calls differently from AirSim's. `list_methods.py` writes
+  * `methods.txt` from the client itself; [[CosysClientLiveSuite]] checks that.
   */
 class CosysMethodsSuite extends munit.FunSuite:
   private val front: Msg = Str("front_center")

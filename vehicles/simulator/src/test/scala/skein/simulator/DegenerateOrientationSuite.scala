@@ -5,10 +5,10 @@ import skein.units.*
 import upack.{Bool, Str}
 import upickle.default.writeMsg
 
-/** Orientations that are no rotations, as clients send them by mistake: their direction counts. */
+/** Quaternions that are not of unit length, as clients send them by mistake: they are normalised. */
 class DegenerateOrientationSuite extends munit.FunSuite:
 
-  /** How far from its place it gets within 10 s, m. */
+  /** Greatest distance from its position within 10 s, m. */
   private def off(method: String, q: Quaternionr): Double =
     val bench = Bench().hovering(-20)
     bench.pass(1)

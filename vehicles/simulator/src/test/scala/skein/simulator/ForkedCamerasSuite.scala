@@ -10,12 +10,12 @@ import skein.units.*
 import skein.vtime.VirtualTime
 import upickle.default.writeMsg
 
-/** Cameras of a server that binds their functions without `external`, as Cosys-AirSim 3 does. */
+/** Cameras of a server whose functions lack `external`, as in Cosys-AirSim 3. */
 class ForkedCamerasSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** Three images, and then a field of view, of a server whose functions of cameras take so many arguments:
-    * what came, and with how many arguments they were asked for.
+  /** Three images, and then a field of view, of a server whose camera functions take `takes` arguments: the
+    * results, and the numbers of arguments in the calls.
     */
   private def asked(takes: Int): (Vector[Boolean], Option[Double], Vector[Int]) = VirtualTime
     .run(seed = 1): system =>

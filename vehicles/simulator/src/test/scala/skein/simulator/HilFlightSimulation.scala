@@ -11,8 +11,8 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 object HilFlightSimulation:
-  /** What came of a flight: all bytes that the autopilot was told, as a digest, and where the vehicle truly
-    * was then.
+  /** The result of a flight: all bytes sent to the autopilot, as a digest, and the vehicle's true position at
+    * the end.
     */
   final case class Flight(
       digest: String,
@@ -22,9 +22,9 @@ object HilFlightSimulation:
       stats: PeerStats
   )
 
-  /** The server, PX4's interface and a small autopilot behind it, in virtual time, for so long.
+  /** Runs the server, PX4's interface and a small autopilot behind it, in virtual time.
     *
-    * @param speed of the simulator's clock against virtual time
+    * @param speed of the simulator's clock relative to virtual time
     * @param link between the two
     */
   def fly(seed: Long, lasting: Span, speed: Double = 1, link: LinkProfile = LinkProfile.none): Flight =
@@ -62,7 +62,7 @@ object HilFlightSimulation:
       stats
     )
 
-/** PX4's interface as it is served, in virtual time. */
+/** PX4's interface behind its server, in virtual time. */
 class HilFlightSimulation extends munit.FunSuite:
   import HilFlightSimulation.*
 

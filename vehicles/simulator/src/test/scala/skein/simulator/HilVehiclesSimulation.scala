@@ -7,7 +7,7 @@ import skein.link.Address
 import skein.mavlink.{FrameReader, HilSensor}
 import skein.units.*
 
-/** Autopilots outside, without sockets and without a clock. */
+/** External autopilots, without sockets and without a clock. */
 class HilVehiclesSimulation extends munit.FunSuite:
 
   private final class Flown(kind: AutopilotKind = AutopilotKind.Px4, vehicles: Int = 1, speed: Double = 1):
@@ -26,7 +26,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
 
     def up: Span = simulation.world.now.since(Instant.Epoch)
 
-    /** Lets the clock run on and hands over what comes of it. */
+    /** Advances the clock and passes on the resulting datagrams. */
     def run(
         span: Span,
         every: Span = Span.ofMillis(1)

@@ -10,7 +10,7 @@ import skein.units.*
 import upack.*
 import upickle.default.writeMsg
 
-/** What cameras, lidars and distance sensors say of a scene, and what it does to vehicles. */
+/** Readings of cameras, lidars and distance sensors in a scene, and the scene's contacts with vehicles. */
 class ImageSuite extends munit.FunSuite:
   private val scene = SceneFile
     .parse("""objects = [{ name = House, box = [2, 8, 6], at = [11, 0], id = 42 }]""", "a")

@@ -11,8 +11,8 @@ import skein.mavlink.*
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies
-  * three at once. Runs where Python can install that package; it fetches it once per user.
+/** Proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, controls
+  * three simultaneously. Runs where Python can install that package; it fetches it once per user.
   */
 class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavsdk")
@@ -34,7 +34,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     finally
       val _ = Await.result(server.close(), 10.seconds)
 
-  /** Of nobody else at this moment. */
+  /** Currently unused UDP ports. */
   private def freePorts(count: Int): Vector[Int] =
     val sockets = Vector.fill(count)(DatagramSocket(0, InetAddress.getLoopbackAddress))
     try sockets.map(_.getLocalPort)
@@ -95,7 +95,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     def send(bytes: Array[Byte]): Unit =
       socket.send(DatagramPacket(bytes, bytes.length, InetAddress.getByName(to.host), to.port))
 
-    /** Whether a TIMESYNC of this number is, within 5 s. */
+    /** Whether a TIMESYNC of this number is answered within 5 s. */
     def isAnswered(number: Long): Boolean =
       val packet   = DatagramPacket(new Array[Byte](1 << 16), 1 << 16)
       val until    = 5.seconds.fromNow

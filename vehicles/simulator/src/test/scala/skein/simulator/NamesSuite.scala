@@ -5,7 +5,7 @@ import skein.airsim.{SensorKind, VehicleSettings}
 import skein.units.*
 import upack.{Obj, Str}
 
-/** Which vehicle and which sensor a name means. */
+/** Resolution of vehicle names and sensor names. */
 class NamesSuite extends munit.FunSuite:
 
   private def north(bench: Bench, name: String): Double =

@@ -10,7 +10,7 @@ import skein.link.{Address, TcpTransport}
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim`
+/** Proof that the built-in simulator speaks AirSim's protocol: the official client, the unmodified `airsim`
   * package of PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it
   * once per user.
   */
@@ -24,7 +24,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
   private val mixed    = vehicles.take(1) :+
     VehicleSettings("Car", Vector3(0, 40, 0), vehicleType = WorldSettings.PhysXCar)
 
-  /** The pursuer carries a lidar, and a distance sensor that looks down. */
+  /** Settings in which the pursuer carries a lidar, and a distance sensor that looks down. */
   private val text =
     val settings = ujson.read(WorldSettings.render(vehicles))
     settings("Vehicles")("Pursuer")("Sensors") = ujson.Obj(

@@ -4,9 +4,8 @@ import java.nio.file.{Files, Path}
 import scala.io.Source
 import upack.*
 
-/** Everything that AirSim's published Python client calls is answered, and the documentation says how.
-  * `methods.txt` is written by `list_methods.py` from the client itself; [[OfficialPythonClientLiveSuite]]
-  * holds it to that.
+/** Everything that AirSim's published Python client calls is answered and documented. `list_methods.py`
+  * writes `methods.txt` from the client itself; [[OfficialPythonClientLiveSuite]] checks that.
   */
 class PublishedClientSuite extends munit.FunSuite:
 

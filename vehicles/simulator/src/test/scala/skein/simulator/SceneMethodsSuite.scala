@@ -10,7 +10,7 @@ class SceneMethodsSuite extends munit.FunSuite:
   private def pose(x: Double, y: Double, z: Double, q: Quaternion = Quaternion.Identity): Msg =
     writeMsg(Pose(Vector3r(Vector3(x, y, z)), Quaternionr(q)))
 
-  /** A place in the default world, whose origin is AirSim's home, as latitude, longitude and altitude. */
+  /** A position in the default world, whose origin is AirSim's home, as latitude, longitude and altitude. */
   private def point(ned: Vector3): Msg =
     val place = skein.airsim.WorldSettings.DefaultOrigin.locate(ned)
     writeMsg(GeoPoint(place.latitudeDeg, place.longitudeDeg, place.altitude.value.toFloat))

@@ -15,7 +15,7 @@ import skein.link.Address
 import upack.{Arr, Bool, Str}
 import upickle.default.writeMsg
 
-/** AirSim's `settings.json`, key by key: obeyed, refused, or told as one without effect. */
+/** AirSim's `settings.json`, key by key: obeyed, refused, or reported as having no effect. */
 class SettingsFileSuite extends munit.FunSuite:
 
   private def read(text: String): SettingsFile =

@@ -11,9 +11,7 @@ import skein.units.*
 import upack.{Bool, Float32, Int32, Msg, Str}
 import upickle.default.writeMsg
 
-/** What becomes of calls whose connection has closed, and of the port when the simulation fails; over real
-  * sockets.
-  */
+/** Calls whose connection has closed, and the port when the simulation fails; over real sockets. */
 class SimulatorServerLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("simulator-server")
 

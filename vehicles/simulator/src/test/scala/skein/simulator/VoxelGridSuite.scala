@@ -15,7 +15,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
 
   private val ground = boxes(Seq.empty)
 
-  /** The header's lines, and the cells. */
+  /** Splits a file into the header's lines and the cells. */
   private def read(file: Array[Byte]): (Seq[String], Vector[Boolean]) =
     val text   = String(file, US_ASCII)
     val start  = text.indexOf("data\n") + 5

@@ -5,9 +5,9 @@ import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.link.{ControlThreads, PreciseScheduler}
 
-/** A real firmware flies the simulator's vehicle: Betaflight's SITL in angle mode, with sticks that a
-  * controller of ours moves. Prints where the vehicle was, and how far it was from its place:
-  * `betaflightHover [SECONDS [SPEED]]`.
+/** Real firmware flies the simulator's vehicle: Betaflight's SITL in angle mode, with sticks that our
+  * controller moves. Prints the vehicle's track, and its distance from its position: `betaflightHover
+  * [SECONDS [SPEED]]`.
   */
 @main def betaflightHover(arguments: String*): Unit =
   given system: ActorSystem = ActorSystem("betaflight", PreciseScheduler.config)

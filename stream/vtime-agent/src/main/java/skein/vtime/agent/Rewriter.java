@@ -57,8 +57,7 @@ final class Rewriter implements ClassFileTransformer {
   private static final Map<String, Making> MAKINGS = new HashMap<>();
 
   /**
-   * Methods that hand a task to an execution context: unchanged, but the environment is asked for permission
-   * first.
+   * Methods that hand a task to an execution context: unchanged, but the environment must permit it first.
    */
   private static final Set<String> SUBMISSIONS =
       Set.of(

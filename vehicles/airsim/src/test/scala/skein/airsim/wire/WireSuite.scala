@@ -9,10 +9,10 @@ import upack.{Int32, Obj, Str, UInt64}
 import upack.Binary
 import upickle.default.{Writer, readBinary, writeMsg}
 
-/** Our bytes, read by another library. */
+/** Our encodings, read by an independent library. */
 class WireSuite extends munit.FunSuite:
 
-  /** As the server writes it: behind the reply's header of four bytes. */
+  /** A value's bytes in the server's encoding, after the reply's header of four bytes. */
   private def bytes[A: Writer](value: A): Array[Byte] =
     val writer = new MessageWriter
     writer.reply(0, Right(writeMsg(value)))
