@@ -68,7 +68,7 @@ object GpuRates:
       there: Int => Array[Float],
       here: Int => Array[Float]
   ): Unit =
-    // For nothing: timetables and code are made.
+    // A warm-up: makes timetables and code.
     for _ <- 1 to 3 do
       there(candidates): Unit
       here(onCpu): Unit

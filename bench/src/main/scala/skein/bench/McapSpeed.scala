@@ -97,7 +97,7 @@ object McapSpeed:
     )
     try
       for (name, compression) <- ways do
-        // The first rounds are the compiler's.
+        // The first rounds warm up the compiler.
         val times = Vector.fill(rounds + 3)(round(file, messages, compression)).drop(3)
         val sums  = times.map(_._3).toSet
         require(sums.size == 1, s"every round reads the same, came $sums")

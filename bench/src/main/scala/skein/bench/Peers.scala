@@ -39,7 +39,7 @@ object Peers:
       _    <- 1 to 3
       work <- ours
     do
-      // On one thread and on all: what was compiled for one caller alone is compiled anew when others come.
+      // On one thread and on all: code compiled for a single caller is recompiled when others call it.
       work.run(1): Unit
       work.run(cores)
     for
@@ -50,7 +50,7 @@ object Peers:
       take("yardstick, C", threads)(inC(native, threads))
       for work <- ours do
         take(work.name, threads)(work.run(threads))
-        // Beside its peer once more, for the ratio is of these two.
+        // Measured once more beside its peer, because the ratio compares these two.
         if work == Works.yardstick then take("yardstick, C", threads)(inC(native, threads))
       if python != "-" then
         for (name, program, twin) <- Twins do

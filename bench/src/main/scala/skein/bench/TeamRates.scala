@@ -31,7 +31,7 @@ object TeamRates:
       vehicles     <- if args.isEmpty then Seq(6, 20, 64) else args.toSeq.map(_.toInt)
       (name, draw) <-
         Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles)) ++
-          // More are more operations than a formula may have.
+          // More would exceed the operations that a formula may have.
           Option.when(vehicles <= 32)("crossing" -> crossing(vehicles)) ++
           Option.when(vehicles == 2)("paper's duel" -> duel(PaperPursuer())) ++
           Option.when(vehicles == 2)("README's chase" -> duel(Chase))

@@ -16,7 +16,7 @@ final case class Patient(metres: Double, trustS: Double) extends AgentPolicy:
 
   def choose(seen: Observation, meanAgeS: Double): (Action, Double) =
     val other = seen.vehicles(seen.opponent)
-    // What a loop has carried forward to when the command acts is as good as fresh.
+    // A reading that the loop has predicted to the command's time counts as fresh.
     val old   = if other.isPredicted then 0.0 else other.age.toSeconds
     val age   = meanAgeS + (old - meanAgeS) * 0.1
     val trust = trustS / (trustS + age)

@@ -15,7 +15,7 @@ final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Dou
 
   def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val (here, there) = (seen.own.kinematics.positionNed, seen.vehicles(other).kinematics.positionNed)
-    // As high as the highest ground of the next seconds: the vehicle lags behind its commands.
+    // Height over the highest ground of the next seconds, because the vehicle lags behind its commands.
     val ahead  = (0 to 4).map(metres => land.heightM(here.x + 3.0 * metres)).max
     val climb  = (-here.z - (ahead + aboveM)).max(-3).min(1.5)
     val isLost = land.clearanceM(here, there) < aboveM / 2 && here.x > there.x

@@ -121,7 +121,7 @@ final class DecideCommand(using scenarios: Scenarios)
       name = plan.settings.scenario.name
       _ <- Expect.that(only.forall(_ == name)):
         s"this solver decides for ${only.getOrElse("")} alone, the flight flies $name"
-      _ = // Whoever comes meanwhile waits for it, too.
+      _ = // Flights that connect meanwhile wait for it, too.
         warm.computeIfAbsent(
           s"$name ${briefing.loop} ${PredictionModel.text(plan.settings.predictor)}",
           _ =>

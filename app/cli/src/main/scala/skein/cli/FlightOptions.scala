@@ -222,7 +222,7 @@ object FlightOptions:
 
   /** Makes a vehicle hover while its solver is silent, unless the configuration chooses otherwise. */
   private def hovering(told: Config): Config =
-    // Where it refers to what stands elsewhere, it cannot be asked yet.
+    // A reference to another key cannot be resolved yet.
     def says(key: String) = Try(told.hasPath(s"skein.fly.$key")).getOrElse(true)
     if !says("solver") || says("fallback") then told
     else told.withFallback(configured(Seq(("--fallback", "fallback", Fallback.Hover.label))))

@@ -158,14 +158,14 @@ final class LearnCommand(program: String)(using Scenarios)
         val goOn   = s"stopped; ./skein learn --resume ${Typed.path(folder)} goes on"
         end.failure match
           case Some(reason) =>
-            // Not measured: what failed may fail again.
+            // Not measured: a failure may occur again.
             LearnResult.unmeasured(setup, state).fold(Right(())): file =>
               OutFolder.write(folder, Seq(OutFolder.text("policy.conf", file))).map: written =>
                 shown.say(s"ended early; the best policy until then: ${written.mkString}")
             .flatMap(_ => Left(reason))
           case None if state.best.isEmpty => Right(shown.tables(Nil, goOn))
           case None                       =>
-            // Before it measures, which may be cut short: nobody waits long for what is stopped.
+            // Before measuring, which may be cut short: a user who stops a run does not wait long.
             if !isDone then shown.say(goOn)
             conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
 
@@ -248,7 +248,7 @@ final class LearnCommand(program: String)(using Scenarios)
           LearnWork.episodes(run),
           from,
           asked.block.getOrElse(Effort.blockEpisodes(byLanes = true, setup.conditions.vehicle)),
-          // Learning, which goes on meanwhile, has a line of its own.
+          // Learning continues meanwhile and has a line of its own.
           _ => if from != Judge.Candidates then wait()
         )
         def distances(policy: PolicyFile, count: Int) =
@@ -323,7 +323,7 @@ object LearnCommand:
       _      <- ForwardOptions.ofDuels()(forward)
       kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
       stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
-    // Teams fly low, where the model of three parameters does not hold.
+    // Teams fly low, where the model of three parameters is not valid.
     yield conditions.copy(
       plant = forward.plant.getOrElse("drag"),
       altitudeM = -stated.agents.head.startPositionNed.z

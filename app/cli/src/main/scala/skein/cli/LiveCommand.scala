@@ -81,7 +81,7 @@ private[cli] final class LiveCommand(
     def stop()    =
       val why = "ended from outside before it began"
       requests.stopAll(why)
-      // Vehicles that nothing is heard of are not waited for.
+      // Silent vehicles are not waited for.
       system.scheduler.scheduleOnce(CalledOffWithin)(
         abandoned.trySuccess(Left(s"${plans.head.id}: $why")): Unit
       ): Unit

@@ -9,7 +9,7 @@ private object Misuse:
   /** @param options of the command, with their dashes */
   def text(failure: Result.Failure, options: Seq[String]): String = failure match
     case Result.Failure.MismatchedArguments(missing, unknown, duplicate, incomplete) =>
-      // mainargs takes all that stands behind an unknown word for unknown, too.
+      // mainargs also reports everything after an unknown word as unknown.
       val all = missing.map(option => s"${name(option)}: expected, but not given") ++
         unknown.take(1).map(noSuch(_, options)) ++
         duplicate.map((option, words) =>

@@ -50,7 +50,7 @@ object NewCommand
     */
   private def taken(name: String): Option[String] =
     val sources = Seq("Scenario.scala.txt", "Suite.scala.txt").map(resource).mkString("\n")
-    // Neither members of others nor what stands between quotes.
+    // Ignores members of other names, and string literals.
     val isUsed = s"""(?<![.\"\\w])${className(name)}\\b""".r.findFirstIn(sources).isDefined
     Option.when(isUsed || Reserved(packageName(name)))(
       s"expected a name that means nothing else in Scala, came '$name'; for example $name-flight"

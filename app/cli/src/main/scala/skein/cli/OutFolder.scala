@@ -30,7 +30,7 @@ private[cli] object OutFolder:
           if Option(folder.toFile.list).exists(_.sameElements(Seq(Lock))) then
             Files.delete(folder.resolve(Lock))
           Files.delete(folder)
-      catch case _: IOException => () // there is something in it
+      catch case _: IOException => () // not empty
     done
 
   /** Creates the folder if necessary and checks that it is writable, so that a command of minutes does not
@@ -46,7 +46,7 @@ private[cli] object OutFolder:
       try
         val missing =
           Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(Files.notExists(_)).toVector
-        // One by one: where `gone` is missing, so is `gone/..`, until `gone` is made.
+        // One by one: if `gone` is missing, so is `gone/..`, until `gone` is made.
         for part <- missing.reverse if Files.notExists(part) do
           Files.createDirectories(part)
           fresh.set(part +: fresh.get)
@@ -73,7 +73,7 @@ private[cli] object OutFolder:
     val other = Left(s"another command is at work in $folder; expected it to end first")
     try
       Using.resource(FileChannel.open(folder.resolve(Lock), CREATE, WRITE)): channel =>
-        // Without a lock that this process holds already.
+        // None if another process holds the lock.
         Option(channel.tryLock()).fold(other)(_ => body)
     catch
       case _: OverlappingFileLockException => other

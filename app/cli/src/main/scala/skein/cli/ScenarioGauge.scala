@@ -62,7 +62,7 @@ private[cli] final class ScenarioGauge(
           val tracks = vehicles.map(name => Track.of(name, "", seen(name).toVector))
           Option.when(seen.values.forall(_.nonEmpty))(tracks).flatMap(Tracks.of).map(message(_).render())
         catch
-          // The scenario is the user's.
+          // The scenario is user code, which may throw.
           case NonFatal(error) =>
             failed = Some(Option(error.getMessage).getOrElse(error.toString))
             Some(ujson.Obj("series" -> ujson.Arr(), "limits" -> ujson.Arr(), "failed" -> failed.get).render())

@@ -83,7 +83,7 @@ private[cli] final class SearchJob(
       isLate: () => Boolean
   ): Either[String, Boolean] =
     val effort = ready.effort
-    // Somebody who stops a search does not wait for long.
+    // A user who stops a search does not wait for long.
     val most  = if state.isDone then Int.MaxValue else effort.freshEpisodes
     val fresh = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
     say(f"measuring the best on $fresh%,d fresh episodes")

@@ -187,7 +187,7 @@ object ServeCommand
         system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings))(using
           system.dispatcher
         )
-      // What it runs is compiled by then.
+      // The code it runs is compiled by then.
       val leading =
         system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
       val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))

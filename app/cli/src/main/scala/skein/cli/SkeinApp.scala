@@ -19,7 +19,8 @@ import skein.scenario.{ScenarioKind, Scenarios}
   * @param kinds at least one; the first is the default
   */
 open class SkeinApp(kinds: ScenarioKind[?]*):
-  // First of all: numbers, dates and what libraries do with letters are the same wherever the machine stands.
+  // First of all: numbers, dates and the libraries' treatment of letters must not depend on the machine's
+  // locale.
   Locale.setDefault(Locale.ROOT)
   Terminal.adapt()
 
@@ -109,7 +110,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       case Some(word) =>
         commands.find(_.name == word) match
           case Some(command) =>
-            // Set up before several threads of a command need it at once, which it would remark on.
+            // Set up before several threads of a command need it simultaneously, which it would log.
             val _ = LoggerFactory.getILoggerFactory
             try command.run(arguments.tail)
             catch
@@ -131,7 +132,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     */
   private[skein] final def unexpected(word: String, error: Throwable): Int =
     error match
-      // Only what a start waits for has such a limit.
+      // Only waits at the start have such a limit.
       case late: TimeoutException =>
         val why = s"this machine has too much else to do: ${late.getMessage}"
         Console.err.println(s"skein $word: given up before it began, for $why")

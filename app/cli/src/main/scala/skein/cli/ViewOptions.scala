@@ -32,7 +32,7 @@ final case class ViewOptions(
       case Some(line)       => Left(line)
       case _ if !view.value => body
       case _                =>
-        // Not in the scheduler's idle class: whoever aborts a flight is heard on a busy machine, too.
+        // Not in the scheduler's idle class: a user can abort a flight on a busy machine, too.
         val threads = Executors.newSingleThreadExecutor(Thread.ofPlatform.daemon.name("skein-view").factory)
         val token   = Token.drawn()
         try

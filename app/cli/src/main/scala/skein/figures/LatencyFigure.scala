@@ -32,7 +32,7 @@ object LatencyFigure:
       for
         link    <- set.links
         samples <- Distribution.of(set.over(link).flatMap(_.roundTripsMs).flatMap(_.sorted))
-        // Virtual flights without a network have but one round trip.
+        // In virtual flights without a network all round trips are equal.
         if samples.sorted.head < samples.sorted.last
       yield Measured(FlightTheme.link(link), link, samples)
 

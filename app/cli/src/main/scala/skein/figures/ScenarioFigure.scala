@@ -167,7 +167,7 @@ object ScenarioFigure:
     def drawn(flight: ScenarioFlights.Flown): (Series, Curve) = flight.result.curves(index)
     val series                                                = drawn(flights.head)._1
     val bound                                                 = series.bound
-    // What is no number at some instants has gaps there.
+    // A curve has gaps where its value is NaN.
     val curves  = flights.map(drawn(_)._2.stretches.flatten).filter(_.nonEmpty)
     val highest = (curves.map(highestShown) ++ bound.map(_.value)).maxOption.getOrElse(0.0)
     val panel   = Panel(

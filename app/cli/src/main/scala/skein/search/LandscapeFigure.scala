@@ -42,7 +42,8 @@ object LandscapeFigure:
     val points = landscape.xs.zip(landscape.cells.head).filter((_, tally) =>
       (tally.mean + tally.sd).isFinite && (tally.mean - tally.sd).isFinite
     )
-    // What flies off shall not make the rest flat: the scale of a map's colours fits here, too.
+    // Values of vehicles that fly away must not make the rest flat: the scale of a map's colours is used
+    // here, too.
     val fitting     = LandscapeScale.of(points.map(_._2.mean), direction)
     val near        = points.filter((_, tally) => tally.mean >= fitting.from && tally.mean <= fitting.to)
     val (low, high) = ends(near.map((_, tally) => (mean = tally.mean, sd = tally.sd)))

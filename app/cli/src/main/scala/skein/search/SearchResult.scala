@@ -64,7 +64,7 @@ object SearchResult:
     */
   def disagreement(flown: RunningStats, reference: RunningStats, unit: String): Option[String] =
     val allowed = Allowed * reference.mean.abs + flown.halfWidth95 + reference.halfWidth95
-    // What is no number agrees with nothing.
+    // NaN agrees with nothing.
     Option.unless((flown.mean - reference.mean).abs <= allowed)(
       s"the scalar engine comes to ${interval(reference, unit)} on the same ${reference.count} episodes, and " +
         s"this search to ${interval(flown, unit)}: the policy computes what floats do not hold; fly it before " +

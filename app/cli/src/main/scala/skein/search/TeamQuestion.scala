@@ -70,14 +70,14 @@ final case class TeamQuestion(
       _ <- Expect.that(axes.map(_.name).distinct.size == axes.size):
         s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
       space = SearchSpace(axes)
-      // A setting's bounds may be wrong together with another's.
+      // A setting's bounds may be invalid only in combination with another's.
       corners <-
         Expect.each(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
       _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
       by <- TeamObjective.ofAll(objective, plain).left.map("--objective: " + _)
-      // A measure's name may have a setting in it.
+      // A measure's name may contain a setting's value.
       _      <- Expect.each(corners)(TeamObjective.ofAll(objective, _)).left.map("--objective, --vary: " + _)
       engine <- engine(by, plain +: corners, plantIsTold)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)

@@ -81,7 +81,7 @@ final class LearnRun(
     val training = Training(task, learner, setup.stepsPerRound)
     var state    = from
     var judging  = Option.empty[Judging]
-    // What is on disk or returned waits for nothing.
+    // A stored or returned state has no evaluation pending.
     def judged(): Unit =
       judging.foreach(policy => state = scored(state, policy))
       judging = None
@@ -107,7 +107,8 @@ final class LearnRun(
 
     var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())
     while mistake.isRight && state.rounds < setup.rounds && !isStopped() do mistake = told(round())
-    // A round that was given up is in the learner already, and so is not saved: it is learned again.
+    // The learner has already changed in an abandoned round, so its state is not saved: the round is
+    // repeated.
     val ended = mistake.flatMap(_ => told(Right(judged())))
     Learned(state, ended.left.toOption)
 

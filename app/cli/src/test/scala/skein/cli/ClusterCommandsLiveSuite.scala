@@ -65,7 +65,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       .redirectErrorStream(true)
       .redirectOutput(Files.createTempFile(parent, "coordinator", ".log").toFile)
       .start()
-    // Meanwhile, since other processes take their time to start.
+    // In parallel, since other processes are slow to start.
     val expected = Future(blocking(alone))
     def blocks   =
       if Files.exists(out.resolve(Ledger.Name)) then Ledger.audit(out.resolve(Ledger.Name)).blocks else 0
@@ -84,7 +84,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     val said = Await.result(searching, 8.minutes)
     assert(clue(said).contains(s"-$pid is gone"))
     val had = """(\d+) more were in the ledger""".r.findFirstMatchIn(said).get.group(1).toInt
-    // Of the round under way; those before it stand in the search's own state.
+    // Blocks of the current round; those before it are in the search's own state.
     assert(clue(had) > 0)
     Await.result(expected, 8.minutes): Unit
     assertSame(out)

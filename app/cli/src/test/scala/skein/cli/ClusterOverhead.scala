@@ -64,10 +64,10 @@ import skein.signal.SplitMix64
   val two   = ready.judges(2)(Judge.Candidates)
   val group = 2048
   for _ <- 1 to 3 do timed(two, candidates(group)): Unit
-  // The best of a few: whoever else is at work makes it less.
+  // The best of a few: other load on the machine lowers the rate.
   val rate  = Vector.fill(5)(group * episodes.size / timed(one, candidates(group)).s).max
   val block = (rate * blockMs * 1e-3).round.toInt.max(episodes.size)
-  // Forty blocks of each worker, so that the last ones weigh little.
+  // Forty blocks of each worker, so that the last ones matter little.
   val count  = (80.0 * block / episodes.size).round.toInt
   val folder = Files.createDirectories(Path.of(out))
   Files.deleteIfExists(folder.resolve(Ledger.Name)): Unit

@@ -163,7 +163,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     val ended = Future(blocking(Console.withOut(said)(Console.withErr(said)(Main.run(words)))))
     while !said.toString.contains("127.0.0.1:") && !ended.isCompleted do Thread.sleep(20)
     val deadline = 30.seconds.fromNow
-    // It says so before it waits.
+    // The command prints this before it waits.
     while !ended.isCompleted && deadline.hasTimeLeft() do
       Edge.interrupt()
       Thread.sleep(20)
@@ -223,38 +223,38 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       val asked = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(found =>
         Option(found.group(1)).getOrElse(found.group(2))
       ).map:
-        case "HOST:PORT"                                                => server.address.toString
-        case "NAME"                                                     => "patrol"
+        case "HOST:PORT" => server.address.toString
+        case "NAME"      => "patrol"
         case "FILE" if command.startsWith("policy") || command.contains("--policy FILE") => learned.toString
-        case "FILE…" if command.startsWith("identify")                  => seeing.toString
-        case "FILE" | "FILE…"                                           => recording.toString
-        case "settings.json"                                            => settings.toString
-        case "searches/…/policy.conf"                                   => policy.toString
-        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf" => learned.toString
-        case "learned/2026-11-22"                                       => learned.getParent.toString
-        case "pursuer.onnx" | "other.onnx"                              => onnx.toString
-        case "sensor.conf"                                              => sensor.toString
-        case "evader.onnx"                                              => s"evader:$onnx"
-        case "searches/…/scenario.conf"                                 => scenario.toString
-        // What one command of a guide writes, a later one reads.
+        case "FILE…" if command.startsWith("identify")                                   => seeing.toString
+        case "FILE" | "FILE…"                                                            => recording.toString
+        case "settings.json"                                                             => settings.toString
+        case "searches/…/policy.conf"                                                    => policy.toString
+        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf"                  => learned.toString
+        case "learned/2026-11-22"          => learned.getParent.toString
+        case "pursuer.onnx" | "other.onnx" => onnx.toString
+        case "sensor.conf"                 => sensor.toString
+        case "evader.onnx"                 => s"evader:$onnx"
+        case "searches/…/scenario.conf"    => scenario.toString
+        // A later command of a guide reads what an earlier one wrote.
         case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
         case model if model.startsWith("mujoco:examples/")                    =>
           model.replace("examples/", s"${Documentation.root}/examples/")
         case word => word
-      // The usual port may be taken here.
+      // The default port may be in use here.
       val words          = asked ++ (if asked.contains("--view") then Seq("--view-port", "0") else Nil)
       val (status, told) = words.head match
         case _ if words.exists(_.startsWith("mujoco:")) && MujocoLibrary.find.isLeft =>
-          // MuJoCo is installed by whoever wants it: that is told in a line.
+          // Users install MuJoCo themselves: without it, one line states that.
           val (status, told) = run(words)
           (if told.contains("MuJoCo's library was not found") then 0 else status, told)
         case _ if words.contains("--gpu") && CudaGpu.find().isLeft =>
-          // A machine without a GPU says so in a line.
+          // Without a GPU, one line states that.
           val (status, told) = run(words)
           (if told.contains("--gpu: ") then 0 else status, told)
         case "cluster" => run(words.updated(2, folder.resolve("certificates").toString))
         case "worker"  =>
-          // Nobody is there to be joined: that is told in a line.
+          // There is no coordinator to join: one line states that.
           val (status, told) = run(words ++ Seq("--patience", "1ms"))
           (if told.contains("no coordinator at") then 0 else status, told)
         case "search" if words.contains("--cluster") =>
@@ -266,22 +266,22 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         case "serve" => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
         case "replay" if words.contains("--view") => runUntilItListens(words)
         case "link"                               =>
-          // The ports of the guide may be taken here.
+          // The guide's ports may be in use here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
           runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))
         case "observe" =>
-          // Without the guide's program, which is the user's.
+          // Without the guide's program, which belongs to the user.
           val own = without(words.takeWhile(_ != "--"), Seq("--simulator"))
           runUntilItListens(own ++ Seq("--listen", "127.0.0.1:0", "--simulator", server.address.toString))
         case _ if words.contains("recogniser=detector") =>
-          // Its runtime is added by whoever wants it: that is told in a line.
+          // Users add its runtime themselves: without it, one line states that.
           val (status, told) = run(words)
           (
             if told.contains("onnxruntime, which runs models, is not on the class path") then 0 else status,
             told
           )
         case _ if words.exists(_.startsWith("unix:")) =>
-          // Nobody answers at the guide's socket: that is told in a line.
+          // Nothing answers at the guide's socket: one line states that.
           val (status, told) = run(words)
           (if told.contains("expected a policy behind the socket") then 0 else status, told)
         case _ => flown(words)

@@ -16,5 +16,5 @@ class ForwardOptionsSuite extends munit.FunSuite:
     assertEquals(ForwardOptions.durationOf("brief", Map.empty), Span.ofSeconds(20))
     assertEquals(ForwardOptions.durationOf("brief", Map("lasts-s" -> "30")), Span.ofSeconds(30))
     assertEquals(ForwardOptions.durationOf("duel", Map.empty), Span.ofSeconds(60))
-    // The command tells of these when it reads the scenario.
+    // The command reports these when it reads the scenario.
     assertEquals(ForwardOptions.durationOf("brief", Map("lasts-s" -> "long")), Span.ofSeconds(60))

@@ -166,5 +166,5 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
         |for _ in $(seq 200); do grep -q last said && break; sleep 0.01; done
         |cat said""".stripMargin
     )
-    // Behind what bash tells of a job that ended.
+    // Follows bash's message on a job that ended.
     assert(clue(said).endsWith("first\nlast\n"))

@@ -33,7 +33,7 @@ object Launchers:
       words: Seq[String],
       javaHome: String = sys.props("java.home")
   ): (status: Int, said: String) =
-    // What filters its standard error may end after it; the pipe is read to its end.
+    // The filter of its standard error may end after it; the pipe is read to its end.
     val piped   = Seq("bash", "-c", "set -o pipefail; \"$@\" 2>&1 | cat", "run", launcher.toString)
     val process = prepared(piped ++ words, javaHome).start()
     val said    = Future(blocking(String(process.getInputStream.readAllBytes(), UTF_8)))

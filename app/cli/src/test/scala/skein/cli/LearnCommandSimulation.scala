@@ -49,7 +49,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val rows = ujson.read(out)("tables")(0)("rows").arr
     assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
     assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
-    // A policy of so few steps flies off, here as in flight.
+    // A policy after this few steps flies away, here as in flight.
     val Seq(learned, own, flown) = rows.map(_(2).num).toSeq: @unchecked
     assert(own < learned - 10 && math.abs(flown - learned) < 5, rows.toString)
 
@@ -98,7 +98,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       .fold(fail(_), identity)
     val setup = question.setup.fold(fail(_), identity)
     def learn(folder: Path, from: LearnState, rounds: Int) =
-      // So much time passes that every round is saved.
+      // Enough time passes that every round is saved.
       var (done, now) = (from.rounds, 0L)
       def later()     =
         now += 60_000_000_000L

@@ -39,7 +39,7 @@ class ListedLoopSimulation extends munit.FunSuite, TemporaryFolders:
     assertEquals(replayed.status, 0, replayed.said)
     assert(replayed.said.contains("flown again"), replayed.said)
 
-    // A program that does not know it decides again, and does not fly again.
+    // A program without the loop can repeat its decisions, but not its flights.
     val elsewhere = run(Main, s"replay $recording")
     assertEquals(elsewhere.status, 0, elsewhere.said)
     assert(!elsewhere.said.contains("flown again"), elsewhere.said)

@@ -56,7 +56,8 @@ class LocaleSuite extends munit.FunSuite:
   )
 
   test("no class turns letters by the machine's locale; none of the libraries formats by it"):
-    // The commands set the locale before anything else, so what is the program's alone may format by it.
+    // The commands set the locale before anything else, so code that belongs only to the program may format
+    // by it.
     val (program, library) = folders.partition(_.startsWith(folderOf(Main.getClass).getParent))
     val files              = library.flatMap(classFiles)
     assert(clue(library).sizeIs > 5 && files.sizeIs > 500)

@@ -38,7 +38,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
   ): folder =>
     val (first, moved) = (folder.resolve("ridge"), folder.resolve("moved here"))
     assertEquals(run("ridge-watch", "--out", first.toString)._1, 0)
-    // In sbt's place: counts, and names a library that no JVM takes, so that nothing flies.
+    // Replaces sbt: counts calls, and names a library that no JVM loads, so that nothing runs.
     val agent = Files.createFile(folder.resolve("agent.jar"))
     val _     = Files.writeString(
       first.resolve("sbtw"),
@@ -62,7 +62,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     val _ = Files.move(first, moved)
     assertEquals(builds(moved), 2)
     assertEquals(builds(moved), 2)
-    // It is known through links to links, too.
+    // It is also found through symbolic links.
     val links = Files.createDirectories(folder.resolve("links"))
     Files.createSymbolicLink(links.resolve("one"), Path.of("../moved here/skein"))
     Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))

@@ -58,7 +58,7 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
       s"budget --policy doubting --means 2 --jitters 2 --episodes 10 --duration 12s --out $folder/swept"
     ): Unit
 
-    // A program that does not know it says which it knows.
+    // A program without the family lists those it has.
     val (status, said) = run(Main, s"fly --clock virtual --policy $policy --out $folder/refused")
     assertEquals(status, 1, said)
     assert(

@@ -125,7 +125,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
 
   flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
     folder =>
-      // Of a program's own structures all are fitted too, and one that cannot be is named.
+      // A program's own structures are all fitted, too, and one that cannot be is named.
       def own(label: String, parameters: Int)(plant: Vector[Double] => ReducedModel) =
         Structure(label, SearchSpace(Vector.tabulate(parameters)(i => Axis(s"lag-$i-s", 0.02, 30, 1))), plant)
       val plain               = own("plain", 1)(values => ReducedModel.lag(1, values(0), 0))
@@ -243,7 +243,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     plots.foreach:
       case path(topic, field) => assert(schemas(topic)("properties").obj.contains(field), s"$topic.$field")
       case other              => fail(other)
-    // The duel's, and those of a forest's scouts with their lidars; two vehicles' front cameras.
+    // The duel's vehicles, and a forest's scouts with their lidars; two vehicles' front cameras.
     val scouts  = (1 to 5).map(number => s"Scout$number").toVector
     val sensors = scouts.map(ImagingSensor(_, "lidar", isLidar = true)) ++
       Seq("Pursuer", "Evader").map(ImagingSensor.camera(_, "front_center", "Scene"))

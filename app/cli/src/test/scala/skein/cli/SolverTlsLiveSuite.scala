@@ -70,7 +70,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("nothing is heard of who shows no certificate, one of another set, or speaks an older TLS"):
     echoing(own): (server, heard) =>
       assert(clue(failure(exchanged(server.address, Some(stranger)))).isInstanceOf[TransportError.NotTrusted])
-      // Who does not speak TLS is cut off, and sees no answer.
+      // A peer without TLS is disconnected, and receives no answer.
       val plain = Await.ready(exchanged(server.address, None), 30.seconds).value.get
       assertNotEquals(plain.getOrElse(""), "geese")
       val socket = own.getSocketFactory.createSocket("127.0.0.1", server.address.port).asInstanceOf[SSLSocket]
@@ -134,7 +134,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     finally Await.result(server.close(), 20.seconds): Unit
 
   test("a flight with certificates that nothing is known of asks whether its solver has them, too"):
-    // A link whose other side is not there.
+    // A link whose far side is down.
     val closing = transport(None).listen(loopback).to(Sink.foreach(
       _.flow.join(Flow.fromSinkAndSource(Sink.cancelled, Source.empty)).run(): Unit
     ))

@@ -67,7 +67,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         "/skein/scenario"
       )
       val seens = told.map((protocol, said) => protocol -> ujson.read(said.fold(fail(_), identity)))
-      // Before the flight is ended, which has ended by itself where something never came.
+      // Checked before the flight is ended: it has ended by itself if something never arrived.
       for (protocol, seen) <- seens do
         assertEquals((seen("protocol").str, seen("wrong")), (protocol, ujson.Arr()))
         val counts = seen("topics").arr.map(topic => topic("name").str -> topic("messages").num.toInt).toMap
@@ -174,7 +174,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
       assert(images.sizeIs > 20, s"${images.size} images")
       assertEquals(seen("told")("decided"), seen("told")("still"))
-      // Two of each part of a vehicle, and due, events, view, cast, steered, fan, record, feed back.
+      // Two of each vehicle's stages, and due, events, view, cast, steered, fan, record, feed back.
       assertEquals(seen("told")("parts").num.toInt, 18)
       assertEquals(seen("told")("crossed").num.toInt, 0, "lines above labels")
       for vehicle <- seen("told")("before").arr do

@@ -50,10 +50,10 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n" +
       "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n").getBytes(US_ASCII))
     out.flush()
-    // What comes before the server's answer is none of the WebSocket's yet.
+    // Bytes before the server's answer do not belong to the WebSocket.
     val answer = Iterator.continually(socket.getInputStream.read()).takeWhile(_ >= 0).map(_.toChar)
     answer.scanLeft("")((last, next) => (last + next).takeRight(4)).find(_ == "\r\n\r\n"): Unit
-    // Numbers of channels count from 1; those that are not there are refused, and no more than a few.
+    // Channel numbers start at 1; unknown ones are refused, and only a few are tried.
     val topics = FlightTopics.all(Vector("Evader", "Pursuer")).size + 1
     val wanted = (1 to topics).map(at => s"""{"id":$at,"channelId":$at}""").mkString(",")
     val text   = s"""{"op":"subscribe","subscriptions":[$wanted]}""".getBytes(US_ASCII)

@@ -24,8 +24,8 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
   * processes for one frame states how many one core could draw. `cli/Test/runMain skein.cli.watchedTeam 20
   * true`.
   *
-  * @param plain whether the browser draws by software alone, else by software that imitates a graphics
-  *   card, which costs more
+  * @param plain whether the browser draws by software alone, else by software that imitates a graphics card,
+  *   which costs more
   */
 @main def watchedTeam(seconds: Int, plain: Boolean): Unit =
   val settings = FlySettings(
@@ -60,7 +60,7 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
         while on && System.nanoTime() - began < at.toNanos do LockSupport.parkNanos(2_000_000)
       feed.offer(record)
   val cpu = ManagementFactory.getThreadMXBean
-  // The steps in the browser, with what was spent when they began and ended.
+  // The steps in the browser, with the processor time at their begin and end.
   val said = JavaScriptTools.packages.flatMap(packages =>
     JavaScriptTools.browser.flatMap: browser =>
       val task = ujson.Obj(
@@ -77,7 +77,7 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
         ProcessBuilder("node", JavaScriptTools.script("browser.mjs"), s"$packages", browser, server.url, task)
           .redirectError(ProcessBuilder.Redirect.INHERIT)
           .start()
-      // While it looks: from some seconds after it came, for the half of what it stays.
+      // Measured while the page is open: from some seconds after its start, for half of its time.
       while shows.all.head.watching == 0 && asked.isAlive do Thread.sleep(50)
       Thread.sleep(5000)
       val from = (System.nanoTime(), cpu.getThreadCpuTime(mine.threadId), browsing(asked))

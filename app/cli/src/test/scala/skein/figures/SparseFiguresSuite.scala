@@ -29,7 +29,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     assert(flights.flights.flatMap(_.published).flatMap(_.distance).map(_.most).max > 1.3 * ours, ours)
     val heights =
       figure.shapes.collect { case Mark.Path(points, _, None, _) if points.size > 20 => points.map(_.y) }
-    // The panel is 220 high, from 34 on.
+    // The panel is 220 units high, from 34 on.
     assert(heights.flatten.min < 34 + 0.3 * 220, heights.flatten.min)
     assert(texts(figure).contains("◆ 41 m") || texts(figure).contains("◆ 40 m"), texts(figure))
     val upright = figure.shapes.collect { case text: Mark.Text if text.upwards => text.content }

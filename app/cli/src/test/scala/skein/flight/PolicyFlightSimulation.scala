@@ -47,7 +47,7 @@ class PolicyFlightSimulation extends munit.FunSuite:
 
     val table = ReportSections.text(Report.of(flown))
     assert(table.contains("stream, lead-pursuit"), table)
-    // As if they were as long as the paper's.
+    // As if the flights were as long as the paper's.
     val long = flown.map(FlightSummary.of).map(one =>
       one.copy(flight = one.flight.copy(duration = Published.Duration))
     )

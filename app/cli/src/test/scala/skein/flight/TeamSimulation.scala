@@ -68,7 +68,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
     val result = resultOf(fly(settings(Crossing(), LoopKind.Plan, LatencyProfile.vpn, 12.5)))
     assertEquals(value(result, "violations"), 0.0, result.measured)
     assert(value(result, "closest m") >= 2.5, result.measured)
-    // Avoiding one another by their policy, none of them is there before 13 s.
+    // Since their policy avoids collisions, none of them arrives before 13 s.
     assert(value(result, "arrived") >= 15, result.measured)
 
   test("a team that searches its plans for long surrounds the evader as closely as by its rule"):

@@ -20,7 +20,7 @@ class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
   test(
     "a live flight and its virtual twins decide on data of the same ages and converge to the same distance"
   ):
-    // A machine may be busy in other ways than by making data older; it is not so each time.
+    // A busy machine can also disturb a flight without making data older; not every time.
     val (busy, agreed) = Iterator.continually(compared()).take(3).span(!_.agrees)
     val flown          = busy.toVector ++ agreed.take(1)
     // .ci/run counts such lines.

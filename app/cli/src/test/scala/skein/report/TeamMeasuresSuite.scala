@@ -106,8 +106,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
   test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
     val scenario = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val goals    = scenario.goals
-    // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from
-    // 8 s on.
+    // The first passes the waiting second at 1 m at 5 s; the third is at its goal from 8 s on.
     val result = resultOf(flown(scenario, 12): (vehicle, second) =>
       vehicle match
         case 0 => ((second - 5) * 4, 200.0)

@@ -65,7 +65,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assertEquals(LandscapeFigure.fixed(at(6)), Some("4 others at the best"))
     val shapes = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes
     val texts  = shapes.collect { case text: Mark.Text => text.content }
-    // What is marked, and the same marks in the legend: the found one as a ring, which does not hide the default.
+    // The marks, and equal marks in the legend: the found one as a ring, which does not hide the default.
     val (rings, discs) = shapes.collect { case disc: Mark.Disc => disc }.partition(_.fill.isEmpty)
     assertEquals((rings.groupBy(_.centre).size, discs.groupBy(_.centre).size), (2, 2))
     assert(rings.map(_.radius).min > discs.map(_.radius).max + 2)

@@ -91,7 +91,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val plant =
       high.copy(conditions = high.conditions.copy(plant = "reduced")).setup.swap.getOrElse("it was taken")
     assert(plant.startsWith("--plant: expected none"), plant)
-    // Also where it is the one that flies where none is told.
+    // Even if it is the default plant.
     assert(clue(high.read(plantIsTold = true)).left.exists(_.startsWith("--plant: expected none")))
 
   test("a search over settings is written down, read back and gone on with to the same end"):

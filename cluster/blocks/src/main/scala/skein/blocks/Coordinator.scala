@@ -57,7 +57,7 @@ final case class Coordinator private (
     workers.get(worker).filter(_.isHere) match
       case None         => (this, None)
       case Some(record) =>
-        // An answer that is on its way may be overtaken by the request behind it.
+        // An answer in transit may be overtaken by the request after it.
         val seen =
           record.holds.map((number, since) => number -> (if holding(number) then nowNanos else since))
         val gone = seen.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
@@ -92,7 +92,7 @@ final case class Coordinator private (
         (next, AnswerKind.First(lease.block))
       case None =>
         waiting.again.get(number) match
-          // Its lease was given up, and it came all the same.
+          // Its lease was dropped, and the answer arrived nevertheless.
           case Some(block) =>
             val next = copy(
               waiting = waiting.without(number),
@@ -110,7 +110,7 @@ final case class Coordinator private (
   /** Returns overdue blocks to the waiting ones; their workers may still answer. */
   def at(nowNanos: Long): Coordinator =
     def isOverdue(lease: Lease) = nowNanos - lease.place._1 > patienceNanos
-    // Towards the end every block may be with two who both hang.
+    // Towards the end every block may be with two workers that both hang.
     val overdue =
       if seldom.isEmpty then leases.valuesIterator.filter(isOverdue).toVector
       else seldom.iterator.map((_, number) => leases(number)).takeWhile(isOverdue).toVector
@@ -138,7 +138,7 @@ final case class Coordinator private (
       case Some((block, others)) =>
         (copy(waiting = others).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
       case None =>
-        // The last blocks go out twice: whoever is quicker counts.
+        // The last blocks are assigned twice: the faster answer counts.
         val slow = seldom.iterator
           .takeWhile((since, _) => nowNanos - since >= slowNanos)
           .map((_, number) => leases(number))

@@ -45,7 +45,7 @@ final class Ledger private (
   def accept(key: BlockKey, answer: ArraySeq[Byte]): Boolean =
     !index.contains(key) && {
       val record = Ledger.record(key, answer)
-      // Of a record that could not be written whole nothing is left before the next.
+      // Removes a record that could not be written completely before the next.
       while record.hasRemaining do
         val _ = channel.write(record, end + record.position())
       index.update(key, (end + Ledger.Head + BlockKey.Bytes, answer.length))
@@ -82,7 +82,7 @@ object Ledger:
       val channel = FileChannel.open(file, CREATE, READ, WRITE)
       val size    = channel.size
       if size < First then
-        // Nothing can stand behind half a heading.
+        // Nothing can follow an incomplete heading.
         val _       = channel.truncate(0)
         val heading = ByteBuffer.wrap(Magic ++ question.toArray)
         while heading.hasRemaining do { val _ = channel.write(heading) }

@@ -197,8 +197,8 @@ final class CoordinatorSimulation(
 
   /** Runs until all is done.
     *
-    * @param deathsAnHour fraction of the workers that die in an hour; each is noticed after 10 s, and
-    *   another starts
+    * @param deathsAnHour fraction of the workers that die in an hour; each is noticed after 10 s, and another
+    *   starts
     * @param cutsAnHour how often a worker is cut off, for 30 s on average
     * @param splits at these seconds a fifth of all workers is cut off simultaneously, for two minutes
     * @param restarts of the coordinator, at these seconds

@@ -86,8 +86,7 @@ object Certificates:
     val names           =
       if host == "localhost" then "dns:localhost,ip:127.0.0.1"
       else address(host).fold(s"dns:$host")(address => s"ip:${address.getHostAddress}")
-    // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is
-    // kept.
+    // One call makes and signs a key in the signer's store: in a copy, of which only the node's key is kept.
     val signing = Files.readString(folder.resolve("signer.password")).trim
     val both    =
       Files.copy(folder.resolve(Signer), own.resolve("both.p12"), COPY_ATTRIBUTES, REPLACE_EXISTING)

@@ -57,7 +57,7 @@ private[cluster] final class CoordinatorBehavior private (
       case Message.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case Message.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
-      case _: ToCoordinator                        => () // Of an earlier run.
+      case _: ToCoordinator                        => () // A message of an earlier run.
       case asked: Compute                          => compute(asked)
       case Cancel                                  =>
         state = state.cancelled
@@ -75,7 +75,7 @@ private[cluster] final class CoordinatorBehavior private (
         save()
       case NotTrusted(reason) => once(WorkerEvent.NotTrusted(reason))
       case Farewell           =>
-        // Stays until the node ends: there are some who ask only now.
+        // Stays until the node ends: some workers may send their first request only now.
         isDone = true
         addresses.values.foreach(_ ! Message.Goodbye)
         save()
@@ -147,7 +147,7 @@ private[cluster] final class CoordinatorBehavior private (
 
   private def lost(worker: String): Unit =
     addresses -= worker
-    // Who goes when all is done was told to.
+    // Workers that leave when all is done have been dismissed.
     if !isDone then
       state.workers.get(worker).filter(_.isHere).foreach: record =>
         died += 1
@@ -180,7 +180,7 @@ private[cluster] final class CoordinatorBehavior private (
   /** Completes the call. A failure drops its remaining blocks. */
   private def ended(outcome: Outcome): Unit =
     if outcome.isLeft then state = state.cancelled
-    // Whoever waits for the outcome sees all of it.
+    // The receiver of the outcome sees the complete progress.
     publish()
     call.foreach(_.promise.trySuccess(outcome))
     call = None

@@ -35,7 +35,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
       Right(made)
     catch
       case failed: (IOException | GeneralSecurityException) =>
-        // A file that is cut off fails without a word.
+        // Reading a truncated file fails without a message.
         Left(
           s"--tls: cannot read the certificates in ${keyStore.getParent}: " +
             Option(failed.getMessage).getOrElse("a file is damaged or cut off")
@@ -72,7 +72,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
         socket.connect(InetSocketAddress(at.host, at.port), TlsProbe.Within.toMillis.toInt)
         socket.setSoTimeout(TlsProbe.Within.toMillis.toInt)
         socket.startHandshake()
-        // In TLS 1.3 the other side judges after the handshake has ended here.
+        // In TLS 1.3 the peer verifies after the handshake has ended here.
         socket.getInputStream.read()
       tried.failed.toOption.collect:
         case reason: SSLException => TransportError.NotTrusted(Address(at.host, at.port), reason).getMessage

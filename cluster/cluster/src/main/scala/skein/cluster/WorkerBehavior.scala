@@ -82,7 +82,7 @@ private[cluster] final class WorkerBehavior private (
     case Message.Refused(reason) => end(End.Refused(reason))
     case Message.Goodbye         => end(End.Finished)
     case Unreachable             => end(End.Lost)
-    case _                       => this // Of an earlier run, or a block that it has.
+    case _                       => this // A block of an earlier run, or one that it already has.
 
   private def askIfReady(): Unit = if member && solvers.isDefined then ask()
 
@@ -117,7 +117,7 @@ private[cluster] final class WorkerBehavior private (
       work: ArraySeq[Byte],
       ready: ArrayBlockingQueue[BlockSolver]
   ): Solved =
-    // There are as many as threads, so that one is always free.
+    // There are as many solvers as threads, so one is always free.
     val solver = ready.take()
     val begun  = System.nanoTime()
     val answer =

@@ -84,14 +84,14 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     val preparing = worker("anna", 0)
     assertEquals(preparing.next(), Message.Welcome(7, question))
     val working = worker("ben", 7)
-    // Also while it has not asked for a block.
+    // Even before its first request for a block.
     worker("dora", 0).next(): Unit
     coordinator ! CoordinatorBehavior.Ended("dora")
     assertEquals(down.poll(30, TimeUnit.SECONDS), system.deadLetters.path.address)
     val elsewhere = Address("pekko", "behaviors", "somewhere", 2552)
     coordinator ! CoordinatorBehavior.Unreachable(elsewhere)
     assertEquals(down.poll(30, TimeUnit.SECONDS), elsewhere)
-    // Who is out already is not taken out again: somebody else may be there by now.
+    // A member that has left is not removed again: another may have its address by now.
     coordinator ! CoordinatorBehavior.Removed(elsewhere)
     coordinator ! CoordinatorBehavior.Farewell
     assertEquals(preparing.next(), Message.Goodbye)

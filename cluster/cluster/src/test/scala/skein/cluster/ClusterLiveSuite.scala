@@ -210,7 +210,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val solvers = Reversing: () =>
       if reached.getCount == 0 then dead.await()
       reached.countDown()
-    // Its end is not told to anybody, as if it was killed.
+    // Its end is not announced, as if it was killed.
     val (node, _, told) = worker(first.node.address, "anna", solvers)
     first.node.compute(works): Unit
     reached.await()
@@ -262,7 +262,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         val told = Await.result(outcome, 90.seconds)
         assert(clue(told).left.exists(reason => why.forall(reason.contains)))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
-      // It hears of those that tried: in an alert, and where somebody speaks no TLS.
+      // It learns of failed attempts: from an alert, or when a peer does not speak TLS.
       val told = coordinator.news.asScala.collect { case WorkerEvent.NotTrusted(reason) => reason }.toSet
       assert(clue(told).exists(_.contains("Received fatal alert")))
       assert(told.exists(_.contains("SSL message")))

@@ -23,7 +23,7 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
     assert(isKeptWith(Array[Byte](0xa8.toByte, 0x0b, 0xf0.toByte, 0x0f)))
     assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
     assert(!isKeptWith(Array.emptyByteArray))
-    // Nor is it missed where there is none.
+    // Without an archive nothing is missing.
     WorkerProcesses.starting(Seq("java", s"-XX:SharedArchiveFile=$archive", "worker")): Unit
 
   test(

@@ -91,7 +91,7 @@ private final class DuelGroup(
             world += 1
         agent += 1
       duels.decide()
-      // What was scored before the first decision counts for the first step.
+      // Scores before the first decision count for the first step.
       if !isFirst then duels.forgetScores()
       isFirst = false
       val goesOn = duels.flyOn()
@@ -105,7 +105,7 @@ private final class DuelGroup(
 
   /** Computes rewards, and which episodes have ended. */
   private def judge(): Unit =
-    // Both learners' rewards are of the same distance: what is the pursuer's loss is the evader's gain.
+    // Both learners' rewards are of one distance: the pursuer's loss is the evader's gain.
     var world = 0
     var again = false
     while world < count do
@@ -146,7 +146,7 @@ private final class DuelGroup(
 
   /** Starts a run under `NextStep`: every environment's next episode begins with it. */
   private def nextRun(): Unit =
-    // Who began anew just when the run ended begins the same episode once more.
+    // An environment that was restarted exactly at the run's end begins its episode once more.
     for world <- 0 until count if !isDone(world) do episodes(world) -= 1
     startRun()
     for world <- 0 until count do clear(world)

@@ -44,7 +44,7 @@ object EnvironmentServer:
     val client = server.accept()
     daemon: () =>
       try serve(client)
-      catch case _: IOException => () // Whoever asked has gone.
+      catch case _: IOException => () // The client has gone.
       finally client.close()
 
   private def daemon(body: () => Unit): Unit =

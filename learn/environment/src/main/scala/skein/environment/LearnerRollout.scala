@@ -67,7 +67,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
             WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % Flights).toInt),
             observer = scores
           ): Unit
-        // Nobody was to decide after the end.
+        // No decision was due after the end.
         isOver = true
         suspend()
       catch case Anew => ()
@@ -86,7 +86,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
       isOver = scoredAtS + EnvironmentGroup.Tolerance >= side.settings.episodeS
       ask()
       if next.isDefined then throw Anew
-      // What was scored before the first decision counts for the first step.
+      // Scores before the first decision count for the first step.
       if isBegun then
         loss = 0
         leastM = Double.PositiveInfinity

@@ -119,7 +119,7 @@ private[environment] object ScenarioSide:
         "objective: expected means over time, which can be rewarded " +
           s"as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
-      // Teams fly low, where the model of three parameters does not hold.
+      // Teams fly low, where the model of three parameters is not valid.
       flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag")
       (timing, delays, vehicle) = flown
       side = ScenarioSide(settings, scenario, role, members, objective, timing, delays, vehicle.response)

@@ -88,7 +88,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
         val at    = row * actions + action
         val mean  = row * 2 * actions + action
         val share = chosen(at).toDouble
-        // By the number before tanh: its logarithm of squashing has the slope −2 tanh.
+        // With respect to the number before tanh: the log of its derivative has the slope −2 tanh.
         val byRaw   = alpha * 2 * share - slopes(at) * (1 - share * share)
         val output  = pass.output(mean + actions)
         val byWidth = byRaw * StrictMath.exp(logDeviation(output)) * noise(at) - alpha

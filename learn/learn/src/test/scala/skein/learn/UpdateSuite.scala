@@ -103,7 +103,8 @@ class UpdateSuite extends munit.FunSuite:
     critics.clear()
     critics.criticise(batch, wanted, 0, 0, 4)
     val network = critics.networks.head
-    // A step against the gradient alone tells it: Adam's first step is the rate times its sign.
+    // A step against the gradient is visible only by sign: Adam's first step is the rate times the gradient's
+    // sign.
     val before = network.parameters.clone
     val loss   = () =>
       (0 until 4).map(at =>
@@ -173,7 +174,7 @@ class UpdateSuite extends munit.FunSuite:
       val mean      = math.tanh(run(ppo.actor, row(ppo.rollout.seen, at, 2))(0))
       val deviation = math.exp(ppo.widths(0))
       -0.5 * math.pow((ppo.rollout.actions(at) - mean) / deviation, 2) - ppo.widths(0)
-    // One of them is far from the policy that collected: its part is clipped.
+    // One of them is far from the collecting policy: its part is clipped.
     for at <- 0 until 4 do ppo.rollout.logs(at) = (logs(at) + Seq(0.05, -1.0, 0.1, 1.0)(at)).toFloat
     val mean      = ppo.rollout.advantages.map(_.toDouble).sum / 4
     val deviation = math.sqrt(ppo.rollout.advantages.map(a => math.pow(a - mean, 2)).sum / 4)

@@ -104,7 +104,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     val (at, turned) = (inCamera.T, inCamera.R)
     val facing       = Vector3(turned.get(2, 2), turned.get(0, 2), turned.get(1, 2))
     val position     = Vector3(at.z, at.x, at.y)
-    // What is seen faces the camera.
+    // A visible tag faces the camera.
     val seen = facing.x * position.x + facing.y * position.y + facing.z * position.z < 0
     Tag(
       detector.getId(index),

@@ -29,7 +29,7 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, appearance:
     val depth = f * appearance.width.value / box.width * math.sqrt(1 + right * right)
     val point = Vector3(1, right, down) * depth
     val angle = Radians(StrictMath.hypot(appearance.deviationPx, appearance.middleShare * box.width) / f)
-    // What the image's border cuts may be nearer by any share.
+    // An object cut by the image's border may be nearer by any factor.
     val isCut = box.left < appearance.deviationPx || box.right > camera.width - appearance.deviationPx
     val share =
       if isCut then 1.0 else StrictMath.hypot(appearance.widthShare, appearance.deviationPx / box.width)

@@ -14,9 +14,9 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
     val seed   = 20261123L
     val result = DetectorAccuracy.measured(Seq((2.0, 6.0), (6.0, 15.0)), count = 25, seed)
     assert(result.recall > 0.85, s"seed $seed: recall ${result.recall}")
-    // Of some forty boxes; 0.94 of all, by 1200 images.
+    // For some forty boxes; 0.94 for all of 1200 images.
     assert(result.precision > 0.85, s"seed $seed: precision ${result.precision}")
-    // The nearer, the larger, and the less is the box's middle the quadrotor's.
+    // The nearer the larger, and the farther the box's middle from the quadrotor's.
     for ((range, row), mostDeg) <- result.byRange.zip(Seq(1.0, 0.4)) do
       val median = row.bearingsDeg(row.bearingsDeg.size / 2)
       assert(median < mostDeg, s"seed $seed: $range m: $median°")

@@ -75,7 +75,7 @@ class PredictSuite extends munit.FunSuite:
     // Constant velocity is off by ½ a t² = ½ · 2 m/s² · (60 ms)².
     for one <- moving do assertEqualsDouble(one.error.value, 0.0036, 1e-9)
     for one <- resting do assertEquals(one.error.value, 0.0)
-    // The last one's moment was never read.
+    // The last prediction's time has no reading.
     assertEquals((moving.size, resting.size), (9, 9))
 
   test("a prediction of a vehicle of which nothing was heard waits"):

@@ -96,7 +96,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(newest.emitted.map(_.frame), Seq(1, 3))
     assertEquals(newest.skipped.toSet, Set("overtaken 0", "overtaken 2"))
     assert(newest.emitted.forall(_.ageMs < 5.001))
-    // A later one that is still worked on has overtaken nobody.
+    // A later frame still in progress has overtaken none.
     val both = run(perSecond = 100, count = 2, workers = 2, newestFirst = true)(Vector(15, 50))
     assertEquals((both.emitted.map(_.frame), both.skipped), (Seq(0, 1), Vector.empty))
 
@@ -135,7 +135,7 @@ class RecogniseSuite extends munit.FunSuite:
       yield
         results.cancel()
         (atFirst, then_)
-    // One is held for whoever takes it, four wait behind it.
+    // One is held for downstream, four wait behind it.
     assertEquals(begun.value, (5, 6))
 
   test("frames are compared as one says: a later run of a simulator whose clock is behind is newer"):
@@ -144,7 +144,7 @@ class RecogniseSuite extends munit.FunSuite:
       val clock                          = Clock.ofNanos(VirtualTime.clock(system))
       def frame(run: Int, validAt: Long) =
         Stamped(run, Instant.ofNanos(validAt), Instant.Epoch, Instant.ofNanos(1000))
-      // All were asked for together, so that two alone do not tell.
+      // All were requested together, so two alone are not conclusive.
       Source(Vector(frame(0, 500), frame(1, 10), frame(0, 600)))
         .via(Recognise[Int, Int](
           1,

@@ -151,12 +151,12 @@ class SteerSuite extends munit.FunSuite:
             (_: Int) => send(),
             () => Future.successful("hovering")
           ))
-          // Takes what comes of the first command, and no more.
+          // Takes the events of the first command, and no more.
           .mapAsync(2)(_ => Future.never)
           .runWith(Sink.ignore)
         after(1.second)(Future(commands))
       .value
-    // Each command comes to two events, that it was sent and that it has ended.
+    // Each command has two events: sent, and ended.
     assertEquals(sent, 1 + Steer.EventLimit / 2)
 
   test("where the last command has ended, the next is sent as soon as it comes"):

@@ -79,7 +79,7 @@ private[link] final class DelayLine(
       /** Takes bytes that leave their sender's side. */
       private def enter(waiting: Waiting, leave: Span): Unit = delivery.due(leave, waiting.delay) match
         case Some(due) =>
-          // All but a datagram is due after what entered before.
+          // Anything but a datagram is due after earlier bytes.
           underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(waiting.bytes, due))
         case None =>
           bytesUnderWay -= waiting.bytes.size

@@ -22,7 +22,7 @@ private[link] final class Delivery(
 ):
   private val upcomingStalls = stalls.buffered
   private var lastDue        = Span.Zero
-  // What leaves from now on may still fall into these.
+  // Bytes that leave from now on may still fall into these.
   private var met = Vector.empty[(from: Span, until: Span)]
 
   /** Samples the delay of bytes that enter now.

@@ -69,7 +69,7 @@ final class MemoryNetwork(
           val connection = establish(to)
           Flow
             .futureFlow(connection)
-            // A client that gives up while it connects closes the connection once it is there.
+            // A client that cancels while it connects closes the connection once it is open.
             .withAttributes(Attributes(PropagateToNested))
             .mapMaterializedValue(_ => connection.map(_ => Done))
         .mapMaterializedValue(_.flatten)

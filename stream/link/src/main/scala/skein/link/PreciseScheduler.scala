@@ -117,7 +117,7 @@ final class PreciseScheduler(
   ) extends Runnable
       with Cancellable:
     private val stopped = AtomicBoolean()
-    // Cancelling what is pending only frees its memory sooner: `stopped` alone decides.
+    // Cancelling the pending task only frees its memory earlier: `stopped` alone decides.
     @volatile private var pending = scheduleOnce(initialDelay, this)
 
     def run(): Unit =

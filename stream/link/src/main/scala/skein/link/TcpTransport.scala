@@ -94,7 +94,7 @@ object TcpTransport:
     engine.setUseClientMode(true)
     val asked = engine.getSSLParameters
     asked.setProtocols(Protocols)
-    // The name is verified as a browser does.
+    // The name is verified by the rules of browsers.
     asked.setEndpointIdentificationAlgorithm("HTTPS")
     engine.setSSLParameters(asked)
     TlsEngine(engine)
@@ -118,7 +118,7 @@ object TcpTransport:
         case _: ConnectException                                  => TransportError.NobodyListens(to)
         case null                                                 => TransportError.Lost(to, e.getMessage)
         case c if rootCause(c).isInstanceOf[UnknownHostException] => TransportError.UnknownHost(to)
-        // The other side may accept and reset before this one has seen that it is connected.
+        // The peer may accept and reset before this side has seen that it is connected.
         case c: IOException if Option(c.getMessage).exists(_.startsWith("Connection reset")) =>
           TransportError.Lost(to, c.getMessage)
         case c => TransportError.Failed(to, c)

@@ -15,7 +15,7 @@ private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Uni
 
   /** @param source begins with a record, since a call consumes whole ones */
   def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
-    // What is no record it refuses by itself, once, and is closed then.
+    // The JDK's engine refuses anything but a record by itself, once, and is closed then.
     telling(own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count))
 
   def wrap(sources: Array[ByteBuffer], from: Int, count: Int, into: ByteBuffer): SSLEngineResult =

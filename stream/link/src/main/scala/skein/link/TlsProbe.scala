@@ -37,7 +37,7 @@ private[skein] object TlsProbe:
   private def greeted(socket: Socket): Array[Byte] =
     socket.getOutputStream.write(greeting)
     try socket.getInputStream.readNBytes(2)
-    // The other side may end it before it has read all.
+    // The peer may close it before it has read everything.
     catch case _: SocketException => Array.emptyByteArray
 
   private def tried[A](at: Address, within: Span)(ask: Socket => A): Option[A] =

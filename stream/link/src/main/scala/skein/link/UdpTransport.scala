@@ -115,14 +115,14 @@ final class UdpSocket private (
         Sink
           .foreach[ByteString](bytes => bytes.grouped(MostBytes).foreach(send(at, _)))
           .mapMaterializedValue(_.onComplete: _ =>
-            // By then another may have come from there.
+            // By then another datagram may have been received from it.
             peers.remove(at, this)
             onEnd()),
         source
       )
 
   private def send(to: InetSocketAddress, bytes: ByteString): Unit =
-    // Nobody need listen there, and the line may be full: that is what datagrams are.
+    // There may be no receiver, and the line may be full: datagrams guarantee nothing.
     try socket.send(DatagramPacket(bytes.toArrayUnsafe(), bytes.size, to))
     catch case _: java.io.IOException => dropped.increment()
 

@@ -84,7 +84,7 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(came.size, sent)
     assertNotEquals(came.map(_._1).toVector, (0 until sent).map(i => s"$i;").toVector)
     assertEquals(came.map(_._2), came.map(_._2).sorted)
-    // None waits for one before it: the delays are those that the profile draws.
+    // No message waits for an earlier one: the delays are those drawn from the profile.
     val inOrder = over(LatencyProfile.vpn)(line => arrivals(every(1, sent), line))
       .flatMap((text, ms) => text.split(';').map(_ -> ms))
     assert(delays(came).sum < 0.8 * delays(inOrder).sum, s"${delays(came).sum} ${delays(inOrder).sum}")

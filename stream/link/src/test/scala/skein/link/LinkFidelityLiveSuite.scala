@@ -76,8 +76,8 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
         after((i * 10).millis, system.scheduler)(Future.successful((System.nanoTime() - due) * 1e-6))
       .map(_.sorted.apply(297))
 
-  /** @param differencesMs measured minus profile from the 10 % to the 99 % quantile, to the server and to
-    *   the client
+  /** @param differencesMs measured minus profile from the 10 % to the 99 % quantile, to the server and to the
+    *   client
     * @param latenessMs of the machine during the measurement
     */
   private final case class Run(differencesMs: Seq[Seq[Double]], latenessMs: Double):

@@ -93,11 +93,11 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
         tellEndless
       )
     try BlockContext.withBlockContext(this)(body)
-    catch case _: Throwable if failure != null => throw failure.nn // it explains whatever followed from it
+    catch case _: Throwable if failure != null => throw failure.nn // it is the cause of later exceptions
     finally
       watchdog.stop()
       if failure != null then
-        Thread.interrupted(): Unit // the watchdog's; whatever runs next here is not meant
+        Thread.interrupted(): Unit // the watchdog's interrupt; it is not meant for later code
       Redirect.setEnvironment(null)
 
   private def tellEndless(stack: Array[StackTraceElement]): Unit =

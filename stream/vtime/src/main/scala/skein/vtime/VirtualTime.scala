@@ -29,7 +29,7 @@ object VirtualTime:
     loop.governing:
       requireAgent(loop)
       val system = ActorSystem("virtual", VirtualConfig(config))
-      // It awaits an actor when it is made, so it must be there before blocking becomes an error.
+      // Making it awaits an actor, so it must exist before blocking becomes an error.
       SystemMaterializer(system): Unit
       loop.booted()
       val result = Promise[A]()

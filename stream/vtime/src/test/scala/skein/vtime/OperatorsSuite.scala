@@ -74,7 +74,7 @@ class OperatorsSuite extends munit.FunSuite:
       run.duration
     assertEquals(failure(_.completionTimeout(700.millis)), 700.millis)
     assertEquals(failure(_.drop(1).initialTimeout(300.millis)), 300.millis)
-    // Demand ends at 0; of the checks, 100 ms apart, the first after more than 800 ms:
+    // Demand ends at 0; the first check, of those 100 ms apart, after more than 800 ms:
     assertEquals(failure(_.backpressureTimeout(800.millis).mapAsync(1)(_ => Future.never)), 900.millis)
 
   test("a circuit breaker lets a call through again exactly when its reset time is over"):

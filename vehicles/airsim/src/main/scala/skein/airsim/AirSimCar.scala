@@ -56,7 +56,7 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
 
   /** @param wanted the car's velocity to north and east, m/s, as a function of its motion */
   private def drive(lasts: Span)(wanted: Kinematics => (Double, Double)): Future[Answer] = seen.get match
-    // At once, so that actions leave in the order of the calls.
+    // Sent immediately, so that actions leave in the order of the calls.
     case Some(now) => drive(now, wanted(now), lasts)
     case None      =>
       read().flatMap:

@@ -29,7 +29,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
     val calls  = ConcurrentLinkedQueue[Place]()
     val inTurn = AtomicBoolean()
 
-    // The rest is the taker's.
+    // The remaining fields belong to the taking thread.
     var round = -1L
     var taken = 0 // in that round
 
@@ -71,7 +71,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
         forgetTaken()
       if line.calls.isEmpty then
         line.inTurn.set(false)
-        // One may have come between the two.
+        // A line may have been added between the two checks.
         if !line.calls.isEmpty && line.inTurn.compareAndSet(false, true) then
           val _ = came.add(line)
       else if line.taken >= batch then later.add(line): Unit

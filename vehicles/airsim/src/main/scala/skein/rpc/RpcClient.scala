@@ -130,8 +130,8 @@ final class RpcClient(
           s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil"
         )
       read
-    // Keeping note of where it is makes reading several times slower: only what cannot be read is read again
-    // with it.
+    // Tracking the position makes reading several times slower: only unreadable answers are read again with
+    // it.
     try Right(readAs(trace = false))
     catch
       case NonFatal(_) =>

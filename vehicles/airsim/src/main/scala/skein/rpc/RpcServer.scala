@@ -54,7 +54,8 @@ object RpcServer:
     val stop     = KillSwitches.shared("rpc-server")
     val told     = AtomicInteger()
 
-    // What a hostile peer can cause as often as it likes is told some times, and counted ever after.
+    // Events that a hostile peer can cause without limit are logged a limited number of times, and then only
+    // counted.
     def tell(what: => String): Unit =
       val before = told.getAndIncrement()
       if before < MostTold then system.log.warning("RPC {}", what)

@@ -55,10 +55,10 @@ private[rpc] final class ServerConnection(
       private var strays    = 0    // values since the last request that were no messages
       private var reason    = Option.empty[String]
 
-      @volatile private var spoken   = false // a request has come
+      @volatile private var spoken   = false // a request has been received
       @volatile private var finished = false // the peer sends no more
 
-      // The next message, while it is too large for what is left, and the watches since it is.
+      // The next message, while it exceeds the memory left, and the number of watches since then.
       private var heldBack = Option.empty[Array[Byte]]
       private var backFor  = 0
 
@@ -176,7 +176,7 @@ private[rpc] final class ServerConnection(
               consumed = true
               segment = 0
             case Framed.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
-        // The rest of it may never come: only requests of its own are worth waiting for.
+        // The rest of it may never arrive: it is worth waiting only for its own requests.
         if consumed && reason.isEmpty && !mayRead && !underWay then tooMuch()
         turn.force(inFlight)
         holding.force(held)
@@ -212,7 +212,7 @@ private[rpc] final class ServerConnection(
         else
           backFor = 0
           counters.lacking.increment()
-          // Unread: to read it takes what is lacking.
+          // Not decoded: decoding needs the memory that is lacking.
           RpcMessage.requestId(frame) match
             case Some(id) =>
               counters.requests.increment()

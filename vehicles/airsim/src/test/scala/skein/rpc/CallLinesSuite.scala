@@ -35,7 +35,7 @@ class CallLinesSuite extends munit.FunSuite:
     for pause <- Seq(60, 200, 1000) do
       val lines = CallLines[Long]()
       for connection <- 1L to 200L; _ <- 1 to 256 do lines.put(connection, connection)
-      for _ <- 1 to 200; taken <- lines.take() do lines.put(taken, taken) // as they had come
+      for _ <- 1 to 200; taken <- lines.take() do lines.put(taken, taken) // in order of arrival
       var last   = -1L
       var wakes  = 0
       val served = new Array[Int](201)

@@ -104,7 +104,7 @@ object CodecFuzz:
       theirs.isArrayValue && items.length == theirs.asArrayValue.size &&
       items.indices.forall(i => same(items(i), theirs.asArrayValue.get(i)))
     case Obj(entries) =>
-      // A key that comes twice keeps its last value in ours; the oracle's list of pairs has both.
+      // A duplicate key keeps its last value in ours; the oracle's list of pairs has both.
       theirs.isMapValue && entries.forall: (key, item) =>
         theirs.asMapValue.entrySet.asScala.exists(e => same(key, e.getKey) && same(item, e.getValue))
     case Ext(-1, _) =>

@@ -223,7 +223,7 @@ final case class Autopilot(
           copy(
             mode = wanted,
             enteredAt = motion.sinceBoot,
-            // What it held, it goes on holding.
+            // A vehicle that already holds keeps its position.
             anchor = if mode == FlightMode.Hold && wanted == mode then anchor else motion.state.positionNed,
             turn = OffboardSetpoint.Turn.None,
             stillSince = None,
@@ -339,7 +339,7 @@ final case class Autopilot(
         case FlightMode.Return =>
           val height = -parameters(Parameters.ReturnAltitude)
           val away   = here.copy(z = 0).norm
-          // First up, then across; who is near already goes down where it is.
+          // First up, then across; a vehicle that is near already descends in place.
           if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
           else to(Vector3.Zero.copy(z = here.z), OffboardSetpoint.Turn.None)
         case FlightMode.Mission if !motion.isFlying =>

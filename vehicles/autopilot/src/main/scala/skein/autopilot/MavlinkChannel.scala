@@ -62,7 +62,7 @@ final class MavlinkChannel(
     val ready = due.iterator.collect { case (key, at) if at <= now => key }.toVector.sorted
     for key <- ready do
       val next = due(key) + every(key)
-      // What was late is not made up for.
+      // Missed messages are not sent later.
       due(key) = if next > now then next else now + every(key)
     ready.map((system, id) => (system = system, id = id))
 

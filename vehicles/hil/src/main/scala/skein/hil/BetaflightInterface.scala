@@ -40,7 +40,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
     else
       val values = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
       controls = AutopilotInterface.rotors(Vector.fill(4)(values.getFloat().toDouble))
-      // It may have been started anew.
+      // It may have been restarted.
       if speed != 1 && heardAt.forall(before => up - before > silence) then rateDue = true
       heardAt = Some(up)
     Vector.empty
@@ -64,9 +64,9 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
     val packet   = ByteBuffer.allocate(StateLength).order(ByteOrder.LITTLE_ENDIAN)
     packet.putDouble(told.toSeconds)
     put(packet, rates.x, rates.y, rates.z)
-    // What it measures, with x to the front, y to the left and z up, and then the sign turned.
+    // The measured values, with x to the front, y to the left and z up, and then negated.
     put(packet, -force.x, force.y, force.z)
-    // Betaflight's own axes are others, but for the SITL it turns the signs (`imuComputeRotationMatrix`).
+    // Betaflight's own axes differ, but for the SITL it swaps the signs (`imuComputeRotationMatrix`).
     put(packet, turn.w, turn.x, turn.y, turn.z)
     put(packet, velocity.y, velocity.x, -velocity.z)
     put(packet, truth.place.longitudeDeg, truth.place.latitudeDeg, truth.place.altitude.value)

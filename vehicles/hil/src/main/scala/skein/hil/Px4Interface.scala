@@ -162,7 +162,7 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
 
   private def state(truth: SensorTruth): Option[Message] =
     stateInterval.filter(_ => stateDue <= truth.up).map: interval =>
-      // What was late is not made up for.
+      // Late messages are not made up for.
       stateDue = if stateDue + interval > truth.up then stateDue + interval else truth.up + interval
       val seen         = truth.kinematics
       val turn         = seen.orientation
@@ -231,7 +231,7 @@ object Px4Interface:
     val Magnetic = 0x1c0L
     // Pressure, altitude by pressure, temperature.
     val Pressure = 0x1a00L
-    // The vehicle was put elsewhere: estimators begin anew.
+    // The vehicle was moved: estimators must restart.
     val Reset = 0x80000000L
 
   private def micros(up: Span): Long = up.toNanos / 1000

@@ -49,7 +49,7 @@ final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
   private def scaled(v: Vector3, vertically: Double) = Vector3(v.x, v.y, v.z * vertically)
 
   private def normal3(deviation: Double) =
-    // In this order, whatever the compiler makes of arguments.
+    // Evaluated in this order, independent of the compiler's order of arguments.
     val x = normal(deviation)
     val y = normal(deviation)
     Vector3(x, y, normal(deviation))

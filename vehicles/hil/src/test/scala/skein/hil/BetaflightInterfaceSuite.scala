@@ -56,7 +56,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
       val told   = ByteBuffer.wrap(packet).order(ByteOrder.LITTLE_ENDIAN)
       val (w, x) = (told.getDouble(7 * 8), told.getDouble(8 * 8))
       val (y, z) = (told.getDouble(9 * 8), told.getDouble(10 * 8))
-      // As imuComputeRotationMatrix and imuUpdateEulerAngles have it where the simulator gives the attitude.
+      // The formulas of imuComputeRotationMatrix and imuUpdateEulerAngles for a simulated attitude.
       val (m00, m10) = (1 - 2 * (y * y + z * z), -2 * (x * y + w * z))
       val m20        = -2 * (x * z - w * y)
       val (m21, m22) = (2 * (y * z + w * x), 1 - 2 * (x * x + y * y))

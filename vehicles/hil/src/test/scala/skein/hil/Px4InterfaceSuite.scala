@@ -134,7 +134,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
         val sensed = peer.tick().collect { case one: HilSensor => one.timeUsec }.head
         if !peer.interface.isWaiting then
           peer.say(answer(sensed, 1, 1))
-          // A second answer to the same sensors is none.
+          // A second answer to these sensors does not count.
           peer.say(answer(sensed, 1, 1))
           answers += 1
       assertEquals(answers, 250 * seconds)
@@ -188,7 +188,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
       frame(random.nextInt(frame.length)) = random.nextInt(256).toByte
       peer.interface.hear(frame.take(1 + random.nextInt(frame.length)), Span.Zero)
     assert(peer.interface.damaged > 1000)
-    // Whatever a damaged one has claimed, these end it.
+    // Enough bytes to end any damaged frame, whatever its stated length.
     for _ <- 1 to 40 do peer.say(controls(129, 1, 0.5f, 0.5f, 0.5f, 0.5f))
     assertEquals(peer.interface.rotors, Setpoint.rotors(0.5, 0.5, 0.5, 0.5))
     assert(peer.ticks(1).nonEmpty)

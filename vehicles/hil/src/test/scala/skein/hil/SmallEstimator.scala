@@ -54,7 +54,7 @@ final class SmallEstimator:
 
   def altitude(aboveSeaM: Double): Unit =
     val zero = ground.getOrElse(aboveSeaM)
-    // As long as it stands, it learns where the ground is.
+    // While it stands still, it learns the ground's altitude.
     ground = Some(if aligned < Alignment then zero + (aboveSeaM - zero) * 0.05 else zero)
     val off = zero - aboveSeaM - positionNed.z
     positionNed = positionNed + Vector3(0, 0, off * 0.02)

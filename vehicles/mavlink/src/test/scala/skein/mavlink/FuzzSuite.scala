@@ -11,7 +11,7 @@ class FuzzSuite extends munit.FunSuite:
     for (definition, kind) <- Dialect.all.zipWithIndex do
       val random = Random(kind)
       val writer = FrameWriter(1, 1)
-      // Whatever length a damaged one has claimed, so many that follow end it.
+      // Enough bytes to end any damaged frame, whatever its stated length.
       val after = Vector.tabulate(25)(index => ParamRequestList(index, 0))
       val tail  = after.flatMap(writer.write).toArray
       var whole = 0

@@ -53,7 +53,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
       batch(place, speed0 + 3) = state.wx
       batch(place, speed0 + 4) = -state.wy
       batch(place, speed0 + 5) = -state.wz
-      // MuJoCo begins anew where a state diverges; its time shows that.
+      // MuJoCo resets a diverging state; its time shows that.
       batch(place, body.time.at) = Running
       var i = 0
       while i < told.length do

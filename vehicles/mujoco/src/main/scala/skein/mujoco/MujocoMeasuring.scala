@@ -24,8 +24,8 @@ private[mujoco] final class MujocoBody(
     val standingRow: Array[Double]
 )
 
-/** Measures whether and how a model can fly: each actuator is held at a control until it has settled,
-  * and the accelerations are read.
+/** Measures whether and how a model can fly: each actuator is held at a control until it has settled, and the
+  * accelerations are read.
   *
   * @param one a simulation of the model
   */

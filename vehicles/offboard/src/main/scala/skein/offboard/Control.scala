@@ -166,7 +166,7 @@ final case class Control(
       mode: Option[Long] = None
   ): Step =
     val one = Order(token, command, numbers, 0, now + settings.timeout, now, None, mode)
-    // A newer command of the kind takes an older one's place.
+    // A newer command of this kind replaces an older one.
     val (older, others) = orders.partition(_.command == command)
     Step(copy(orders = others), answers = older.map(_.token -> Right(false)))
       .andThen(_.copy(orders = others :+ one).due(now))
@@ -246,7 +246,7 @@ final case class Control(
       if !isNew then Step(next) else next.sampled(now)
 
   private def received(sentAt: Instant, theirs: Instant, now: Instant): Step =
-    // An answer to somebody else's question has a time that was never sent.
+    // An answer to another peer's request has a time that was never sent.
     if sentAt > lastSync || now.since(sentAt) > Span.ofSeconds(10) then Step(this)
     else
       val known  = clock.fold(VehicleClock.of(sentAt, theirs, now))(_.answered(sentAt, theirs, now))
@@ -285,7 +285,7 @@ final case class Control(
           answers = Vector(one.token -> Right(true))
         )
       case Some(_) if result == Result.InProgress => Step(this)
-      // Setpoints may not have come yet.
+      // The vehicle may not have received setpoints yet.
       case Some(one) if isOffboard(one) && one.tries < MostTries => Step(this)
       case Some(one)                                             =>
         Step(copy(orders =

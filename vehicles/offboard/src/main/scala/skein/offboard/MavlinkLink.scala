@@ -100,7 +100,7 @@ final class MavlinkLink private (
       for number <- systems do
         val one  = controls(number)
         val from = origin.orElse(controls(systems.head).origin).get
-        // Altitudes count from where each vehicle starts, as in its own frame.
+        // Altitudes are relative to each vehicle's start, as in its own frame.
         val at = if ready.isCompleted then one.originNed else one.origin.get.nedFrom(from).copy(z = 0)
         controls(number) = one.copy(originNed = at).inTimeOf(reference)
       val _ = ready.trySuccess(())

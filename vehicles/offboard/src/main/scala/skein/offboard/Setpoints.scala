@@ -24,7 +24,7 @@ private[offboard] object Setpoints:
     case Action.Position(place, speed, yaw) =>
       val goal = place - originNed
       val way  = goal - state.positionNed
-      // No setpoint says how fast a place is flown to: far from it, a velocity does.
+      // No setpoint states the speed towards a position: far from it, a velocity is sent instead.
       if way.norm > NearM then
         val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, speed)
         Some(local(system, Vector3.Zero, velocity, Position | Acceleration, turn(yaw, way)))

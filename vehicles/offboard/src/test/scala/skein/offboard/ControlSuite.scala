@@ -61,7 +61,7 @@ class ControlSuite extends munit.FunSuite:
       (1 to 40).foldLeft((sent.next, Vector.empty[Any], Vector.empty[Any])): (before, tick) =>
         val step = before._1.passed(at(100 + 10 * tick))
         (step.next, before._2 ++ velocities(step), before._3 ++ step.answers)
-    // Afterwards it is told to stay, for as long as nothing else is asked.
+    // Afterwards it is commanded to stay, until another action is requested.
     assertEquals(sends, Vector.fill(2)((5f, 0f)) ++ Vector.fill(2)((0f, 0f)))
     assertEquals(answers, Vector((7L, Right(true))))
 
@@ -188,7 +188,7 @@ class ControlSuite extends munit.FunSuite:
           control.heard(Timesync(theirs(20 + 10 * tick).toNanos, sent), now).next
         (back, before._2 :+ syncs(step).size)
     assert(aligned.isReady)
-    // One more had gone when the fifth was back.
+    // One more had been sent when the fifth was answered.
     assertEquals(counts.take(7).sum, 6)
     assert((4 to 5).contains(counts.drop(7).sum), counts.toString)
 
@@ -208,7 +208,7 @@ class ControlSuite extends munit.FunSuite:
   test("a sample answers all readings that wait, in the flight's frame, with the bounds that TIMESYNC gives"):
     val synced =
       known().copy(originNed = Vector3(10, 0, 0)).heard(Timesync(theirs(30).toNanos, at(15).toNanos), at(50))
-    // Its question was sent at 20 ms at the earliest.
+    // Its request was sent at 20 ms at the earliest.
     val step =
       synced.next.copy(lastSync = at(20)).heard(Timesync(theirs(30).toNanos, at(20).toNanos), at(50)).next
         .read(4, at(60)).next.heard(sample(70, north = 3), at(85))

@@ -59,7 +59,7 @@ final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
         val short = if apart > 2 then apart - 4 else if apart < -2 then apart + 4 else apart
         low = math.min(low, short)
         high = math.max(high, short)
-      // One more on each side: of rounding.
+      // One more on each side, because of rounding.
       val first = math.floor((middle + low) * PerUnit).toInt - 1
       val last  = math.floor((middle + high) * PerUnit).toInt + 1
       if last - first >= Sectors then 0 until Sectors else (first to last).map(Math.floorMod(_, Sectors))

@@ -41,5 +41,5 @@ private[simulator] final class Beside(
         one = next()
     finally
       running.decrementAndGet(): Unit
-      // Something may have come between the last look and this.
+      // Work may have been added since the last check.
       if !isIdle then start()

@@ -144,7 +144,7 @@ private[simulator] object CameraMethods:
   )(change: (Camera, A) => Camera): ServerMethod =
     many[(String, String, String, Boolean)](method):
       case (simulation, (preset, camera, name, external)) =>
-        // As in AirSim, a name that is no preset's changes nothing.
+        // As in AirSim, an unknown preset changes nothing.
         CameraMethods.change(simulation, camera, name, external): camera =>
           presets.find(named(_) == preset).fold(camera)(change(camera, _))
 

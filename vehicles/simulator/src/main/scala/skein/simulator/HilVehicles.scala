@@ -23,7 +23,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
   private var lost          = 0L
   private val losses        = mutable.HashMap.empty[Int, Int]
 
-  // Wall time waited beyond what autopilots may slow time.
+  // Wall time waited, beyond the slowdown that autopilots may cause.
   private var waited  = Span.Zero
   private var toldAt  = Option.empty[Instant]
   private var toldFor = Span.Zero
@@ -75,7 +75,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     else stop(world.now)
 
   def told(at: Instant): Unit =
-    // A machine that stands still has let nobody answer.
+    // While the machine itself was stopped, no autopilot could answer.
     val passed = toldAt.fold(Span.Zero)(at.since(_)).min(LongestLook)
     val slowed = (up - toldFor) * MostSlowdown
     toldAt = Some(at)
@@ -105,7 +105,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
         state.orientation,
         state.angularVelocityFrd
       ),
-      // The ground carries a vehicle that stands, and physics does not move it.
+      // Physics does not move a vehicle that stands on the ground.
       if state.grounded then Vector3.Zero else state.accelerationNed,
       place,
       Globe.pressurePa(place.altitude.value),

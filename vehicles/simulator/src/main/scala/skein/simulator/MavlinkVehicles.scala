@@ -35,7 +35,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       frame <- peer.read(bytes)
       (system, component) = targetOf(frame.message)
       one <- autopilots
-      // Who asks for more than it could take has no answer.
+      // A peer that requests more than it takes gets no answer.
       if !peer.isFull && peer.systems.contains(
         one.system
       ) && (system == 0 || system == one.system) && component <= CommonDialect.Autopilot1
@@ -95,7 +95,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       heard.answers.foreach(peer.write(system, _))
       tell(system, heard.news)
       for (id, micros) <- heard.interval do peer.setInterval(system, id, micros, sinceBoot)
-      // A setpoint acts at once, as a move does.
+      // A setpoint takes effect immediately, as a move does.
       turn(vehicle, world.now).foreach(vehicle.command(_, world.now))
 
     private def takeOver(): Unit =

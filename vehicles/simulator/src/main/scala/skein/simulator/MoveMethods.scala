@@ -22,7 +22,8 @@ private[simulator] object MoveMethods:
         fly(simulation, name)(PathMove.order(Seq(Vector3.Zero), 0.5f, timeout, Travel.Plain))
     ,
     ServerMethod.one[String]("hover"): (simulation, name) =>
-      // AirSim sends it along a path to where it is, which ends at once with false; then its goal runs out.
+      // AirSim sends it along a path to its own position, which ends immediately with false; then its goal
+      // expires.
       fly(simulation, name)(_ => Right((_, _) => MoveProgress.Ended(false, None))),
     byVelocity("moveByVelocity", ifNone = true): (_, x, y, vz) =>
       Setpoint.velocity(x, y, vz),
@@ -41,7 +42,7 @@ private[simulator] object MoveMethods:
         val travel = Travel(drivetrain, yaw, lookahead, adaptive)
         fly(simulation, name)(PathMove.order(Seq(Vector3(x, y, z)), speed, timeout, travel))
     ,
-    // In single precision, as AirSim takes them: a goal is up to 0.4 m beside the one that is meant.
+    // In single precision, as in AirSim: a goal deviates by up to 0.4 m from the intended one.
     many[(Float, Float, Float, Float, Float, Int, YawMode, Float, Float, String)]("moveToGPS"):
       case (
             simulation,

@@ -47,7 +47,7 @@ private[simulator] object NamePattern:
     */
   def isLike(name: String, wildcard: String): Boolean =
     var (at, in)      = (0, 0)
-    var (again, from) = (-1, 0) // behind the last `*`, and what it does not stand for yet
+    var (again, from) = (-1, 0) // after the last `*`, and its first unmatched position
     var isLike        = true
     while isLike && at < name.length do
       if in < wildcard.length && wildcard(in) == '*' then
@@ -113,7 +113,7 @@ private[simulator] object NamePattern:
         else if taken('?') then Some((0, Some(1)))
         else Option.when(comes('{'))(counts())
       times.fold(what): (least, most) =>
-        // Of a whole name it is all the same whether more or less is tried first.
+        // For whole names the order of trying more or fewer repetitions does not matter.
         val _ = taken('?')
         if "*+?{".exists(comes) then wrong(s"nothing to repeat before '${text(at)}'")
         NameTree.Times(what, least, most)

@@ -160,7 +160,7 @@ private[simulator] object PeerServer:
         counters.turnedAway.incrementAndGet(): Unit
         Source.empty[ByteString].via(flow).runWith(Sink.cancelled): Unit
 
-    // All are counted, whatever one of them says.
+    // All are counted, even if one is refused.
     def isAdmitted(channel: Long, places: Seq[Places]): Boolean =
       val admitted = places.map(_.admit())
       val all      = admitted.forall(identity)
@@ -172,7 +172,7 @@ private[simulator] object PeerServer:
         try
           val isAlone = port.mostPeers == 1
           val here    = Places(port.mostPeers, Silence)
-          // Who is told without having asked is a peer, too.
+          // A peer that receives messages without having sent one is a peer, too.
           val admitted                  = port.mostPeers + (if port.isOneWay then 1 else 0)
           def speaks(bytes: ByteString) = port.speaks(bytes.toArrayUnsafe())
           val socket                    =

@@ -19,7 +19,7 @@ final private[simulator] class Scans:
   def note(until: Instant, of: (Scans.Carried, Instant, Long) => Scan): Unit =
     for lidar <- lidars if !lidar.lidar.fresh do
       var next = dueAt(lidar)
-      // Of those that a long step has passed only the newest will be asked for.
+      // Of the scans that a long step has passed only the newest can be requested.
       if next.forall(_ <= until) then
         val start = next.getOrElse(until)
         val late  = until.since(start).toNanos / lidar.period.toNanos

@@ -26,7 +26,7 @@ private[simulator] object SceneMethods:
     one[String]("simGetObjectPose")((simulation, name) => answer(simulation.objects.poseOf(name))),
     many[(String, Option[Pose], Boolean)]("simSetObjectPose"):
       case (simulation, (name, pose, _)) =>
-        // What is not there is told so whatever the pose is: `simGetObjectPose` gives NaN for it.
+        // A missing object is reported for any pose: `simGetObjectPose` returns NaN for it.
         if simulation.objects.vehicle(name).isEmpty && simulation.objects.thing(name).isEmpty then
           answer(false)
         else pose.fold(throw NotFinite())(there => within(there.position)(moveTo(simulation, name, there)))

@@ -14,7 +14,7 @@ final private[simulator] class SceneObjects(world: World):
   private val scales = mutable.Map.empty[String, Vector3]
   private val chosen = mutable.Map.empty[String, Int]
 
-  // Of which scene the places are: a client's change makes a new one.
+  // The scene that the indices belong to: a client's change makes a new one.
   private var seen   = Scene.Empty
   private var places = Map.empty[String, Int]
 

@@ -67,7 +67,7 @@ private[simulator] object SensorSettings:
         .map((sensorName, sensor) => sensorName -> read(sensor))
       val others = enabled(listed(unless))
       vehicles.map: (name, vehicle) =>
-        // As for other kinds, what a vehicle lists of a kind stands for what the defaults list of it.
+        // As for other kinds, a vehicle's own list of a kind replaces the default list.
         val own = listed(vehicle.sections("Sensors"))
         name -> (if own.nonEmpty then enabled(own) else others)
       .toMap + (Others -> others)

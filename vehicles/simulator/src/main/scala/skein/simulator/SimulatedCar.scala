@@ -96,7 +96,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
   private def put(positionNed: Vector3, orientation: Quaternion, speedMps: Double, at: Instant): Unit =
     val heading = orientation.normalized.yawRad
     state = CarState(positionNed.x, positionNed.y, heading, speedMps)
-    // Physics stands at the step before `at`: what is told there must be this when it is carried on.
+    // Physics is at the step before `at`: the stored state must extrapolate to this one.
     val drift = positionAt(at) - Vector3(positionNed.x, positionNed.y, 0)
     state = CarState(positionNed.x - drift.x, positionNed.y - drift.y, heading, speedMps)
 

@@ -151,7 +151,7 @@ final private[simulator] class SimulatedMultirotor(
     require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
     val hold = positionNed - Vector3(0, 0, rotorcraft.hoverSagM(positionNed.z, environment))
     rotorcraft.hover(state, hold, yawRad, environment)
-    // Exactly there, whatever the sum of hold and sag was rounded to.
+    // Exactly there, independent of the rounding of hold and sag.
     state.place(positionNed, state.orientation)
     flown = true
     jumped += 1
@@ -173,7 +173,7 @@ final private[simulator] class SimulatedMultirotor(
     val acceleration        = kinematics.linear_acceleration.toVector
     val angularVelocity     = kinematics.angular_velocity.toVector
     val angularAcceleration = kinematics.angular_acceleration.toVector
-    // Physics stands at the step before `at`: what is told there must be this when it is carried on.
+    // Physics is at the step before `at`: the stored state must extrapolate to this one.
     val s        = sinceSample(at)
     val velocity = kinematics.linear_velocity.toVector - acceleration * s
     val position = kinematics.position.toVector - velocity * s - acceleration * (s * s / 2)

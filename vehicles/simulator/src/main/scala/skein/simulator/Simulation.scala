@@ -79,7 +79,7 @@ final class Simulation(
 
   /** Receives a call at `at`, no earlier than any time given before. */
   def receive(call: SimulatorCall, at: Instant): Unit =
-    // Else every call that comes while a long step is computed would wait for its share of it.
+    // Otherwise every call received during a long step would wait for its share of it.
     if continuing.isEmpty then advance(at)
     if isControl(call.method) then
       workers.drop(supersedes(call.method, call.params, _)).foreach(giveUp)
@@ -119,7 +119,7 @@ final class Simulation(
 
   /** The latest time for the next [[advance]]. None: not before the next call. */
   def nextWake(at: Instant): Option[Instant] =
-    // Who is waited for goes on with it when the answer comes.
+    // An awaited autopilot continues the clock with its answer.
     if continuing.nonEmpty then Some(if isHeld then at + KeepUp else at)
     else
       val running =
@@ -167,7 +167,7 @@ final class Simulation(
       val target = asked.getOrElse(anchored + Span.ofNanos(scaled(at.since(anchoredAt).toNanos, speed)))
       val able   = world.now + longestRun
       world.advanceTo(target.min(able))
-      // What an autopilot is late by is made up for, up to a bound.
+      // An autopilot's delay is made up for, up to a bound.
       val behind          = target.since(world.now)
       val madeUpFor: Span = if isHeld then MostMadeUpFor else Span.Zero
       if asked.nonEmpty then anchor(at)
@@ -221,7 +221,7 @@ final class Simulation(
     def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))
     val forms                    = named.getOrElse(call.method, Vector.empty)
     val those                    = forms.filter(_.arity == call.params.size)
-    // Of forms with as many arguments their types decide.
+    // Among forms with equally many arguments, the types decide.
     val form =
       if those.size < 2 then those.headOption else those.find(_.takes(call.params)).orElse(those.headOption)
     form match

@@ -245,7 +245,7 @@ object SimulatorServer:
               vehicles.receive(channel, bytes)
               counters.damaged.set(vehicles.damaged)
               counters.unanswered.set(vehicles.unanswered)
-            // An autopilot may have been waited for.
+            // The simulation may have waited for an autopilot.
             if simulation.settings.hil.nonEmpty then simulation.advance(clock.now())
             val _ = done.trySuccess(Done)
             goOn()

@@ -23,7 +23,7 @@ private[simulator] object VehicleMethods:
     many[(Boolean, String)]("armDisarm"):
       case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
     ,
-    // AirSim's vehicles have no evaluation of safety either, and say so.
+    // AirSim's vehicles have no safety evaluation either, and answer so.
     many[(Argument.Unsigned32, Float, Int, Float, Vector3r, Float, Float, Float, String)]("setSafety"):
       case (simulation, (_, _, _, _, _, _, _, _, name)) =>
         multirotor(simulation, name)((_, _) =>
@@ -160,7 +160,7 @@ private[simulator] object VehicleMethods:
     )
 
   private def imu(vehicle: SimulatedVehicle, at: Instant) =
-    // The ground carries a vehicle that stands, and physics does not move it.
+    // Physics does not move a vehicle that stands on the ground.
     val acceleration = if vehicle.isGrounded then Vector3.Zero else vehicle.accelerationNed
     val force        = acceleration - Vector3(0, 0, Gravity)
     ImuData(

@@ -51,7 +51,7 @@ private[simulator] object VoxelGrid:
     // The first cell's centre; up is down's opposite.
     val first = centre - Vector3((north / 2).toDouble, (east / 2).toDouble, -(up / 2).toDouble) * edgeM
     def row(j: Int, k: Int) = north * (k + up * j)
-    // Marked body by body: to ask every cell about every body could take a minute.
+    // Marked body by body: testing every cell against every body could take a minute.
     val flying = BitSet()
     for (least, most) <- moment.bounds do
       val (from, to) = (least - first, most - first)

@@ -138,7 +138,7 @@ class AirSimClientLiveSuite extends munit.FunSuite:
     assertEqualsDouble(done(evader.gps()).value.location.altitude.value, 142, 0.01)
     assertEqualsDouble(done(evader.barometer()).value.altitude.value, 142, 0.5)
     assert(done(evader.magnetometer()).value.x > 0.1)
-    // Told as at sea level: the weight over the share of its density that the air has here.
+    // Reported as at sea level: the weight divided by the relative density of the air here.
     assertEqualsDouble(done(evader.rotors()).value.map(_.thrustN).sum, 9.942, 0.01)
     assertEqualsDouble(done(evader.home()).latitudeDeg, 47.641468, 1e-9)
     assert(done(evader.status()).value.flying)

@@ -99,7 +99,7 @@ class ArgumentSuite extends munit.FunSuite:
         bench.call(method.name, params*)
         bench.tell("simPause", Bool(false))
         bench.pass(0.001)
-    // Of moves that came faster than they end, all are answered when these have ended.
+    // Moves that arrive faster than they end are all answered when these have ended.
     bench.tell("reset")
     assertEquals(bench.now[Boolean]("ping"), true)
 

@@ -105,7 +105,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
           assert(isClosed(page))
         until("simulated time has passed")(up(server) > 1)
         assertEqualsDouble(down(server), -20, 0.1)
-        // And who only connects makes room for the autopilot.
+        // A peer that only connects makes room for the autopilot.
         val autopilot = connected(at)
         autopilot.getOutputStream.write(flying.greeting)
         assert(autopilot.getInputStream.read() >= 0)

@@ -79,15 +79,14 @@ private object Betaflight:
             told += next.toChar
           told.toString
         socket.setSoTimeout(1000)
-        // Without a newline, which would be a command already; whether anybody listens yet shows in the
-        // answer.
+        // Without a newline, which would already be a command; the answer shows whether anything listens yet.
         def awake(tries: Int): Unit =
           say("#")
           try prompt(): Unit
           catch case _: SocketTimeoutException if tries > 1 => awake(tries - 1)
         awake(tries = 20)
         socket.setSoTimeout(10_000)
-        // Ends a line of several such signs, and is nothing after one.
+        // Ends a line of several such characters, and does nothing after one.
         say("\n")
         Thread.sleep(500)
         in.skipNBytes(in.available.toLong)

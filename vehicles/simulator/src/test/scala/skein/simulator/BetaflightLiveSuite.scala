@@ -12,7 +12,7 @@ import skein.testing.{Lengthy, Waiting}
   * second of the simulator's clock; `betaflightHover` flies for longer, at any speed.
   */
 class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
-  // To build it on a busy machine takes minutes.
+  // Building it on a busy machine takes minutes.
   override val munitTimeout: Duration = 20.minutes
 
   private given system: ActorSystem = ActorSystem("betaflight", PreciseScheduler.config)
@@ -36,7 +36,7 @@ class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
     def hovered(flight: BetaflightFlight) = flight.isArmed && flight.worstM < 0.3
     def isCalm(flight: BetaflightFlight)  =
       flight.updatesPerS >= CalmUpdatesPerS && flight.longestPauseS <= CalmPauseS
-    // A machine may be busy, or Betaflight hang; it is not so each time.
+    // The machine may be busy, or Betaflight may hang; not every time.
     val telling =
       Iterator.continually(fly()).take(3).flatten.find(flight => hovered(flight) || isCalm(flight))
     // .ci/run counts such lines.

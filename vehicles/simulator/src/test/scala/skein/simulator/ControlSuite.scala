@@ -59,7 +59,7 @@ class ControlSuite extends munit.FunSuite:
     control(bench, on = false)
     bench.pass(0.5)
     assert(velocity(bench).z > 3.5, s"${velocity(bench)}")
-    // An absent remote control asks for level: the tilt that flew it is gone.
+    // An absent remote control commands level attitude: the tilt that moved it is gone.
     val q = bench.kinematics().orientation
     assertEqualsDouble(2 * math.asin(math.hypot(q.x_val, q.y_val)), 0, 0.02)
     control(bench, on = true)

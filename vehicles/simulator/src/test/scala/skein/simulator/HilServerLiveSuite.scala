@@ -50,7 +50,7 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
         other.setSoTimeout(5000)
         assertEquals(other.getInputStream.read(), -1)
         other.close()
-        // Not where it is at the end: on its own the vehicle sinks, and this thread may be told of that late.
+        // Not its final position: without control the vehicle sinks, and this thread may learn that late.
         var seen  = Vector(truth(server))
         val until = 60.seconds.fromNow
         while !flown.isCompleted && until.hasTimeLeft() do seen :+= truth(server)
@@ -95,7 +95,7 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
         val told = ujson.read(String(answer.getData, 0, answer.getLength))
         assertEqualsDouble(told("imu")("accel_body")(2).num, -9.8, 1)
       socket.close()
-      // Before the first frame they are nobody's.
+      // Before the first frame they belong to no autopilot.
       assertEquals((server.peerStats.damaged, server.peerStats.ignored), (499L, 1L))
 
   test("Betaflight is told the state where it listens, and its controls turn the rotors"):

@@ -77,7 +77,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
     flown.run(Span.ofMillis(200))((_, _) => Nil)
     assertEquals(flown.hil.unanswered, 1L)
     flown.run(Span.ofSeconds(1))(flying(autopilot))
-    // What it was late by is lost but for a few milliseconds.
+    // Its delay is skipped except for a few milliseconds.
     assert((flown.up - before).toSeconds < 1.2, s"${(flown.up - before).toSeconds} s")
     assert((flown.simulation.behind + flown.up).toSeconds > 3.9)
 

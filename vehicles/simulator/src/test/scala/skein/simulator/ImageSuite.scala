@@ -58,7 +58,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals((rgb.width, rgb.height, rgb.image_data_uint8.length), (256, 144, 256 * 144 * 3))
     assertEquals((ids.width, ids.height), (100, 60))
     assertEquals(Set(rgb, depth, ids).map(_.time_stamp), Set(bench.simulation.world.now))
-    // The house's front is 10 m to the north of the vehicle, whose front camera sits 25 cm before its centre.
+    // The house's front is 10 m north of the vehicle, whose front camera is 25 cm ahead of its centre.
     assertEqualsFloat(depth.image_data_float(72 * 256 + 128), 9.75f, 1e-3f)
     assertEquals(depth.image_data_uint8.length, 0)
     val middle = 3 * (30 * 100 + 50)

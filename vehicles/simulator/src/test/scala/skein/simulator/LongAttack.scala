@@ -52,7 +52,7 @@ object LongAttack:
       socket = Some(one)
       id += 1
       one.getOutputStream.write(request(id -> ("getMultirotorState", Seq(Str("")))))
-      // A state is one value, and more than a few bytes; all of it is there once the last has come.
+      // A state is one value of more than a few bytes; it is complete once the last byte has arrived.
       val in    = one.getInputStream
       val first = in.read()
       if first < 0 then throw IOException("closed")

@@ -79,7 +79,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
           val frame = writer.write(definition.decode(random.nextBytes(definition.length)))
           frame(random.nextInt(frame.length)) = random.nextInt(256).toByte
           bad.send(frame.take(1 + random.nextInt(frame.length)))
-          // So many may wait for the server: what came after them would not reach it.
+          // At most this many may wait for the server: later ones would be lost.
           if count % 200 == 0 then assert(bad.isAnswered(definition.id + count), definition.name)
         assert(good.isAnswered(definition.id), definition.name)
       bad.close()
@@ -102,7 +102,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
       var isHere   = false
       var askAgain = Deadline.now
       while !isHere && until.hasTimeLeft() do
-        // Not for every message of telemetry: so many questions would not reach a busy server either.
+        // Not for every telemetry message: that many requests would overload a busy server.
         if askAgain.isOverdue() then
           send(writer.write(Timesync(0, 1000 + number)))
           askAgain = 1.second.fromNow

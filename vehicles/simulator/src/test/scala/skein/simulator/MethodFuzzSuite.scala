@@ -26,10 +26,10 @@ class MethodFuzzSuite extends munit.FunSuite:
       tokens :+= bench.call(call.method, call.params*) -> call
       count += 1
       if count % 50 == 0 then
-        // Ends a step of physics, which may have been asked to last a day.
+        // Ends a stepped advance, which may have been requested to last a day.
         bench.tell("simPause", Bool(false))
         bench.pass(0.003)
-        // An honest client beside it.
+        // An honest client at the same simulator.
         val reading = bench.now[MultirotorReading]("getMultirotorState", Str("Pursuer"))
         assert(reading.timestamp == bench.simulation.world.now, clue)
       if count % 1000 == 0 then

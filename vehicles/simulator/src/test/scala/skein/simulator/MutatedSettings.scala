@@ -24,7 +24,7 @@ private[simulator] object MutatedSettings:
           case Right(file) =>
             read += 1
             file.notice.foreach(assertLine)
-            // It can be flown.
+            // The settings must be usable.
             Simulation(SimulatorSettings(file.world), skein.units.Instant.Epoch)
               .advance(skein.units.Instant.ofNanos(10_000_000)): Unit
           case Left(error) =>

@@ -12,7 +12,7 @@ class NamePatternSuite extends munit.FunSuite:
     val random = Random(43)
     val pieces =
       Vector("a", "b", "x", ".", "[ab]", "[^a]", "[a-c]", "\\d", "\\w", "\\.", "^", "$", "\\b", "|")
-    // The JDK's are wrong about repetitions of what is empty: they are tried apart.
+    // The JDK's expressions are wrong about repetitions of the empty string: these are tested separately.
     def isEmpty(part: String)          = part.contains("\\b") || Pattern.compile(part).matcher("").matches()
     def expression(depth: Int): String =
       val parts = Vector.fill(1 + random.nextInt(4)):

@@ -9,7 +9,7 @@ import upack.{Obj, Str}
 class NamesSuite extends munit.FunSuite:
 
   private def north(bench: Bench, name: String): Double =
-    // Homes tell vehicles apart that stand still.
+    // Home positions distinguish vehicles that stand still.
     bench.now[GeoPoint]("getHomeGeoPoint", Str(name)).latitude
 
   private val apart = Seq("Pursuer", "Evader", "Zebra").zipWithIndex.map((name, i) =>

@@ -71,7 +71,7 @@ private[simulator] val OfficialPythonClient = PythonEnvironment(
   imports = "airsim",
   scripts = Some("/airsim-python/fly_square.py"),
   Seq("setuptools", "wheel", "msgpack", "numpy"),
-  // They are built with what lies there already; and airsim's set-up imports the client itself.
+  // They are built with the packages already installed; and airsim's set-up imports the client itself.
   Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
   Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
 )

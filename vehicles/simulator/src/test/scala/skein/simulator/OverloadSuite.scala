@@ -121,7 +121,7 @@ class OverloadSuite extends munit.FunSuite:
     assert(bench.isAnswered(read))
     bench.pass(2)
     assertEquals(bench.result(move), Some(true))
-    // And what comes of it after it has left.
+    // Also for messages after it has left.
     val late = bench.velocityZ(3, 0, -20, 2, client = 7)
     assert(!bench.isAnswered(late))
     assert(bench.isAnswered(bench.callBy(8)("getMultirotorState", upack.Str(""))))

@@ -185,7 +185,7 @@ object Attackers:
       case "unfinished" => many(200, port.toInt, amount.toInt)(unfinished)
       case "idle"       => many(256, port.toInt, amount.toInt)(_ => Thread.sleep(200))
       case "deaf"       => many(200, port.toInt, amount.toInt)(deaf)
-    // Leaves as a program does that is killed: with calls under way.
+    // Leaves as a killed program does: with calls in progress.
     Runtime.getRuntime.halt(0)
 
   /** Opens `connections` connections, each of which acts repeatedly, and connects again when it is closed. */
@@ -292,7 +292,7 @@ object Attackers:
         val random     = Random(seed * 1000 + lane)
         val source     = MethodFuzz.Calls(Simulation.methods, "SimpleFlight", file)
         val connection = Connection(port)
-        // Of the largest messages some 80 fit into what a server holds for all.
+        // Some 80 of the largest messages fit into a server's memory limit for all clients.
         val window = Semaphore(16)
         val mine   = AtomicLong()
         val asked  = ConcurrentHashMap[Long, String]()
@@ -310,7 +310,7 @@ object Attackers:
                   if MethodFuzz.isDefect(text) && defects.size < 20 then defects.add(text): Unit
                 window.release()
               case _ => ()
-        // Moves of its own wait, or a step of a day: both are ended.
+        // Its own moves wait, or a stepped advance of a day: both are ended.
         def nudge(): Unit =
           connection.ask(Nudge, "simPause", Seq(upack.Bool(false)))
           for name <- source.names do connection.ask(Nudge, "cancelLastTask", Seq(name))

@@ -37,7 +37,7 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
     val honest                             = client(server)
     def call(method: String, params: Msg*) = honest.call(method, params)
     Await.result(call("enableApiControl", Bool(true), Str("")), 10.seconds)
-    // The one worker is held by a move.
+    // A move holds the only worker.
     val move = Seq(Float32(0), Float32(0), Float32(0), Float32(1), Int32(0), writeMsg(YawMode.Still), Str(""))
     val flown = call("moveByVelocity", move*)
     until("the move is under way")(server.stats.requests == 2)

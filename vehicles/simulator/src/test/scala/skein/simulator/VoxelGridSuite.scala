@@ -28,8 +28,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     val (header, cells) = read(VoxelGrid.render(ground, Vector3(0, 0, 0), (2, 6, 4), 1).toOption.get)
     assertEquals(header.take(2), Seq("#binvox 1", "dim 2 4 6"))
     assertEquals(cells.size, 2 * 4 * 6)
-    // x fastest, then up, then y: of four layers around z = 0 the one at the ground's height is touched by
-    // it.
+    // x fastest, then up, then y: of four layers around z = 0, the ground touches the one at its height.
     for j <- 0 until 6; k <- 0 until 4; i <- 0 until 2 do
       assertEquals(cells(i + 2 * (k + 4 * j)), k <= 2, s"$i $j $k")
 

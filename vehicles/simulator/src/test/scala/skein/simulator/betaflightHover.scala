@@ -17,7 +17,7 @@ import skein.link.{ControlThreads, PreciseScheduler}
     val firmware = Betaflight.firmware()
       .fold(reason => sys.error(s"Betaflight's SITL cannot be built here: $reason"), identity)
     require(Betaflight.arePortsFree, "another program has Betaflight's ports")
-    // As `serve` does it, when what runs is compiled.
+    // As in `serve`, once the running code is compiled.
     system.scheduler.scheduleOnce(10.seconds)(ControlThreads.lead(): Unit)(using system.dispatcher): Unit
     val flight = BetaflightFlight.fly(firmware, holdsS, speed)
     println(flight.track)

@@ -34,7 +34,7 @@ public final class RewriteJars {
     try (Stream<Path> files = Files.list(Path.of(folder[0]))) {
       jars = files.filter(file -> file.toString().endsWith(".jar")).sorted().toList();
     }
-    // Frames are computed anew, for which it is asked what extends what.
+    // Stack map frames are recomputed, which needs the class hierarchy.
     try (var classes = new URLClassLoader(jars.stream().map(RewriteJars::url).toArray(URL[]::new))) {
       var rewriter = new Rewriter(Rewriter.PACKAGES, RewriteJars::fail);
       for (var jar : jars) if (holdsAny(jar)) rewrite(jar, rewriter, classes);

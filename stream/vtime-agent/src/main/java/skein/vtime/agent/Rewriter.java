@@ -216,7 +216,7 @@ final class Rewriter implements ClassFileTransformer {
       if (isListener) transform = transform.andThen(hashed(model));
       return classFile.transformClass(model, transform);
     } catch (Throwable failure) {
-      // The JVM swallows what a transformer throws and loads the class as it was, which would read the wrong
+      // The JVM ignores a transformer's exceptions and loads the class unchanged, which would read the wrong
       // clock.
       failed.accept(name, failure);
       return null;

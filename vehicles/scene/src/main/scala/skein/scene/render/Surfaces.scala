@@ -102,8 +102,8 @@ final private[render] class Surfaces(view: View):
       val here = ahead(from) >= nearM
       if here then put(ahead(from), right(from), down(from))
       if here != ahead(to) >= nearM then
-        // From the corner before the plane, whichever way the face goes: its neighbour meets it at the same
-        // place.
+        // Always from the corner before the plane, whatever the face's direction, so that neighbours get
+        // equal cut points.
         val near = if here then from else to
         val far  = if here then to else from
         val t    = (ahead(near) - nearM) / (ahead(near) - ahead(far))

@@ -83,7 +83,7 @@ class RendererSuite extends munit.FunSuite:
     val with1 = Renderer.extents(lone, view)
     assertEquals(with1.map(_.item), Vector(Item.Ground, 1))
     assertEquals(Renderer.extents(lone, view, except = 1).map(_.item), Vector(Item.Ground))
-    // A square of 2 m at 4 m: half of what is seen there across is 4·tan 30°.
+    // A square of 2 m at 4 m: half of the visible width there is 4·tan 30°.
     val half = 32 / (4 * math.tan(math.Pi / 6))
     assertEqualsDouble(with1(1).right - with1(1).left, 2 * half, 1.01)
     assertEqualsDouble(with1(1).bottom - with1(1).top, 2 * half, 1.01)
