@@ -15,8 +15,8 @@ import skein.units.*
   *
   * @param isArmed whether Betaflight could be armed
   * @param worstM greatest distance from the position while it was to be held
-  * @param updatesPerS motor updates meanwhile, at most one for each state: 500 in a second of the
-  *   simulator's clock
+  * @param updatesPerS motor updates meanwhile, at most one for each state: 500 in a second of the simulator's
+  *   clock
   * @param longestPauseS between two of them, by the simulator's clock
   * @param track its positions, a line every 0.2 s of the simulator's clock
   */

@@ -172,7 +172,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
         flown.run(Span.ofMillis(20))
     flown.run(Span.ofSeconds(60))
     flown.heard = Vector.empty
-    for _ <- 1 to 40 do flown.send(Timesync(0, 99)) // Enough bytes to end any damaged frame, whatever its stated length.
+    for _ <- 1 to 40 do flown.send(Timesync(0, 99)) // enough to end any damaged frame
     assert(flown.heard.exists(_.message match
       case Timesync(_, 99, _, _) => true
       case _                     => false))
