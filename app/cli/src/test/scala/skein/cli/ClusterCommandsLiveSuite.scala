@@ -117,7 +117,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       assertSame(out)
     finally workers.foreach(_._1.destroyForcibly(): Unit)
 
-  test("who cannot compute is told: options that need workers, and workers that cannot start"):
+  test("options that need workers, and workers that cannot start, are reported"):
     def refused(words: String*): String =
       val ran = Ran.of(Main.run(question ++ words ++ Seq("--out", folder("refused").toString)))
       assertEquals(ran.status, 1)

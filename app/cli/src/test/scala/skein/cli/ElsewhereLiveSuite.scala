@@ -17,8 +17,8 @@ class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     ran.said
 
   test(
-    "flights through faults are flown by two processes, each once, " +
-      "and not again by the same command, which starts nobody"
+    "two processes run flights with faults, each once; the command repeated runs none and starts no " +
+      "worker"
   ):
     val out = temporaryFolder()
     for found <- Seq("2 blocks counted, 0 more", "0 blocks counted, 2 more") do

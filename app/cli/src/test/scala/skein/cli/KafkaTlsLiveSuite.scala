@@ -75,21 +75,21 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   private def notTrusted(at: Address) = s"no trusted connection to the Kafka broker at $at: "
 
-  test("who shows no certificate, or one of another set, is refused at once, and told why"):
+  test("a client without a certificate, or with one of another set, is refused immediately, with the reason"):
     val silent = own.filterNot((key, _) => key.startsWith("ssl.key"))
     for shown <- Seq(silent, stranger) do
       assert(clue(refused(broker.address, shown)).startsWith(notTrusted(broker.address)))
 
-  test("a broker that is called by a name which its certificate does not have is told nothing"):
+  test("a broker under a name that its certificate does not contain receives no data"):
     val other = Address("localhost", broker.address.port)
     assert(clue(refused(other, own)).startsWith(notTrusted(other)))
 
-  test("a flight that the broker refuses is not flown, long before its patience ends, and says why"):
+  test("a flight that the broker refuses does not start, and reports that long before its patience ends"):
     val patience = Span.ofSeconds(600)
     val why      = flown("stranger", stranger, patience).swap.getOrElse(fail("it was flown"))
     assert(clue(why).contains(notTrusted(broker.address)))
 
-  test("who does not speak TLS hears nothing, and is told where it looked"):
+  test("a client without TLS receives nothing, and reports the address it tried"):
     val told   = Promise[String]()
     val serves = solver(KafkaTopics(broker.address, "plain")())(line => told.trySuccess(line): Unit)
     val never  = serves.start()

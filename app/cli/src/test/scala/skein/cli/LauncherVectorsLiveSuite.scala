@@ -35,7 +35,7 @@ class LauncherVectorsLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val commands = Main.commands.map(_.name)
 
   for (name, launcher) <- Seq("Skein's" -> (() => Launchers.staged), "a project's" -> (() => project)) do
-    test(s"$name launcher gives every command the JDK's vectors, and says nothing of them"):
+    test(s"$name launcher enables the JDK's vector module for every command, silently"):
       assume(Files.exists(launcher()), "./sbtw cli/stage makes the launcher")
       for command <- commands do
         val (status, said) = Launchers.run(launcher(), Seq(command, "--loop", "stream"), echoing.toString)

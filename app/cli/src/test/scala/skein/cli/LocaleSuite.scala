@@ -21,7 +21,7 @@ class LocaleSuite extends munit.FunSuite:
   private val locales = Seq("tr-TR", "az-AZ", "lt-LT", "de-DE", "ar-EG-u-nu-arab", "hi-IN-u-nu-deva")
 
   for tag <- locales do
-    test(s"settings, scenarios and objectives are read and told in $tag as anywhere"):
+    test(s"settings, scenarios and objectives are read and printed in $tag as in any locale"):
       val before = Locale.getDefault
       Locale.setDefault(Locale.forLanguageTag(tag))
       try
@@ -38,7 +38,7 @@ class LocaleSuite extends munit.FunSuite:
         assertEquals(Objective.parse("min", Role.Pursuer).map(_.text), Right("minimise min"))
       finally Locale.setDefault(before)
 
-  test("a wrong option is told in Turkish as anywhere"):
+  test("an unknown option is reported in a Turkish locale as in any other"):
     val before = Locale.getDefault
     Locale.setDefault(Locale.forLanguageTag("tr-TR"))
     try
@@ -55,7 +55,7 @@ class LocaleSuite extends munit.FunSuite:
     "format$extension(Ljava/lang/String;Lscala/collection/immutable/Seq;)Ljava/lang/String;"
   )
 
-  test("no class turns letters by the machine's locale; none of the libraries formats by it"):
+  test("no class changes the case of letters, and no library formats numbers, by the machine's locale"):
     // The commands set the locale before anything else, so code that belongs only to the program may format
     // by it.
     val (program, library) = folders.partition(_.startsWith(folderOf(Main.getClass).getParent))
@@ -65,7 +65,7 @@ class LocaleSuite extends munit.FunSuite:
       files.flatMap(calls).filter((_, called) => always(called) || libraries.contains(called))
     assertEquals(found.map((where, called) => s"$where calls $called"), Nil)
 
-  test("such calls are found"):
+  test("the check finds calls that depend on the locale"):
     val own = classFiles(folderOf(getClass)).filter(_.getFileName.toString.startsWith("LocaleSuite$Offender"))
     assertEquals(own.flatMap(calls).count((_, called) => always(called) || libraries.contains(called)), 3)
 

@@ -9,7 +9,7 @@ class MutatedFilesSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   for kind <- MutatedFiles.values do
-    folder.test(s"$kind: a file that was changed is read, or what is wrong with it is told in a line"):
+    folder.test(s"$kind: a mutated file is read, or its mistakes are reported, a line each"):
       folder =>
         assert(kind.unchanged(folder).isRight, kind.unchanged(folder))
         val count = if kind == MutatedFiles.Mcap then 10 else 100

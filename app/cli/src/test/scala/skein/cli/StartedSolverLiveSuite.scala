@@ -22,7 +22,7 @@ class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     while found.isEmpty && of.isAlive && System.nanoTime < deadline do Thread.sleep(20)
     found.getOrElse(fail(s"no address in what the solver said: ${Files.readString(log)}"))
 
-  test("a flight's manoeuvres are planned by a solver of another process, with the JDK's vectors"):
+  test("a solver in another process plans a flight's manoeuvres, with the JDK's vector module"):
     assume(Files.exists(Launchers.staged), "./sbtw cli/stage makes the launcher")
     conclusive:
       val (solver, solverLog) = started("decide", "decide", "--at", "tcp://127.0.0.1:0")

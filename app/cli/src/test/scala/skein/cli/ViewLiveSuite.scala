@@ -42,7 +42,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
 
   private def step(what: String, how: ujson.Value*): ujson.Value = ujson.Arr((ujson.Str(what) +: how)*)
 
-  folder.test("Foxglove's client subscribes to every topic, and every message is as its topic's schema says"):
+  folder.test("Foxglove's client subscribes to every topic, and every message fits its topic's schema"):
     out =>
       val packages = needed(JavaScriptTools.packages)
       val flying   = Flying.start(out, Flown*)
@@ -91,7 +91,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
             (state.value.positionNed.x, state.receivedAt.toNanos)
           )
 
-  folder.test("in a browser a flight is seen, paused and let go on, and its recording is played and sought"):
+  folder.test("in a browser a flight is shown, paused and resumed, and its recording is played and sought"):
     out =>
       val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
       val flying = Flying.start(out, Flown*)

@@ -48,7 +48,7 @@ class DeploymentSuite extends munit.FunSuite:
     for document <- all; key <- Seq("/kind", "/apiVersion", "/metadata/name") do
       assert(document.contains(key), s"$key of $document")
 
-  test("services select the pods that are there, at the ports and by the names that the commands use"):
+  test("services select existing pods, at the ports and by the names that the commands use"):
     val space       = in("kustomization.yaml").head("/namespace")
     val Vector(job) = of("Job")
     val Vector(set) = of("StatefulSet")
@@ -78,7 +78,7 @@ class DeploymentSuite extends munit.FunSuite:
     for host <- Seq("coordinator.search.skein.svc.cluster.local", "*.worker.skein.svc.cluster.local") do
       assert(guide.contains(host), host)
 
-  test("kubectl puts the manifests together"):
+  test("kubectl accepts the combined manifests"):
     val rendered = said("kubectl", "kustomize", manifests.toString)
     assume(rendered.isRight, s"kubectl is not here: ${rendered.left.getOrElse("")}")
     val Right((status, text)) = rendered: @unchecked

@@ -19,12 +19,12 @@ class DocumentationSuite extends munit.FunSuite:
     assertEquals(broken, Vector.empty)
 
   for (name, written) <- Documentation.generated do
-    test(s"$name says what the code says"):
+    test(s"$name agrees with the code"):
       val path = root.resolve(name)
       assert(Files.exists(path), s"$name is missing: ${Documentation.hint}")
       assertNoDiff(Files.readString(path), written(), s"$name is not up to date: ${Documentation.hint}")
 
-  test("code that a page shows of a source file stands there"):
+  test("code that a page quotes from a source file is in that file"):
     val shown =
       for
         page  <- pages

@@ -57,7 +57,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
     assert(!texts(kept).exists(_.contains("at most")), texts(kept))
     assertEquals((kept.shapes.count(isRed), ScenarioFigure.hasAltitudes(flown(100))), (0, false))
 
-  test("a geofence is drawn as far as it lies in the panel, and named where it does"):
+  test("a geofence is cut to the panel, and named if any of it is visible"):
     assert(texts(ScenarioFigure.trajectories(flown(100))).contains("geofence"))
 
 object ScenarioFigureSuite:

@@ -37,7 +37,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
     flown.recorder
 
   folder.test(
-    "images of a policy's camera and of others are recorded, flown again to the byte, and kept by an export"
+    "images of a policy's camera and of others are recorded, identical when flown again, and exported"
   ): folder =>
     val flown = fly(
       BlindPursuit(),

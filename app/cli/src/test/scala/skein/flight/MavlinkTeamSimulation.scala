@@ -14,7 +14,7 @@ import skein.units.*
 class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private given Scenarios = OurScenarios.all
 
-  folder.test("six vehicles on one link surround an evader, and the report tells of it"): folder =>
+  folder.test("six vehicles on one link surround an evader, and the report shows it"): folder =>
     val scenario = Surround(vehicles = 6)
     val settings = FlySettings(
       List(LoopKind.Predictive),

@@ -24,7 +24,7 @@ class PolicyFlightSimulation extends munit.FunSuite:
     policies = List(policy, policy)
   )
 
-  test("a policy flies beside the paper's, over the same delays; recording, replay and report say which"):
+  test("a policy flies beside the paper's with equal delays; recording, replay and report name it"):
     assertEquals(
       settings.plans.map(plan => (plan.id, plan.seed)),
       Vector("", "-lead-pursuit", "-lead-pursuit-2").flatMap(name =>

@@ -17,9 +17,7 @@ class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
 
   private val mostExcessMs = 6.0
 
-  test(
-    "a live flight and its virtual twins decide on data of the same ages and converge to the same distance"
-  ):
+  test("a live flight and its virtual twins have equal ages of data and converge to equal distances"):
     // A busy machine can also disturb a flight without making data older; not every time.
     val (busy, agreed) = Iterator.continually(compared()).take(3).span(!_.agrees)
     val flown          = busy.toVector ++ agreed.take(1)

@@ -50,7 +50,7 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     )
     assert(installed.isRight, installed.left.getOrElse(""))
 
-  test("there, the ten lines of the example train a pursuer"):
+  test("in the fresh environment, the ten lines of the example train a pursuer"):
     assume(Files.exists(home), "nothing was installed")
     val trained   = python(root.resolve("examples/learn-in-python/learn.py").toString)
     val distances = """mean distance ([0-9.]+) m""".r

@@ -37,7 +37,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     case ask: Message.Ask => ask.run
     case other            => fail(s"expected an Ask, came $other")
 
-  test("a worker gets its question ready before it is a member, and asks for blocks once it is"):
+  test("a worker prepares its question before it is a member, and requests blocks once it is"):
     val heard  = Heard[ToCoordinator]()
     val told   = ConcurrentLinkedQueue[String]()
     val ready  = LinkedBlockingQueue[Int]()
@@ -64,8 +64,8 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     Ledger.open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
 
   test(
-    "who has ended or is out of reach is taken out of the cluster; when all is done " +
-      "everybody else is told: who works, who is still preparing, and who asks only then"
+    "ended and unreachable members are removed; when all is done all other workers are dismissed: " +
+      "working, preparing and late ones"
   ):
     val ledger      = newLedger()
     val down        = LinkedBlockingQueue[Address]()
@@ -100,7 +100,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assert(down.isEmpty, down.toString)
     ledger.close()
 
-  test("whoever hears that a worker joined or was lost sees it in the progress"):
+  test("the receiver of news that a worker joined or was lost sees it in the progress"):
     val ledger      = newLedger()
     val latest      = AtomicReference(ClusterProgress())
     val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()

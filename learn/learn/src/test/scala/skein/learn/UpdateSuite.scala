@@ -40,7 +40,7 @@ class UpdateSuite extends munit.FunSuite:
       network.changed()
       assertEqualsDouble(gradient(at).toDouble, (above - below) / (2 * step), 4e-3, s"parameter $at")
 
-  test("SAC: critics are held to reward and discounted soft value of what was reached"):
+  test("SAC: critics' targets are the reward and the discounted soft value of the reached state"):
     val sac = Sac(2, 1, settings, 3, BatchThreads(1))
     drawn(sac.batch)
     Noise.fill(sac.noise, SplitMix64(5))
@@ -95,7 +95,7 @@ class UpdateSuite extends munit.FunSuite:
     assertEqualsDouble(Sac.logSquash(-40), 2 * math.log(2) - 80, 1e-9)
     assertEqualsDouble(Sac.logSquash(40), 2 * math.log(2) - 80, 1e-9)
 
-  test("critics: the gradient is that of half the mean squared distance from what was wanted"):
+  test("critics: the gradient is that of half the mean squared error"):
     val critics = Critics(1, 2, 1, settings, SplitMix64(2))
     val batch   = Transitions(2, 1, 4)
     drawn(batch)
@@ -143,7 +143,7 @@ class UpdateSuite extends munit.FunSuite:
     assertNotEquals(ddpg.actor.parameters.toVector, actor.toVector)
     assert(worth() > after - 1e-3, s"${worth()} and $after before")
 
-  test("PPO: advantages by hand, over an end for good and one for no reason of its own"):
+  test("PPO: advantages equal hand-computed ones, over terminations and truncations"):
     final class Three extends SmallTask(1, 1, 1):
       protected def start(row: Int): Unit  = ()
       def step(chosen: Array[Float]): Unit = ()

@@ -13,7 +13,7 @@ import skein.units.*
 class DetectorPursuitSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios(Vector(ScenarioKind(BlindPursuit())))
 
-  test("the detector finds an evader without tags, and the pursuer comes near"):
+  test("the detector finds an evader without tags, and the pursuer approaches it"):
     val settings = FlySettings(
       List(LoopKind.Predictive),
       List(LatencyProfile.direct),

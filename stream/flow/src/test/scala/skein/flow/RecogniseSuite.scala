@@ -78,7 +78,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEqualsDouble(one.emitted.size, 500, 2)
     assert(one.emitted.forall(_.ageMs < 20 + 1000.0 / 90 + 0.01), one.emitted.map(_.ageMs).max)
 
-  test("results come in the order of exposure however long each takes"):
+  test("results are in the order of exposure however long each takes"):
     val random = SplitMix64(1)
     val tookMs = Vector.fill(300)(5 + 80 * random.nextDouble())
     val mixed  = run(perSecond = 60, count = 300, workers = 3)(tookMs)
@@ -91,7 +91,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(held.emitted.map(_.frame), Seq(0, 1, 2, 3) ++ (50 until 80))
     assertEquals((held.replaced, held.skipped), (46, Vector.empty))
 
-  test("the newest first: a result is emitted when it is there, and older ones no more"):
+  test("newest first: a result is emitted immediately, and older ones no more"):
     val newest = run(perSecond = 100, count = 4, workers = 4, newestFirst = true)(Vector(50, 5, 45, 5))
     assertEquals(newest.emitted.map(_.frame), Seq(1, 3))
     assertEquals(newest.skipped.toSet, Set("overtaken 0", "overtaken 2"))
@@ -101,7 +101,8 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals((both.emitted.map(_.frame), both.skipped), (Seq(0, 1), Vector.empty))
 
   test(
-    "late and failed frames are told at once and stop nothing, and a late worker gets nothing until it ends"
+    "late and failed frames are reported immediately and stop nothing, and a late worker gets no frame " +
+      "until it ends"
   ):
     val tookMs = Vector(10.0, 500.0, -10.0) ++ Vector.fill(20)(10.0)
     val faulty = run(perSecond = 50, count = 20, workers = 2, deadlineMs = 60)(tookMs)
@@ -109,10 +110,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(faulty.skipped, Vector("blurred 2", "late 1"))
     assertEquals(faulty.mostAtOnce, 2)
 
-  test(
-    "while nobody takes results, no more than twice as many " +
-      "frames as workers wait; each one taken lets one in"
-  ):
+  test("without demand, no more than twice as many frames as workers wait; each one taken admits one more"):
     val begun = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -138,7 +136,7 @@ class RecogniseSuite extends munit.FunSuite:
     // One is held for downstream, four wait behind it.
     assertEquals(begun.value, (5, 6))
 
-  test("frames are compared as one says: a later run of a simulator whose clock is behind is newer"):
+  test("frames are compared by the given function: a restarted simulator with an earlier clock is newer"):
     val emitted = VirtualTime.run(seed = 1): system =>
       given ActorSystem                  = system
       val clock                          = Clock.ofNanos(VirtualTime.clock(system))
@@ -156,7 +154,7 @@ class RecogniseSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     assertEquals(emitted.value, Seq(500L, 10L))
 
-  test("no workers and no time are refused"):
+  test("zero workers and a zero deadline are refused"):
     for (workers, deadlineMs) <- Seq((0, 40.0), (1, 0.0)) do
       intercept[IllegalArgumentException](
         Recognise[Int, Int](workers, Span.ofMillis(deadlineMs), Clock.ofNanos(() => 0L))((_, _) =>
@@ -164,7 +162,7 @@ class RecogniseSuite extends munit.FunSuite:
         )(_ => ())
       )
 
-  test("a flow that ends waits for what is under way, until its deadline"):
+  test("a completing flow waits for frames in progress, until their deadline"):
     val ending = run(perSecond = 100, count = 2, workers = 2, deadlineMs = 40)(Vector(10, 5000))
     assertEquals(ending.emitted.map(_.frame), Seq(0))
     assertEquals(ending.skipped, Vector("late 1"))

@@ -21,7 +21,10 @@ class ControlThreadsLiveSuite extends munit.FunSuite:
 
   private val (usual, roundRobin) = (0, 2)
 
-  test("they take the lead, also those that start later; who blocks, and what they start, does not"):
+  test(
+    "control threads get the real-time policy, also later ones; blocking threads and their children do " +
+      "not"
+  ):
     val before  = policyOnControl(using system.dispatcher)
     val mayLead =
       before.flatMap: policy =>

@@ -14,7 +14,7 @@ class MemoryNetworkLiveSuite extends munit.FunSuite:
 
   override def afterAll(): Unit = system.terminate(): Unit
 
-  test("fifty connections at once carry every byte"):
+  test("fifty simultaneous connections carry every byte"):
     val latency =
       LatencyProfile.Steady("uniform", LatencyDistribution.Uniform(Span.ofMillis(1), Span.ofMillis(20)))
     val network   = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(latency)), seed = 1, Clock.system)

@@ -22,7 +22,7 @@ class TlsProbeLiveSuite extends munit.FunSuite:
       assertEquals(heard.get(), 22, "a handshake is begun")
       told
 
-  test("who goes on with the handshake speaks TLS, and so does who refuses it"):
+  test("a peer that continues the handshake speaks TLS, and so does one that refuses it"):
     assert(asked(22, 3, 3, 0, 2, 0, 0))
     assert(asked(21, 3, 3, 0, 2, 2, 70))
 
@@ -37,15 +37,13 @@ class TlsProbeLiveSuite extends munit.FunSuite:
         catch case _: IOException => ()
       TlsProbe.isRefused(Address("127.0.0.1", server.getLocalPort), Span.ofSeconds(1))
 
-  test(
-    "who ends a connection for what it says, and not before, refuses TLS; a link without other side does not"
-  ):
+  test("a peer that closes after the ClientHello refuses TLS; a dead link does not"):
     assert(refused(waits = true))
     assert(!refused(waits = false))
     val free = Using.resource(ServerSocket(0))(_.getLocalPort)
     assert(!TlsProbe.isRefused(Address("127.0.0.1", free), Span.ofSeconds(1)))
 
-  test("who says nothing, something else, or is not there, does not"):
+  test("a silent peer, one of another protocol, and a missing one do not speak TLS"):
     assert(!asked())
     assert(!asked(22))
     assert(!asked(0, 0, 0, 4, 1))

@@ -46,7 +46,7 @@ class OperatorsSuite extends munit.FunSuite:
     assertEquals(times(_ => ticks.takeWithin(250.millis)).map(_._1), Seq(1, 2, 3))
     assertEquals(times(_ => ticks.dropWithin(250.millis).take(2)), Seq(4 -> 300.0, 5 -> 400.0))
 
-  test("groupedWithin emits what has come when its time is over"):
+  test("groupedWithin emits the elements received when its time is over"):
     val grouped = times(_ => ticks.groupedWithin(100, 250.millis).take(2))
     assertEquals(grouped, Seq(Seq(1, 2, 3) -> 250.0, Seq(4, 5) -> 500.0))
 
@@ -88,7 +88,7 @@ class OperatorsSuite extends munit.FunSuite:
       breaker.withCircuitBreaker(Future.failed(RuntimeException("down"))).recoverWith { case _ => probe() }
     assertEquals(run.duration, 5.seconds)
 
-  test("mapAsync keeps the order of answers that come at different times"):
+  test("mapAsync keeps the order of answers that arrive at different times"):
     val answered = times: system =>
       Source(Seq(300, 100, 200)).mapAsync(3)(ms => after(ms.millis)(Future.successful(ms))(using system))
     assertEquals(answered, Seq(300 -> 300.0, 100 -> 300.0, 200 -> 300.0))
@@ -102,7 +102,7 @@ class OperatorsSuite extends munit.FunSuite:
     .value
     assertEquals(failedAt, (classOf[AskTimeoutException], 5000.0))
 
-  test("RestartSource backs off by its seeded jitter, the same for one seed and another for another"):
+  test("RestartSource backs off by its seeded jitter, equal for equal seeds"):
     def starts(seed: Long) = VirtualTime.run(seed): system =>
       given ActorSystem = system
       val millis        = elapsedMillis(system)
