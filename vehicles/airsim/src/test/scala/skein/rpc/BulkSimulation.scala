@@ -72,7 +72,7 @@ class BulkSimulation extends munit.FunSuite:
     assert(p99(beside) < 26, p99(beside))
     assert(p99(behind) > 300, p99(behind))
 
-  test("a result of another form than was asked for is told, and the connection lives on"):
+  test("a result of another form than requested is reported, and the connection survives"):
     val answers = VirtualTime
       .run(1): system =>
         given ActorSystem = system

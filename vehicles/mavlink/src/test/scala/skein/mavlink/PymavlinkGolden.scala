@@ -33,7 +33,7 @@ class PymavlinkGolden extends munit.FunSuite:
         Vector(one.name)
       )
 
-  test("every field is read as pymavlink meant it"):
+  test("every field is read with pymavlink's value"):
     val signed = signing
     for one <- made do
       val frame = FrameReader(Option.when(one.isSigned)(signed)).read(one.bytes).head
@@ -44,7 +44,7 @@ class PymavlinkGolden extends munit.FunSuite:
         one.name
       )
 
-  test("what is read is written as the same bytes, its signature included"):
+  test("a frame that was read is written with equal bytes, including its signature"):
     val (reading, writing) = (signing, signing)
     val (plain, signed)    = (FrameWriter(42, 191), FrameWriter(42, 191, Some(writing)))
     for one <- made do

@@ -88,17 +88,17 @@ class AirSimVehicleSuite extends munit.FunSuite:
     case RpcMessage.Reply(_, _, upack.False) => true
     case _                                   => false
 
-  test("a move that is replaced ends a round trip later, and nothing is taken for lost"):
+  test("a replaced move ends a round trip later, and no answer is taken as lost"):
     assertEquals(firstOfTwo(_ => false), (40L, Right(false), Vector.empty))
 
   test(
-    "where its answer is lost it is taken for replaced, once the next " +
-      "move has come and a further cancel has ended nothing"
+    "a lost answer counts as replaced, once the next move is received and a further cancel has ended " +
+      "nothing"
   ):
     val (afterMs, result, noted) = firstOfTwo(isMovesAnswer)
     assertEquals((afterMs, result, noted.size), (780L, Right(false), 1))
 
-  test("a vehicle that gives no sign of life is waited for, as long as the move lasts"):
+  test("a vehicle whose probes are lost is waited for, as long as the move lasts"):
     val (afterMs, result, noted) = firstOfTwo(_ => true)
     assert(afterMs > 10_000, s"$afterMs ms")
     assert(result.left.exists { case VehicleError.TimedOut(_) => true; case _ => false }, result.toString)

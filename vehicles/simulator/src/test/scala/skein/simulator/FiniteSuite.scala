@@ -57,7 +57,7 @@ class FiniteSuite extends munit.FunSuite:
       bench.moveTo(10, 10, -10, 5): Unit
 
   for method <- Simulation.methods if method.name != "simCreateVoxelGrid" do
-    test(s"${method.name}: whatever numbers it is given, states stay numbers"):
+    test(s"${method.name}: for any numbers, states stay finite"):
       val params = SampleCalls.params(method.name)
       for
         extreme <- extremes

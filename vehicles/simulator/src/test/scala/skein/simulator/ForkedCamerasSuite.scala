@@ -64,12 +64,12 @@ class ForkedCamerasSuite extends munit.FunSuite:
       )
     .value
 
-  test("a refusal for the number of arguments is asked again with the other form, once for a client"):
+  test("a call refused for its number of arguments is repeated in the other form, once for a client"):
     val (images, fov, counts) = asked(takes = 2)
     assertEquals(images, Vector(true, true, true))
     assertEqualsDouble(fov.get, 60, 1e-3)
     assertEquals(counts, Vector(3, 2, 2, 2, 2))
 
-  test("AirSim's own form stays where it is taken, and another number is told as the server tells it"):
+  test("AirSim's own form is kept where it is accepted, and another error is reported in the server's words"):
     assertEquals(asked(takes = 3)._3, Vector(3, 3, 3, 3))
     assertEquals(asked(takes = 5)._1, Vector(false, false, false))

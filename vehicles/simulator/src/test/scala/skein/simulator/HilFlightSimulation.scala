@@ -66,9 +66,7 @@ object HilFlightSimulation:
 class HilFlightSimulation extends munit.FunSuite:
   import HilFlightSimulation.*
 
-  test(
-    "a small autopilot flies over the served interface, in lockstep and equal seeds alike to the last byte"
-  ):
+  test("a small autopilot flies over the served interface in lockstep, and equal seeds give equal bytes"):
     val first = fly(1, Span.ofSeconds(20))
     assertEquals(first.sensors, 20 * 250)
     assert((first.positionNed - Vector3(0, 0, -5)).norm < 1.5, first.positionNed.toString)
@@ -77,7 +75,7 @@ class HilFlightSimulation extends munit.FunSuite:
     assertEquals((again.digest, again.positionNed), (first.digest, first.positionNed))
     assert(fly(2, Span.ofSeconds(1)).digest != fly(3, Span.ofSeconds(1)).digest, "other seeds, other noise")
 
-  test("an autopilot that is far away hovers: physics waits for what it answers to the newest sensors"):
+  test("an autopilot with a long delay hovers: physics waits for its answer to the newest sensors"):
     val far   = LinkProfile.symmetric(LatencyProfile.parse("constant:400ms", Left(_)).toOption.get)
     val there = fly(1, Span.ofSeconds(12), link = far)
     assert((there.positionNed - Vector3(0, 0, -5)).norm < 1.5, there.positionNed.toString)

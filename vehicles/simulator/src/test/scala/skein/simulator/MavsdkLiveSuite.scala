@@ -40,7 +40,10 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     try sockets.map(_.getLocalPort)
     finally sockets.foreach(_.close())
 
-  test("MAVSDK arms three vehicles at once, takes off, flies velocities, positions and a mission, and lands"):
+  test(
+    "MAVSDK arms three vehicles simultaneously, takes off, flies velocities, positions and a mission, " +
+      "and lands"
+  ):
     Mavsdk.python(): Unit
     conclusive:
       val ports = freePorts(3)

@@ -36,7 +36,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
   test("the official Python client flies a square, reads every sensor, pauses, steps, lands and resets"):
     fly("fly_square.py")
 
-  test("the official Python client flies as AirSim's examples do, and works scene, cameras and markers"):
+  test("the official Python client runs AirSim's examples, and uses scene, cameras and markers"):
     fly("fly_examples.py")
 
   test("the official Python client drives a car as AirSim's example does, beside a multirotor"):

@@ -32,7 +32,7 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
       assert(System.nanoTime() < patience, s"it never came to hold: $what")
       Thread.`yield`()
 
-  test("calls that wait when their connection closes are not run, and counted; the others' are run"):
+  test("waiting calls whose connection closes are not run, but counted; the others' are run"):
     val server                             = start(settings.copy(overload = Overload.Workers(1)))
     val honest                             = client(server)
     def call(method: String, params: Msg*) = honest.call(method, params)
@@ -55,7 +55,7 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
     Await.result(honest.close(), 10.seconds)
     Await.result(server.close(), 10.seconds): Unit
 
-  test("a simulation that fails closes its connections and its port, and says why"):
+  test("a failing simulation closes its connections and its port, and reports the reason"):
     @volatile var broken = false
     val clock: Clock     =
       () => if broken then throw IllegalStateException("no more time") else Clock.system.now()
