@@ -19,7 +19,7 @@ Flags = NDArray[np.bool_]
 
 
 class Backend(Protocol):
-    """Who flies a batch."""
+    """Runs a batch: in this process, or behind a socket."""
 
     def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None: ...
 
@@ -31,7 +31,7 @@ class Backend(Protocol):
 
 
 class Block:
-    """The arrays that a batch of environments shares with who flies it, all views of one block of bytes.
+    """The arrays that a batch of environments shares with its backend, all views of one block of bytes.
 
     Parameters
     ----------
@@ -75,12 +75,12 @@ class Block:
 
     @staticmethod
     def size(agents: int, count: int) -> int:
-        """Bytes that a block has."""
+        """Size of a block in bytes."""
         return (4 * (2 * agents + 2 * agents * FIELDS + 2) + 2 + agents) * count
 
 
 class InProcess:
-    """Flies by Java in this process, on the very memory of `block`."""
+    """Runs the batch by Java in this process, directly on the memory of `block`."""
 
     def __init__(self, settings: Mapping[str, str], count: int, autoreset: int, block: Block) -> None:
         jpype = jvm.start()

@@ -1,4 +1,4 @@
-"""Skein's commands as functions: what they show comes as data frames."""
+"""Skein's commands as functions; their tables are data frames."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _DEADLINE_MS = 20.0
 
 @dataclass(frozen=True)
 class Flights:
-    """What :func:`fly` flew.
+    """The result of :func:`fly`.
 
     Attributes
     ----------
@@ -52,13 +52,13 @@ class Flights:
         return load(self.recordings[number])
 
     def __getitem__(self, title: str) -> pd.DataFrame:
-        """One of the tables."""
+        """The table of this title."""
         if title not in self.tables:
             raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, came {title!r}")
         return self.tables[title]
 
     def __repr__(self) -> str:
-        """Its parts by name: whole tables would fill pages."""
+        """The names of its parts: whole tables would fill pages."""
         titles = ", ".join(repr(title) for title in self.tables)
         files = ", ".join(path.name for path in self.recordings)
         return f"Flights(tables: {titles}; recordings: {files}; report: {self.report})"
@@ -66,7 +66,7 @@ class Flights:
 
 @dataclass(frozen=True)
 class Found:
-    """What :func:`search` found.
+    """The result of :func:`search`.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class Found:
     folder: Path
 
     def __repr__(self) -> str:
-        """The result, and where the rest lies."""
+        """The result, and the folder of the other files."""
         return f"Found(policy: {self.policy}; folder: {self.folder}; result:\n{self.result.to_string()})"
 
 
@@ -128,21 +128,21 @@ def fly(
     policy : path, optional
         A policy file, as :func:`search` writes one, or an ONNX file of another framework.
     pursuer, evader : callable, optional
-        A policy written in Python: from what is seen, ndarray of float32 of shape (9,), to a number from -1 to 1, as in
-        :mod:`skein_uav.environments`. It is asked while flights are flown, by all of them on one thread, and must not
-        count its calls: a rehearsal before live flights asks it too.
+        A policy written in Python: from an observation, ndarray of float32 of shape (9,), to a number from -1 to 1, as
+        in :mod:`skein_uav.environments`. All flights call it on one thread while they run. It must not count its calls:
+        a rehearsal before live flights calls it, too.
 
-        Each of `policy`, `pursuer` and `evader` flies in flights of its own, in which all others fly the scenario's
-        policies. With none of them the scenario flies by its own policies alone.
+        Each of `policy`, `pursuer` and `evader` has flights of its own, in which all other vehicles use the scenario's
+        policies. Without any of them only the scenario's own policies are flown.
     deadline_ms : float, optional
-        By when a policy must have decided, ms; where it has not, or has failed, ``fallback`` decides (``hold``,
-        ``repeat`` or a policy's name), and the recording says so. With a policy in Python and ``clock="real"`` 20 ms
-        unless told; else policies are waited for, 10 s at most. In virtual time the clock stands still meanwhile. The
-        loop ``paused`` knows no deadline.
+        Time within which a policy must decide, ms; if it has not, or has failed, ``fallback`` decides (``hold``,
+        ``repeat`` or a policy's name), and the recording states it. The default is 20 ms for a policy in Python with
+        ``clock="real"``; else policies are waited for, at most 10 s. In virtual time the clock stands still meanwhile.
+        The loop ``paused`` has no deadline.
     out : path, optional
         Folder for recordings and report; a new temporary one unless named.
     verbose : bool
-        Shows on ``stderr`` what the command says meanwhile.
+        Prints the command's progress on ``stderr``.
     **options
         Any other option of ``./skein fly``, for example ``moves_in_flight=6``.
 
@@ -256,7 +256,7 @@ def search(
     out : path, optional
         Folder for state, policy and pictures; a new temporary one unless named.
     verbose : bool
-        Shows on ``stderr`` what the command says meanwhile.
+        Prints the command's progress on ``stderr``.
     **options
         Any other option of ``./skein search``, for example ``objective="0.7*last10s + 0.3*effort"``.
 
@@ -289,7 +289,7 @@ def search(
 
 
 def _told_here(function: str, options: Mapping[str, Any], **names: str) -> None:
-    """Options of the command that the function has under another name."""
+    """Options of the command for which the function uses another name."""
     for option, name in names.items():
         if option in options:
             raise TypeError(f"{function}() takes {name}, not {option}")
@@ -320,7 +320,7 @@ def to_onnx(policy: str | os.PathLike[str], file: str | os.PathLike[str]) -> Pat
 
 
 def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tables:
-    """Runs a command of ``./skein`` and reads the tables that it shows.
+    """Runs a command of ``./skein`` and reads the tables that it prints.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
 
 
 def _heard(process: subprocess.Popen[str], verbose: bool) -> str:
-    """What a command says of its progress and of what it refuses, until it ends."""
+    """Reads a command's progress and error messages, until it ends."""
     assert process.stderr is not None
     lines = []
     with process.stderr:
@@ -383,7 +383,7 @@ def _heard(process: subprocess.Popen[str], verbose: bool) -> str:
 
 
 def _reason(complained: str) -> str:
-    """What a command said against its arguments or its world, without what it said of its progress."""
+    """A command's error messages, without its progress."""
     lines = [line for line in complained.splitlines() if line.strip()]
     first = next((number for number, line in enumerate(lines) if line.startswith("skein")), max(len(lines) - 1, 0))
     return "\n".join(lines[first:])
@@ -425,7 +425,7 @@ def _frame(table: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def _title(titles: list[str], number: int) -> str:
-    """A title that stood before is told by the last one before it that did not: ``paper m: closest m``."""
+    """Qualifies a repeated title by the last title before it that was not repeated: ``paper m: closest m``."""
     title = titles[number]
     if title not in titles[:number]:
         return title
@@ -434,7 +434,7 @@ def _title(titles: list[str], number: int) -> str:
 
 
 def _numbers(title: str, cells: list[Any]) -> list[tuple[str, list[Any]]]:
-    """A column, or one for each number where each cell holds several."""
+    """One column, or several if each cell holds several numbers."""
     for pattern, names in _PARTS:
         found = [None if cell is None else pattern.fullmatch(str(cell)) for cell in cells]
         if any(found) and all(cell is None or one for cell, one in zip(cells, found, strict=True)):

@@ -1,6 +1,6 @@
 """Environments of Gymnasium: a duel under a loop's real timing, over a link.
 
-In ``skein_uav/Pursuit-v0`` the learner is the pursuer, in ``skein_uav/Evasion-v0`` the evader; the other side flies any
+In ``skein_uav/Pursuit-v0`` the learner is the pursuer, in ``skein_uav/Evasion-v0`` the evader; the other side uses any
 policy.
 
 A step is one decision of the learner, at the moment at which the loop decides. Observations are old, and actions take
@@ -9,7 +9,7 @@ effect later, by the delays of the link.
 Observation, 9 numbers (float32), in the frame whose x-axis is the learner's last commanded heading:
 
 == ================= ===== ====================================================
-0  ahead             m     where the opponent is, as the readings tell
+0  ahead             m     the opponent's position by the readings
 1  right             m
 2  ahead             m/s   its velocity minus the own one
 3  right             m/s
@@ -25,7 +25,7 @@ Action, 1 number from -1 to 1 (values beyond are clipped): for the pursuer the r
 both, the share of that rate.
 
 Reward of the pursuer: minus the distance divided by 10 m, once a period, and 10 for a capture. Of the
-evader: the opposite. In other scenarios than the duel, ``objective`` may stand in the place of the distance.
+evader: the opposite. In other scenarios than the duel, ``objective`` may replace the distance.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ _LARGEST_S = 1e4
 
 
 def observation_space() -> gym.spaces.Box:
-    """Of one environment; the module says what its numbers are."""
+    """The observation space of one environment; the module describes its numbers."""
     most = np.array(
         [_LARGEST_M, _LARGEST_M, _LARGEST_MPS, _LARGEST_MPS, 1.001, 1.001, _LARGEST_S, _LARGEST_S, _LARGEST_S],
         dtype=np.float32,
@@ -61,16 +61,15 @@ def observation_space() -> gym.spaces.Box:
 
 
 def action_space() -> gym.spaces.Box:
-    """Of one environment; the module says what its number is."""
+    """The action space of one environment; the module describes its number."""
     return gym.spaces.Box(-1.0, 1.0, (1,), dtype=np.float32)
 
 
 class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
-    """Many duels side by side, in one of which each row of the arrays flies.
+    """Many duels side by side; each row of the arrays belongs to one.
 
-    Environments are grouped by 128. Those of a group share a link: their messages meet the same delays, and they begin
-    together. An episode that ends early, by a capture, is followed by one in the same loop that lasts until the others'
-    end.
+    Environments are grouped by 128. Those of a group share a link: their messages have equal delays, and they begin
+    together. An episode that ends early, by a capture, is followed by another that lasts until the end of the others.
 
     Parameters
     ----------
@@ -81,34 +80,34 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     opponent : str
         A policy file or a family's name; by default the paper's policy.
     loop : {'stream', 'predictive', 'sequential', 'futures', 'paused'}
-        Whose timing it is.
+        The loop whose timing is simulated.
     link : str
         A latency profile: ``none``, ``direct``, ``vpn``, ``vpn-mixed``, ``constant:200ms``, …
     period_ms : float
         Between decisions for one vehicle, ms.
     plant : str, optional
-        What flies: ``reduced``, ``drag``, ``quadrotor``, or a model file; by default ``reduced``, and ``drag`` with another
-        scenario than the duel.
+        The vehicle model: ``reduced``, ``drag``, ``quadrotor``, or a model file; by default ``reduced``, and ``drag`` in
+        another scenario than the duel.
     altitude_m, episode_s : float
         In m and s.
     capture_radius_m : float
-        A distance of at most this ends an episode; 0: none does.
+        The distance that ends an episode; 0: none does.
     start_within_m : (float, float)
-        How far from the pursuer the evader begins, least and most, in any direction, with any headings; (0, 0): as the
-        paper's duel begins. In another scenario: how far from where it begins each vehicle does.
+        Least and greatest initial distance of the evader from the pursuer, in any direction, with any headings; (0, 0):
+        the paper's start. In another scenario: distance of each vehicle from its usual start.
     moves_in_flight : int
-        Commands to a vehicle that may be unanswered.
+        Most unanswered commands to a vehicle.
     scenario : str
-        Whose pursuer or evader learns: the paper's ``duel``, or for example ``surround``. In environment i the learner is
-        number i of its side, counted round; all others fly their own policies.
+        The scenario whose pursuer or evader learns: the paper's ``duel``, or for example ``surround``. In environment i
+        the learner is number i of its side, modulo their number; all others use their own policies.
     settings : mapping, optional
         Of the scenario, for example ``{"vehicles": 4}``.
     objective : str
-        In another scenario than the duel: what is rewarded in the place of the distance to the nearest opponent, a sum of
-        means of its measures, for example ``off-ring``; a pursuer wants little of it and an evader much, unless
-        ``minimise`` or ``maximise`` stands before it.
+        In another scenario than the duel: the reward in place of the distance to the nearest opponent, a sum of means of
+        its measures, for example ``off-ring``; a pursuer minimises it and an evader maximises it, unless ``minimise`` or
+        ``maximise`` precedes it.
     turn_rate_rad_per_s : float, optional
-        The most that the learner turns. By default a pursuer 1 rad/s; an evader's actions are turns at once.
+        Greatest turn rate of the learner. By default 1 rad/s for a pursuer; an evader's actions are immediate turns.
     autoreset_mode : AutoresetMode or str
         As Gymnasium defines them.
     copy : bool
@@ -121,8 +120,8 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     Attributes
     ----------
     engine : str
-        What flies: those of the duel fly side by side (``SIMD, …``), those of another scenario one by one
-        (``scalar: …``), some hundred times slower.
+        The engine: the duel's environments are simulated side by side (``SIMD, …``), those of another scenario one by
+        one (``scalar: …``), some hundred times slower.
 
     Raises
     ------
@@ -207,9 +206,9 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         ----------
         seed : int, sequence of int, or None
             Environment i takes ``seed + i``, or the i-th, whole numbers from 0 of any size
-            (:func:`skein_uav.seeds.folded`); equal seeds give equal episodes, to the last bit. None: goes on.
+            (:func:`skein_uav.seeds.folded`); equal seeds give equal episodes, to the last bit. None: continues.
         options : dict, optional
-            ``reset_mask``, an array of bool: only these begin anew.
+            ``reset_mask``, an array of bool: only these are reset.
 
         Returns
         -------
@@ -227,7 +226,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         return self._seen(), self._infos()
 
     def step(self, actions: Floats) -> tuple[Floats, Floats, Flags, Flags, dict[str, Any]]:
-        """Decides once in every environment.
+        """Makes one decision in every environment.
 
         Parameters
         ----------
@@ -273,7 +272,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         return tuple(picture(seen) for seen in self._observations)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Gives the batch up."""
+        """Releases the batch."""
         self._backend.close()
 
     def _assert_open(self) -> None:
@@ -325,7 +324,7 @@ class PursuitEnv(gym.Env[Floats, Floats]):
         return seen[0], self._info(infos)
 
     def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        """Decides once."""
+        """Makes one decision."""
         chosen = np.asarray(action)
         if chosen.shape != (1,):
             raise ValueError(f"action: expected a number of shape (1,), came {chosen.dtype} of shape {chosen.shape}")
@@ -338,7 +337,7 @@ class PursuitEnv(gym.Env[Floats, Floats]):
         return None if pictures is None else pictures[0]
 
     def close(self) -> None:
-        """Gives the environment up."""
+        """Releases the environment."""
         self._one.close()
 
     def _info(self, infos: dict[str, Any]) -> dict[str, Any]:
@@ -363,7 +362,7 @@ def open_batch(
 def seeds_of(
     seed: int | Sequence[int | None] | None, count: int, is_reset: bool, random: np.random.Generator
 ) -> NDArray[np.int64]:
-    """A seed an environment; -1 where it goes on with its own."""
+    """A seed for each environment; -1 continues its own sequence."""
     if isinstance(seed, (int, np.integer)):
         return np.array([folded(int(seed) + number) for number in range(count)], dtype=np.int64)
     if seed is not None:

@@ -1,9 +1,9 @@
-"""What goes wrong, as exceptions."""
+"""Exceptions of this package."""
 
 
 class SkeinError(RuntimeError):
-    """A command failed; the message is what it said."""
+    """A command failed; the message is its error output."""
 
 
 class NotFound(SkeinError):
-    """Java 25 or Skein's own files are missing; the message says what was looked for, and where."""
+    """Java 25 or Skein's own files are missing; the message states what was searched for, and where."""

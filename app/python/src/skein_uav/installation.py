@@ -1,4 +1,4 @@
-"""Where Java and Skein's own files are."""
+"""Finds Java and Skein's own files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _USUAL = (
 
 @dataclass(frozen=True)
 class Installation:
-    """What a command is started with.
+    """The files that a command needs.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Installation:
 
 
 def find() -> Installation:
-    """Finds Skein, and Java where Skein has none of its own.
+    """Finds Skein, and Java if Skein does not include one.
 
     Returns
     -------

@@ -28,9 +28,9 @@ def _fork() -> None:
 def _alone() -> Iterator[None]:
     """One thread of one process of a user at a time.
 
-    Threads that start Java at once would both find that it does not run; and where many processes started it at once on
-    a very busy machine, JPype crashed in some. Where there is no folder for the lock, or it is another user's, processes
-    do without.
+    Threads that start Java simultaneously would both find that it does not run; and when many processes started it
+    simultaneously on a very busy machine, JPype crashed in some. Where there is no folder for the lock, or it is another
+    user's, processes do not lock.
     """
     with _starting, contextlib.ExitStack() as held:
         with contextlib.suppress(OSError):

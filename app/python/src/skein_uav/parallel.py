@@ -1,10 +1,10 @@
-"""The duel as a ParallelEnv of PettingZoo: both sides decide from outside.
+"""The duel as a ParallelEnv of PettingZoo: the caller decides for both sides.
 
 Observations, actions and rewards are those of :mod:`skein_uav.environments`. The sum of both rewards is 0.
 
-A step lasts until the loop lets somebody decide. Under ``paused`` both always decide at the same moments. Over a link one
-may still wait until it may be commanded again while the other decides alone; then its observation stays as it was and
-its action is not used: ``infos[agent]["decides"]`` says so.
+A step lasts until the loop lets a side decide. Under ``paused`` both always decide simultaneously. Over a link one side may
+still be waiting for an answer while the other decides alone; then its observation stays unchanged and its action is
+ignored: ``infos[agent]["decides"]`` states it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _AGENTS = ("evader", "pursuer")
 
 
 class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
-    """One duel in which both sides decide from outside.
+    """One duel in which the caller decides for both sides.
 
     Parameters
     ----------
@@ -58,11 +58,11 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
         self._is_reset = self._is_closed = False
 
     def observation_space(self, agent: str) -> gym.spaces.Box:
-        """Of an agent; always the same object."""
+        """The observation space of an agent; always one object, as PettingZoo requires."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gym.spaces.Box:
-        """Of an agent; always the same object."""
+        """The action space of an agent; always one object, as PettingZoo requires."""
         return self.action_spaces[agent]
 
     def reset(
@@ -82,7 +82,7 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
     ) -> tuple[
         dict[str, Floats], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]
     ]:
-        """Lets everybody decide whose turn it is."""
+        """Makes the decisions of all agents whose turn it is."""
         self._assert_open()
         if not self.agents:
             raise SkeinError("the episode has ended, or was not begun: reset() begins one")
@@ -114,7 +114,7 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
         return None if self.render_mode is None else picture(self._block.observations[1, :, 0])
 
     def close(self) -> None:
-        """Gives the environment up."""
+        """Releases the environment."""
         if not self._is_closed:
             self._is_closed = True
             self._backend.close()

@@ -1,4 +1,4 @@
-"""What a learner sees, as a picture."""
+"""Draws a learner's observation as a picture."""
 
 from __future__ import annotations
 

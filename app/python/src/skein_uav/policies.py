@@ -1,4 +1,4 @@
-"""Policies written in Python, for flights: a server that a flight asks for every decision."""
+"""Policies written in Python, for flights: a server that a flight calls for every decision."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ _MOST_TEXT = 60_000
 
 
 class PolicyServer:
-    """Answers a flight's questions by a policy, on a thread of its own.
+    """Answers a flight's requests with a policy's decisions, on a thread of its own.
 
     Parameters
     ----------
     policy : callable
-        Takes an observation, ndarray of float32 of shape (9,), and returns a number, or an array of one; what is beyond
-        -1 to 1 is taken for the bound. It is asked by all flights of a command, and before live ones by a rehearsal, so
-        it must not count its calls.
+        Takes an observation, ndarray of float32 of shape (9,), and returns a number, or an array of one, which is
+        clamped to -1 to 1. All flights of a command call it, and a rehearsal before live ones, so it must not count its
+        calls.
     role : {'pursuer', 'evader'}
-        For whom.
+        The side that it decides for.
 
     Attributes
     ----------

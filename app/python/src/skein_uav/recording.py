@@ -15,7 +15,7 @@ from .errors import SkeinError
 
 
 class Recording(Mapping[str, pd.DataFrame]):
-    """A recording: its tables by name, each read when it is asked for.
+    """A recording: its tables by name, each read on first access.
 
     Names of columns end in their unit: ``Ns`` whole nanoseconds, ``Ms`` milliseconds, ``M`` metres, ``Mps``
     metres per second, ``Rad`` radians. ``North``, ``East``, ``Down`` are the world frame. ``validAtNs``
@@ -64,7 +64,7 @@ class Recording(Mapping[str, pd.DataFrame]):
         return len(self._names)
 
     def sql(self, query: str, parameters: Any = None) -> pd.DataFrame:
-        """What a query says."""
+        """The result of a query."""
         return self._database.execute(query, parameters).df()
 
     def close(self) -> None:

@@ -9,7 +9,7 @@ _BITS = 63
 
 
 def folded(seed: SupportsIndex) -> int:
-    """A seed as Java's 64-bit numbers hold it.
+    """Folds a seed to Java's 64 bits.
 
     One below 2**63 stays as it is; of a larger one, the groups of 63 bits are combined by exclusive or.
 

@@ -20,7 +20,7 @@ from .installation import find
 
 
 class Server:
-    """A Java process that flies environments for any process of this machine's user.
+    """A Java process that runs environments for any process of this machine's user.
 
     It ends when it is closed, or with the process that started it.
 
@@ -54,7 +54,7 @@ class Server:
             raise SkeinError(f"the server of environments ended with status {self._process.returncode}")
 
     def close(self) -> None:
-        """Ends the process and all that flies there."""
+        """Ends the process and all its environments."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._process.stdin.close()
         self._process.wait()
@@ -69,7 +69,7 @@ class Server:
 
 
 class Served:
-    """A batch behind a socket; what is seen and done stands in a file that both processes map.
+    """A batch behind a socket; observations and actions are in a file that both processes map.
 
     Parameters
     ----------

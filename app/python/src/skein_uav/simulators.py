@@ -16,7 +16,7 @@ _LONGEST_LINE = 1 << 20
 
 
 class Body(NamedTuple):
-    """Where a vehicle is and how it moves: north, east, down, m and m/s; heading from north towards east, rad."""
+    """A vehicle's position, velocity and heading: north, east, down, m and m/s; heading from north towards east, rad."""
 
     position_ned: tuple[float, float, float]
     velocity_ned: tuple[float, float, float]
@@ -24,9 +24,9 @@ class Body(NamedTuple):
 
 
 class EnvironmentSimulator:
-    """Serves an environment to one flight after the other, each from a reset with the same seed.
+    """Serves an environment to one flight after the other, each starting with a reset with `seed`.
 
-    The environment is stepped by the flight, which says when: so it can be paused, stepped, or run by the clock.
+    The flight steps the environment: so it can be paused, stepped, or run by the clock.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ class EnvironmentSimulator:
         self._rewards = dict.fromkeys(self.vehicles.values(), 0.0)
 
     def step(self, velocities_ned: Mapping[str, tuple[float, float, float]]) -> dict[str, float]:
-        """Steps the environment once, each vehicle under its commanded velocity; who has ended stays where it is.
+        """Steps the environment once, each vehicle with its commanded velocity; a vehicle that has ended stays in place.
 
         Returns
         -------

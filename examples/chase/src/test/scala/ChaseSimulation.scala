@@ -3,7 +3,7 @@ import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.util.Using
 
-/** The README's first program, by the README's command: it prints what the README shows. */
+/** Runs the README's first program by the README's command: its output equals the README's. */
 class ChaseSimulation extends munit.FunSuite:
   override val munitTimeout: Duration = 3.minutes
 

@@ -2,7 +2,7 @@ package skein
 
 import java.nio.file.{Files, Path}
 
-/** Holds the sources to ARCHITECTURE.md: what stands where, and that imports point downwards. */
+/** Holds the sources to ARCHITECTURE.md: modules, packages, and that imports point downwards. */
 class ArchitectureSuite extends munit.FunSuite:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>
@@ -55,7 +55,7 @@ class ArchitectureSuite extends munit.FunSuite:
       yield s"$from imports $to: $source uses $other"
     assertEquals(found.sorted, Vector.empty)
 
-  test("packages import only what stands below them"):
+  test("packages import only from packages below them"):
     val upwards =
       for
         (source, used) <- house.uses.toVector
@@ -63,7 +63,7 @@ class ArchitectureSuite extends munit.FunSuite:
       yield s"$source uses $other"
     assertEquals(upwards.sorted, Vector.empty)
 
-  test("no file uses itself by way of others"):
+  test("no source files form a cycle of uses"):
     val circles = house.circles.map: circle =>
       circle
         .map(source => s"$source uses ${house.uses(source).filter(circle.contains).mkString(", ")}")

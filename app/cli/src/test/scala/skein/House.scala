@@ -4,9 +4,9 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.matching.Regex
 
-/** The house by names: which source file uses which other. It reads words, not trees: a file uses a
-  * definition of the top level if it says its name, and the name stands in its own package, is imported, or
-  * is said with its package. A local definition of the same name can make an arrow too many.
+/** The dependencies of source files, by names: which file uses which other. It reads words, not trees: a file
+  * uses a top-level definition if the definition's name occurs in it, and is in the file's own package, is
+  * imported, or is qualified. A local definition of an equal name can add a false dependency.
   */
 final case class House(sources: Vector[House.Source]):
   import House.*
@@ -18,7 +18,6 @@ final case class House(sources: Vector[House.Source]):
   private val namesOf: Map[String, Set[String]] =
     byName.keys.toVector.groupMap(_._1)(_._2).map((k, v) => k -> v.toSet)
 
-  /** The files that each file uses. */
   val uses: Map[Source, Set[Source]] = sources.map(source => source -> usedBy(source)).toMap
 
   private def usedBy(source: Source): Set[Source] =
@@ -30,10 +29,10 @@ final case class House(sources: Vector[House.Source]):
     val said    = source.words.flatMap(visible.get) ++ source.qualified
     said.flatMap(byName.getOrElse(_, Vector.empty)).filterNot(_ == source)
 
-  /** The folder of the root that a file stands in. */
+  /** The folder of the root that contains a file. */
   def room(root: Path, source: Source): String = root.relativize(source.path).getName(0).toString
 
-  /** Files that use one another around a circle, largest circle first. */
+  /** Cycles of files that use one another, largest first. */
   def circles: Vector[Vector[Source]] =
     val reached = sources.map(source => source -> reachedFrom(source)).toMap
     sources
@@ -53,9 +52,9 @@ final case class House(sources: Vector[House.Source]):
 object House:
 
   /** @param room its package
-    * @param defined names of the top level
+    * @param defined top-level names
     * @param imports of ours: package and name, or `*`
-    * @param qualified said with their package
+    * @param qualified names used with their package
     */
   final case class Source(
       path: Path,
@@ -71,7 +70,7 @@ object House:
     override def hashCode           = path.hashCode
     def says(word: String): Boolean = Files.readString(path).contains(word)
 
-  /** All sources of the product that stand under a folder. */
+  /** All main sources below a folder. */
   def under(root: Path): House =
     def inside(folder: Path) = Files.list(folder).iterator.asScala.filter(Files.isDirectory(_)).toVector
     val rooms                = inside(root).filterNot(folder => noRooms(folder.getFileName.toString))
@@ -97,7 +96,7 @@ object House:
   private val strings  = """"(?:\\.|[^"\\\n])*"""".r
   private val spliced  = """\$\{([^}]*)\}""".r
 
-  /** Without comments and texts, but with what is put into texts. */
+  /** The code without comments and string literals, but with interpolated expressions. */
   private def code(text: String): String =
     val uncommented = blocks.replaceAllIn(comments.replaceAllIn(text, ""), Regex.quoteReplacement("\"\""))
     strings.replaceAllIn(

@@ -5,7 +5,7 @@ import java.lang.classfile.{ClassFile, CodeElement}
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 
-/** What a flight computes with must be the same on every machine, and so must a recording. The functions of
+/** A flight's computations must have equal bits on every machine, and so must a recording. The functions of
   * `java.lang.Math` listed here may differ in the last bit between processors; those of `StrictMath` may not.
   */
 class StrictMathSuite extends munit.FunSuite:
@@ -30,7 +30,7 @@ class StrictMathSuite extends munit.FunSuite:
     ) ++
       Set("cbrt", "sinh", "cosh", "tanh")
 
-  test("no class that decides a flight takes a function whose last bit is the platform's own"):
+  test("no class that decides a flight calls a function whose last bit depends on the platform"):
     val modules = Seq(
       classOf[units.Vector3],
       classOf[forward.Rollout.type],
@@ -45,7 +45,7 @@ class StrictMathSuite extends munit.FunSuite:
     assert(classes.sizeIs > 500, s"found ${classes.size} classes under ${modules.mkString(", ")}")
     assertEquals(classes.flatMap(platformFunctions), Seq.empty)
 
-  test("such a call is found"):
+  test("the check finds such a call"):
     val own =
       classFiles(folderOf(getClass)).filter(_.getFileName.toString.startsWith("StrictMathSuite$Offender"))
     assertEquals(own.flatMap(platformFunctions).distinct.size, 2)

@@ -10,7 +10,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 
-/** Angles of many points, written out as a pass of {@link ChauffeurKernel}. */
+/** Angles of many points, by hand-written SIMD, as a pass of {@link ChauffeurKernel}. */
 public final class Atan2 {
   private Atan2() {}
 

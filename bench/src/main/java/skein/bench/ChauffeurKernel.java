@@ -22,25 +22,23 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 
 /**
- * The work of {@code yardstick/chauffeur.c}: the duel of the homicidal chauffeur with delayed
- * observations and a first-order velocity lag, 300 ticks of 0.1 s, 2 agents, with the same random
- * numbers. Structure of arrays; a tick is a few passes over a block of worlds; nothing is allocated
- * after construction. One instance per thread.
+ * The work of {@code yardstick/chauffeur.c}: the duel of the homicidal chauffeur with delayed observations and
+ * a first-order velocity lag, 300 ticks of 0.1 s, 2 agents, with its random numbers. Structure of arrays; a
+ * tick is a few passes over a block of worlds; nothing is allocated after construction. One instance per
+ * thread.
  *
- * <p>Where the C program computes sine and cosine of the pursuer's heading anew for the next
- * observation, this keeps them; and of the ring of 8 past positions it keeps the 4 that a tick can
- * need.
+ * <p>Where the C program recomputes sine and cosine of the pursuer's heading for the next observation, this
+ * kernel keeps them; and of the ring of 8 past positions it keeps the 4 that a tick can need.
  */
 public final class ChauffeurKernel {
-  /** Worlds of a block of the C program. */
+  /** Worlds of one block in the C program. */
   public static final int BLOCK = 64;
 
-  /** Ticks of an episode. */
   public static final int TICKS = 300;
 
   /**
-   * Worlds flown together: few enough for the first-level cache, enough to drown the passes'
-   * overhead.
+   * Worlds simulated together: few enough for the first-level cache, enough to make the passes' overhead
+   * negligible.
    */
   private static final int WORLDS = 4 * BLOCK;
 
@@ -61,7 +59,7 @@ public final class ChauffeurKernel {
   private static final FloatVector EVADER_SPEED = constant(5f);
   private static final FloatVector PURSUER_SPEED = constant(10f);
 
-  /** Age of an observation in ticks: 0.2 plus 1.8 of a random number of 24 bits. */
+  /** Age of an observation in ticks: 0.2 plus 1.8 times a random number of 24 bits. */
   private static final FloatVector LEAST_AGE = constant(0.2f);
 
   private static final FloatVector AGE_PER_BIT = constant(1.8f / 16777216f);
@@ -73,10 +71,10 @@ public final class ChauffeurKernel {
   private final float[] evaderHeading = new float[WORLDS], pursuerHeading = new float[WORLDS];
   private final float[] least = new float[WORLDS], sum = new float[WORLDS];
 
-  /** Where the pursuer sees the evader, in its own frame. */
+  /** The evader's observed position in the pursuer's frame. */
   private final float[] ahead = new float[WORLDS], right = new float[WORLDS];
 
-  /** Where the evader aims to the right, and from which heading on. */
+  /** The evader's aim to the right, and the heading it is relative to. */
   private final float[] aim = new float[WORLDS], aside = new float[WORLDS];
 
   private final float[] sin = new float[WORLDS], cos = new float[WORLDS];
@@ -89,7 +87,7 @@ public final class ChauffeurKernel {
   private final float[] px = new float[HISTORY * WORLDS], py = new float[HISTORY * WORLDS];
 
   /**
-   * Flies {@code blocks} blocks as the C program's thread {@code thread} does; the sum of all
+   * Simulates {@code blocks} blocks as the C program's thread {@code thread} does; returns the sum of all
    * worlds' witnesses, smallest distance plus mean distance.
    *
    * @param blocks a multiple of 4
@@ -153,7 +151,7 @@ public final class ChauffeurKernel {
     }
   }
 
-  /** Position at the observation's time, between two ticks. */
+  /** Position at the observation's time, interpolated between two ticks. */
   private static FloatVector seen(
       float[] positions,
       int i,
@@ -193,7 +191,7 @@ public final class ChauffeurKernel {
           .intoArray(evaderHeading, i);
   }
 
-  /** Moves one agent for a tick; its velocity approaches what is commanded, exactly integrated. */
+  /** Moves one agent for a tick; its velocity approaches the commanded one, integrated exactly. */
   private static void fly(
       float[] xs,
       float[] ys,

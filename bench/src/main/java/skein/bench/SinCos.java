@@ -12,7 +12,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 
-/** Sines and cosines written by hand, by the polynomials that {@code skein.simd} compiles into formulas. */
+/** Hand-written sines and cosines, by the polynomials that {@code skein.simd} compiles into formulas. */
 public final class SinCos {
   private SinCos() {}
 

@@ -7,7 +7,7 @@ object ChauffeurScalar:
   private val Gain   = 0.5 * (1 - Keep)
   private val Radius = 8.0
 
-  /** See `ChauffeurKernel.run`. */
+  /** Runs blocks of worlds; see `ChauffeurKernel.run`. */
   def run(thread: Int, blocks: Int): Double =
     val history = Array.ofDim[Double](4, 4) // evader x, y, pursuer x, y before each of the last ticks
     var total   = 0.0

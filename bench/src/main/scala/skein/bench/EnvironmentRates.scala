@@ -9,8 +9,8 @@ import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.Scenarios
 import skein.vehicle.ReducedModel
 
-/** How fast environments fly where nobody looks at them, beside the engine's own flights: what
-  * `bench/python/environments.py` is held against. The duel over `vpn`, under `stream`.
+/** How fast are environments whose observations are not read, beside the engine's own flights: the reference
+  * for `bench/python/environments.py`. The duel over `vpn`, under `stream`.
   */
 @main def EnvironmentRates(): Unit =
   for count <- Seq(64, 1024, 4096) do
@@ -19,10 +19,10 @@ import skein.vehicle.ReducedModel
   val (steps, distance) = flights(4096)
   println(f"flights of a search n=4096: ${steps / 1e6}%.1f M steps/s, first comes to $distance%.3f m")
 
-/** What so many environment steps take, of 4,096 environments whose actions are always 0, under same-step
-  * autoreset: time by the clock and by the processors, and the most memory that the process had. Run:
-  * `./sbtw 'bench/runMain skein.bench.EnvironmentSteps 200000000'`; from Python it is
-  * `bench/python/environments.py`'s.
+/** Cost of `steps` environment steps in 4,096 environments whose actions are always 0, under same-step
+  * autoreset: time by the clock and by the processors, and the process's peak memory. Run: `./sbtw
+  * 'bench/runMain skein.bench.EnvironmentSteps 200000000'`; the counterpart in Python is
+  * `bench/python/environments.py`.
   */
 @main def EnvironmentSteps(steps: Long): Unit =
   val count = 4096
@@ -74,7 +74,7 @@ private def flights(count: Int): (Double, Float) =
   val rate = bestRate(() => last = batch.fly(worlds).meanLast10sM(0))
   (rate * periods * count, last)
 
-/** Calls a second: the best of ten stretches of 0.3 s, after 3 s that do not count. */
+/** Calls a second: the best of ten intervals of 0.3 s, after 3 s of warm-up. */
 private def bestRate(call: () => Unit): Double =
   def stretch(seconds: Double): Double =
     val from  = System.nanoTime()

@@ -6,9 +6,9 @@ import skein.lanes.plant.LaneQuadrotors
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
 
-/** The figures that forward simulation is held to, on all cores, each with a witness. Given by the clock, and
-  * in processor time over the number of cores: the same on a machine with nothing else to do. Run
-  * `./sbtw "bench/runMain skein.bench.Figures"`.
+/** The target figures of forward simulation, on all cores, each with a witness. Stated by the clock, and in
+  * processor time over the number of cores: both agree on an idle machine. Run `./sbtw "bench/runMain
+  * skein.bench.Figures"`.
   */
 object Figures:
   private val cores = Runtime.getRuntime.availableProcessors
@@ -51,7 +51,7 @@ object Figures:
       budget(800_000)
     )
 
-  /** The best of so many tries. */
+  /** Prints the best rate of `tries` tries. */
   private def show(what: String, steps: Double, tries: Int = 1)(work: => Double): Unit =
     val runs = Seq.fill(tries):
       val (start, cpu) = (System.nanoTime(), Work.cpuNanos)
@@ -68,7 +68,7 @@ object Figures:
     val outcomes = Works.batch(LoopTiming.Stream(), cores).fly(worlds)
     outcomes.meanLast10sM.map(_.toDouble).sum / evaluations
 
-  /** Means of the round trip from 20 to 215 ms, jitters from 0 to 38 ms. */
+  /** Links with mean round trips from 20 to 215 ms and jitters from 0 to 38 ms. */
   private val links: Vector[DelayTable] = Vector.tabulate(800): cell =>
     DelayTable.of(LatencyBudget.link(
       20.0 + cell % 40 * 5,

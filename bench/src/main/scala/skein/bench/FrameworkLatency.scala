@@ -19,14 +19,14 @@ import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** What does the framework itself add between a reading and the command made from it? The `stream` loop flies
-  * twenty vehicles at 10 Hz against the built-in simulator over loopback, simulator included in the process.
-  * Measured at the client's sockets: from the last bytes that arrived before a command to the write of the
-  * bytes that hold the command; so decoding, joining, deciding and encoding are in it, for all twenty, from
-  * the first decision on. As in `./skein fly`, virtual flights and a rehearsal warm the way up before.
+/** What does the framework itself add between a reading and the command made from it? The `stream` loop
+  * controls twenty vehicles at 10 Hz against the built-in simulator over loopback, simulator included in the
+  * process. Measured at the client's sockets: from the last bytes that arrived before a command to the write
+  * of the bytes that hold the command; so decoding, joining, deciding and encoding are in it, for all twenty,
+  * from the first decision on. As in `./skein fly`, virtual flights and a rehearsal warm up the code before.
   *
   * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default
-  * 10), threads that plan without a pause meanwhile, as the `plan` loop's do (default 0), virtual flights to
+  * 10), threads that plan continuously meanwhile, as the `plan` loop's do (default 0), virtual flights to
   * warm up by before the rehearsal (default [[skein.flight.WarmUp.Flights]]; 0 for a cold start without one).
   */
 object FrameworkLatency:
@@ -72,7 +72,7 @@ object FrameworkLatency:
     )
     Await.result(system.terminate(), Duration.Inf): Unit
 
-/** A transport that takes the time from the last arrival to each write that holds a move command. */
+/** A transport that measures the time from the last arrival to each write that contains a move command. */
 private final class ObservedTransport(inner: Transport, clock: Clock) extends Transport:
   private val command               = "moveByVelocityZ".getBytes(US_ASCII)
   @volatile private var lastArrival = Instant.Epoch

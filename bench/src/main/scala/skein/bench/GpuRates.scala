@@ -10,10 +10,10 @@ import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, ReducedModel}
 
-/** Forward simulation on a GPU and on this machine's processors, side by side, with the same witnesses: what
-  * differs is counted, to the bit. `bench/gpu` runs this beside Crazyflow on the same GPU.
+/** Forward simulation on a GPU and on this machine's processors, side by side, with comparable witnesses:
+  * differing bits are counted. `bench/gpu` runs this beside Crazyflow on one GPU.
   *
-  * Arguments: candidates of each row, and vehicles of the quadrotor's.
+  * Arguments: candidates in each row, and vehicles in the quadrotor's row.
   */
 object GpuRates:
   private val Episodes = 32
@@ -60,14 +60,15 @@ object GpuRates:
     teams("stream, crossing of 6", 6, 32, TeamRates.crossing(6))
     quadrotor(gpu, vehicles)
 
-  /** @param onCpu so many candidates fly on the processors, too, and are compared
-    * @param there flies so many, here, too; what they came to, by candidate and then by episode
+  /** @param onCpu number of candidates that are also simulated on the processors, and compared
+    * @param there simulates this number of candidates on the GPU, `here` on the processors; results by
+    *   candidate and then by episode
     */
   private def row(name: String, gpu: Gpu, vehicles: Int, candidates: Int, onCpu: Int)(
       there: Int => Array[Float],
       here: Int => Array[Float]
   ): Unit =
-    // For nothing: timetables and code are made.
+    // A warm-up: makes timetables and code.
     for _ <- 1 to 3 do
       there(candidates): Unit
       here(onCpu): Unit

@@ -2,7 +2,7 @@ package skein.bench
 
 import java.util.concurrent.atomic.AtomicInteger
 
-/** Latencies in ns, from any thread; the first 2^23 are kept for the quantiles. */
+/** Latencies in ns, recorded from any thread; the first 2^23 are kept for the quantiles. */
 private final class Latencies:
   private val nanos = new Array[Long](1 << 23)
   private val added = AtomicInteger()

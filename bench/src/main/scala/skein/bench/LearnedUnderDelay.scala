@@ -11,21 +11,20 @@ import skein.search.Judge
 import skein.settings.PolicyFile
 import skein.training.*
 
-/** Is a policy better over a link that was trained under its timing, or does the paused simulator do? The
-  * same learner teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly
-  * over `vpn` under `stream` and `predictive` in virtual time, and where the simulator waits, beside the
-  * paper's policy and the best that a search finds: `./skein search --family lead-pursuit --link vpn`, and
-  * `--family chauffeur-evader`. Run:
-  * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and
-  * by a seed; what stands in the folder already is gone on with. The picture stands there too.
+/** Is a policy trained under a link's timing better over that link, or does training on the paused simulator
+  * suffice? One learner trains two policies of each side, on the paused simulator and under `stream` over
+  * `vpn`; both are run over `vpn` under `stream` and `predictive` in virtual time, and on the paused
+  * simulator, beside the paper's policy and the best that a search finds: `./skein search --family
+  * lead-pursuit --link vpn`, and `--family chauffeur-evader`. Run: `./sbtw "bench/runMain
+  * skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and a seed; results that
+  * are in the folder already are continued. The picture is written there, too.
   */
 object LearnedUnderDelay:
   private given Scenarios = Main.scenarios
 
   private val flown = Vector("paused" -> "none", "stream" -> "vpn", "predictive" -> "vpn")
 
-  /** @param captures flights in which the pursuer came as near as [[CaptureM]]
-    */
+  /** @param captures flights in which the pursuer came within [[CaptureM]] of the evader */
   private[bench] final case class Row(
       policy: String,
       loop: String,
@@ -106,7 +105,7 @@ object LearnedUnderDelay:
       )
       .fold(sys.error, identity)
 
-  /** Learns, or goes on with what is there. */
+  /** Learns a policy, or continues what the folder contains. */
   private def learned(folder: Path, wanted: LearnQuestion): PolicyFile =
     Files.createDirectories(folder): Unit
     val (asked, from) = LearnFile.read(folder) match
@@ -128,7 +127,7 @@ object LearnedUnderDelay:
 
   private val colours = Vector(Colour(0x111111), Colour(0x009e73), Colour(0xd55e00), Colour(0x0072b2))
 
-  /** Under which a policy is trained or flown. */
+  /** The timing under which a policy is trained or run. */
   private def timing(loop: String, link: String) =
     if loop == "paused" then "on the paused simulator" else s"under $loop over $link"
 

@@ -5,7 +5,7 @@ import scala.jdk.CollectionConverters.*
 import skein.plot.{Colour, Png}
 import skein.training.{LearnScore, LearningCurve}
 
-/** Learning curves of several learners in one picture, from tables as `./skein learn` writes them. Run:
+/** Draws learning curves of several learners in one picture, from tables that `./skein learn` wrote. Run:
   * `./sbtw "bench/runMain skein.bench.LearningCurves OUT.png 'TITLE' 'NAME=FILE.csv' …"`; `NAME=NUMBER` draws
   * a level.
   */

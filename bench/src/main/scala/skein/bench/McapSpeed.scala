@@ -11,8 +11,8 @@ import skein.mcap.*
 import skein.mcap.file.McapFile
 
 /** How fast are MCAP files written and read, beside the official libraries? `bench/mcap` runs this and their
-  * twins over the same messages, which `corpus` writes to a file of their own: of each message its log time,
-  * ns, and its length as numbers of 8 and 4 bytes, lowest first, then its data.
+  * twins over common messages, which `corpus` writes to a separate file: of each message its log time, ns,
+  * and its length as numbers of 8 and 4 bytes, lowest first, then its data.
   *
   * A row is what, how compressed, megabytes of messages a second of CPU time of the whole process (so threads
   * of its own do not make it faster), the size of the file, and as witness the CRC32 of all data in the order
@@ -26,9 +26,9 @@ object McapSpeed:
     case "run" :: rounds :: kind :: path :: Nil => run(rounds.toInt, kind, Path.of(path))
     case other => sys.error(s"expected corpus KIND PATH or run ROUNDS KIND PATH, came $other")
 
-  /** `poses`: 1,000,000 messages of 96 bytes, times and doubles of a vehicle that flies circles in gusts.
-    * `images`: 900 images of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of
-    * a sensor in the lowest bit of a tenth of the bytes.
+  /** `poses`: 1,000,000 messages of 96 bytes, times and doubles of a vehicle that circles in gusts. `images`:
+    * 900 images of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of a sensor
+    * in the lowest bit of a tenth of the bytes.
     */
   private def corpus(kind: String, path: Path): Unit =
     val random = SplittableRandom(7)
@@ -97,7 +97,7 @@ object McapSpeed:
     )
     try
       for (name, compression) <- ways do
-        // The first rounds are the compiler's.
+        // The first rounds warm up the compiler.
         val times = Vector.fill(rounds + 3)(round(file, messages, compression)).drop(3)
         val sums  = times.map(_._3).toSet
         require(sums.size == 1, s"every round reads the same, came $sums")
@@ -108,7 +108,7 @@ object McapSpeed:
   private def row(what: String, kind: String, name: String, rate: Double, size: Long, sum: Long): Unit =
     println(f"| $what | $kind | $name | $rate%.0f | ${size / 1e6}%.1f | $sum%08x |")
 
-  /** Seconds of CPU for writing and for reading, and the witness. */
+  /** CPU seconds for writing and for reading, and the witness. */
   private def round(file: Path, messages: Vector[Message], compression: Compression): (Double, Double, Long) =
     val begin = process.getProcessCpuTime
     McapFile.write(file, WriterOptions(compression = compression)): mcap =>

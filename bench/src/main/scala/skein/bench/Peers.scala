@@ -7,8 +7,8 @@ import scala.sys.process.*
 /** How fast is forward simulation beside its peers? On one machine in one run: a hand-vectorised C kernel of
   * the yardstick's work, its Numba and JAX twins and ours; the `stream` loop's full event timing; the
   * quadrotor beside Crazyflow. All sides take turns, round after round, on one thread and on all cores, so
-  * that other load meets all alike; the best round of each counts. Every row prints a witness. `bench/peers`
-  * prepares the tools and runs this.
+  * that other load affects all equally; the best round of each counts. Every row prints a witness.
+  * `bench/peers` prepares the tools and runs this.
   *
   * Arguments: rounds, the compiled C program, Python with the twins' packages (`-`: without them), the folder
   * of the peers' programs.
@@ -39,7 +39,7 @@ object Peers:
       _    <- 1 to 3
       work <- ours
     do
-      // On one thread and on all: what was compiled for one caller alone is compiled anew when others come.
+      // On one thread and on all: code compiled for a single caller is recompiled when others call it.
       work.run(1): Unit
       work.run(cores)
     for
@@ -50,7 +50,7 @@ object Peers:
       take("yardstick, C", threads)(inC(native, threads))
       for work <- ours do
         take(work.name, threads)(work.run(threads))
-        // Beside its peer once more, for the ratio is of these two.
+        // Measured once more beside its peer, because the ratio compares these two.
         if work == Works.yardstick then take("yardstick, C", threads)(inC(native, threads))
       if python != "-" then
         for (name, program, twin) <- Twins do
@@ -84,7 +84,7 @@ object Peers:
 
   private val InPython = """(?s).*rate ([\d.]+) cpu ([\d.]+) witness ([-\d.]+).*""".r
 
-  /** On so many cores. */
+  /** Runs a Python twin on `threads` cores. */
   private def inPython(python: String, program: Path, twin: String, threads: Int): Either[String, Rate] =
     val errors  = new StringBuilder
     val command = Seq("taskset", "-c", s"0-${threads - 1}", python, program.toString, twin)

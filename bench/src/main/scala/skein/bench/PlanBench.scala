@@ -10,12 +10,12 @@ import skein.planning.*
 import skein.policy.PaperEvader
 import skein.vehicle.{PlaneReading, ReducedModel}
 
-/** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of
-  * pursuer and evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads
-  * are those of the `plan` loop, which give way to all others, so other work on the machine takes its share
-  * first: rates are given per second of the clock and of the processor time used. Bytes are what a candidate
-  * leaves to the garbage collector: above a hundred, a loop of the kernel boxes its vectors, and collections
-  * fall into decisions.
+/** How many candidate manoeuvres fit into a tick of 100 ms? One candidate is 2 s of flight in 20 steps of
+  * pursuer and evader, sampled, simulated, evaluated and used by the search; with several behaviours, once
+  * for each. Threads are those of the `plan` loop, which have the lowest priority, so other work on the
+  * machine takes its share first: rates are given per second of the clock and of the processor time used.
+  * Bytes are a candidate's garbage: above a hundred, a loop of the kernel boxes its vectors, and garbage
+  * collections delay decisions.
   *
   * The witness is the cost of the best plan. Run: `./sbtw "bench/runMain skein.bench.PlanBench"`.
   */
@@ -47,7 +47,7 @@ object PlanBench:
         val (byWall, byCpu, bytes, witness) = run(problem(behaviours), threads, seconds)
         println(f"$behaviours%10d $threads%8d $byWall%22.0f $byCpu%29.0f $bytes%11.0f  $witness%.3f")
 
-  /** A search that goes on until it is finished, on the `plan` loop's own threads. */
+  /** A search that runs until it is finished, on the `plan` loop's own threads. */
   def endlessly(threads: Int): Option[PlanSearch] =
     Option.when(threads > 0):
       val problem = this.problem(behaviours = 1)

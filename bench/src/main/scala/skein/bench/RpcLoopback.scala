@@ -14,8 +14,8 @@ import upack.{Binary, Float32, Msg, Obj, Str}
 
 /** How fast is the RPC over loopback, client and server in one JVM? A kinematics request carries a vehicle's
   * name and its reply 13 + 6 floats in maps, encoded at the server and decoded at the client to `upack`
-  * values. The witness of each row is the number of replies whose content was as sent; `cpu` is how many
-  * cores the whole process used.
+  * values. The witness of each row is the number of replies with correct content; `cpu` is how many cores the
+  * whole process used.
   *
   * Arguments: seconds per row (default 5), seconds of the steady rate (default 10).
   */
@@ -73,7 +73,7 @@ final class RpcLoopback(using system: ActorSystem):
     Duration.Inf
   )
 
-  /** Keeps `outstanding` calls under way for so long; latency from call to answer. */
+  /** Keeps `outstanding` calls in progress for `seconds`; latency from call to answer. */
   def closedLoop(name: String, connections: Int, outstanding: Int, seconds: Double, quiet: Boolean): Unit =
     val client    = clientWith(connections, outstanding)
     val latencies = Latencies()
@@ -101,7 +101,7 @@ final class RpcLoopback(using system: ActorSystem):
     report(name, good.sum, started, cpu, latencies, quiet)
     finish(client.close())
 
-  /** Calls at a fixed rate whatever the answers do; latency from the intended tick. */
+  /** Calls at a fixed rate, independent of the answers; latency from the intended tick. */
   def openLoop(name: String, connections: Int, perSecond: Int, seconds: Double, quiet: Boolean): Unit =
     val client    = clientWith(connections, 4096)
     val latencies = Latencies()

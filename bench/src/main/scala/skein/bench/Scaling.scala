@@ -32,7 +32,7 @@ object Scaling:
 
   private def episodes(pairs: Int) = (64 / pairs).max(4)
 
-  /** Every agent plays against the nearest of the other side. */
+  /** A team in which every agent plays against the nearest of the other side. */
   private def team(pairs: Int): Rate =
     val rollout =
       Rollout(Engagement.of(PaperDuel(pairs).fleet), LoopTiming.Stream(), DelayTable.vpn, Works.model)
@@ -43,8 +43,8 @@ object Scaling:
   private def warmUp(): Unit = for _ <- 1 to 3 do
     for perEpisode <- Seq(1, 128) do measure(2048, perEpisode, 1)
 
-  /** The best of three, each of at least 100,000 agent-steps. The kernels stand ready; timetables are made
-    * anew.
+  /** The best of three, each of at least 100,000 agent-steps. Kernels are compiled before; timetables are
+    * recomputed.
     */
   private def measure(worlds: Int, perEpisode: Int, threads: Int): Rate =
     val calls = (100_000 / (worlds * 1200) + 1).max(1)

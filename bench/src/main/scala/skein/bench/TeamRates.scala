@@ -9,16 +9,16 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.units.{MetresPerSecond, Radians}
 
-/** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of one episode, and 256
-  * with delays of their own, `stream` over `vpn`, 60 s, the reduced model, one thread; an agent-step is 0.1 s
-  * of one vehicle. Timetables are made before; what making them costs stands beside. Run:
+/** How fast are teams in forward simulation, with SIMD and by the scalar engine? 256 candidates of one
+  * episode, and 256 with delays of their own, `stream` over `vpn`, 60 s, the reduced model, one thread; an
+  * agent-step is 0.1 s of one vehicle. Timetables are computed before; their cost is printed separately. Run:
   * `./sbtw "bench/runMain skein.bench.TeamRates 6 20"`.
   */
 object TeamRates:
   private val Candidates = 256
   private val DurationS  = 60.0
 
-  /** Flights until compilers have done. */
+  /** Flights before measuring, until the compilers are done. */
   private val WarmUp = 60
 
   def main(args: Array[String]): Unit =
@@ -31,7 +31,7 @@ object TeamRates:
       vehicles     <- if args.isEmpty then Seq(6, 20, 64) else args.toSeq.map(_.toInt)
       (name, draw) <-
         Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles)) ++
-          // More are more operations than a formula may have.
+          // More would exceed the operations that a formula may have.
           Option.when(vehicles <= 32)("crossing" -> crossing(vehicles)) ++
           Option.when(vehicles == 2)("paper's duel" -> duel(PaperPursuer())) ++
           Option.when(vehicles == 2)("README's chase" -> duel(Chase))
@@ -91,7 +91,7 @@ object TeamRates:
 
   private def key(episode: Int) = WorldRandom.key(1, 0, episode)
 
-  /** @param from the first one's number of an episode */
+  /** @param from number of the first episode */
   private final class Worlds(candidates: Vector[TeamCandidate], shared: Boolean, from: Int)
       extends TeamWorlds:
     def size: Int                            = candidates.size
@@ -103,7 +103,7 @@ object TeamRates:
   private val system =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
 
-  /** Processor seconds of the whole process for one of so many rounds. */
+  /** Processor seconds of the whole process for one of `rounds` rounds. */
   private def cpuS(rounds: Int)(work: => Unit): Double =
     val before = system.getProcessCpuTime
     for _ <- 1 to rounds do work

@@ -2,13 +2,13 @@ package skein.bench
 
 import java.lang.management.ManagementFactory
 
-/** A piece of work for one thread: how many steps it made, and a witness of their result.
+/** A piece of work for one thread: its number of steps, and a witness of their result.
   *
   * @param unit what one step is
   */
 final case class Work(name: String, unit: String)(val of: Int => (Double, Double)):
 
-  /** On so many threads at once, once. */
+  /** Runs the work once on each of `threads` threads simultaneously. */
   def run(threads: Int): Rate =
     val results = Array.ofDim[(Double, Double)](threads)
     val workers = Array.tabulate(threads)(id => Thread(() => results(id) = of(id)))
@@ -21,7 +21,7 @@ final case class Work(name: String, unit: String)(val of: Int => (Double, Double
     Rate(steps / wallNanos * 1e3, steps / cpuNanos * 1e3, results.map(_._2).sum / threads)
 
 object Work:
-  /** Processor time of this process, its compiler's and collector's threads included. */
+  /** Processor time of this process, including its compiler's and collector's threads. */
   def cpuNanos: Long = ManagementFactory.getOperatingSystemMXBean match
     case sun: com.sun.management.OperatingSystemMXBean => sun.getProcessCpuTime
     case other => sys.error(s"expected the processor time of a process, got ${other.getClass}")
@@ -29,9 +29,9 @@ object Work:
 /** Millions of steps.
   *
   * @param byWall per second of the clock
-  * @param byCpu per second of processor time: other load on the machine disturbs it less
-  * @param witness that the work was done
+  * @param byCpu per second of processor time, which other load on the machine affects less
+  * @param witness of the result
   */
 final case class Rate(byWall: Double, byCpu: Double, witness: Double):
-  /** The better of both, each for itself. */
+  /** The better value of each field separately. */
   def best(other: Rate): Rate = Rate(byWall.max(other.byWall), byCpu.max(other.byCpu), witness)

@@ -8,7 +8,7 @@ import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 
-/** Forward simulation, from the yardstick's work towards reality. */
+/** Works of forward simulation, from the yardstick's to realistic ones. */
 object Works:
   val model: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
@@ -16,7 +16,7 @@ object Works:
   private val Decision    = "decision of a network with two hidden layers of eight"
   private val VehicleStep = "vehicle-step: 3 ms of the quadrotor and its controller"
 
-  /** What `yardstick/chauffeur.c` does: ages drawn, positions interpolated, decisions, one exact lag step,
+  /** The work of `yardstick/chauffeur.c`: ages drawn, positions interpolated, decisions, one exact lag step,
     * distance.
     */
   val yardstick: Work = Work("yardstick, SIMD", AgentStep): thread =>
@@ -29,10 +29,10 @@ object Works:
     val worlds = blocks * ChauffeurKernel.BLOCK
     (worlds * ChauffeurKernel.TICKS * 2.0, ChauffeurScalar.run(thread, blocks) / worlds)
 
-  /** The `stream` loop's full event timing over `vpn`: candidates that meet the same episodes. */
+  /** The `stream` loop's full event timing over `vpn`: candidates with shared episodes. */
   val candidates: Work = duels("stream over vpn, candidates of 8 episodes", 16_384, perEpisode = 2048)
 
-  /** The same, every world with delays of its own. */
+  /** The `stream` loop's timing over `vpn`: every world with independent delays. */
   val singleWorlds: Work = duels("stream over vpn, single worlds", 8192, perEpisode = 1)
 
   private def duels(name: String, worlds: Int, perEpisode: Int): Work = Work(name, AgentStep): thread =>
@@ -64,7 +64,7 @@ object Works:
   private val network = NeuralShape(Vector(8, 8))
   private val weights = Vector.tabulate(network.parameters)(i => math.sin(i))
 
-  /** Searched as any policy is: pursuers with weights of their own, candidates of one episode. */
+  /** A searched network policy: pursuers with weights of their own, candidates of one episode. */
   val networkByLanes: Work = Work("network, candidates of 8 episodes", AgentStep): thread =>
     val worlds   = 2048
     val policies = Array.tabulate(256)(i => NeuralPolicy(network, weights.map(_ * (0.5 + i / 256.0))))
@@ -89,7 +89,7 @@ object Works:
 
   def batch(timing: LoopTiming, threads: Int): DuelBatch = DuelBatch(Duel.paper, timing, model, threads)
 
-  /** Pursuers of different turn rates, so many of them per episode. */
+  /** Pursuers of different turn rates, `perEpisode` of them in each episode. */
   final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends DuelWorlds:
     override def shareEpisodes: Boolean = perEpisode > 1
     override def asked: Set[DuelNumber] = Works.asked
@@ -100,5 +100,5 @@ object Works:
 
   private val evader = PaperEvader()
 
-  /** As in a search for the distance. */
+  /** The objective of a search for the distance. */
   private val asked = Set(DuelNumber.MeanLast10s)

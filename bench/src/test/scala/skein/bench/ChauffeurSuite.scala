@@ -6,8 +6,8 @@ class ChauffeurSuite extends munit.FunSuite:
   private val blocks = 64
   private val worlds = blocks * ChauffeurKernel.BLOCK
 
-  test("the SIMD kernel flies the same worlds as the C yardstick: its witness for 64 blocks"):
+  test("the SIMD kernel simulates the C yardstick's worlds: equal witness for 64 blocks"):
     assertEqualsDouble(ChauffeurKernel().run(0, blocks) / worlds, 17.219968, 0.003)
 
-  test("the scalar form flies them too"):
+  test("the scalar form simulates them, too"):
     assertEqualsDouble(ChauffeurScalar.run(0, blocks) / worlds, 17.219968, 0.01)

@@ -14,10 +14,10 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vehicle.ConstantVelocity
 
-/** Three pursuers ring an evader, in whatever world is behind the socket. */
+/** Three pursuers encircle an evader, in the world behind the socket. */
 val scenario = Surround(vehicles = 4, ringM = 5, pursuerMps = 10, evaderMps = 5)
 
-/** Flies it paused, as its truth, and by four loops over the paper's VPN; writes recordings and a report.
+/** Runs it paused, as its truth, and with four loops over the paper's VPN; writes recordings and a report.
   *
   * @param path of the environment's socket
   */
@@ -85,7 +85,7 @@ private def flown(path: String, folder: Path, loop: LoopKind, link: LatencyProfi
     thread.shutdown()
     process.close()
 
-/** What each vehicle's rewards come to. */
+/** Sums of each vehicle's rewards, as a table. */
 private def returns(files: Vector[Path]): String =
   def of(recording: Recording) = scenario.agents.map: agent =>
     val steps = recording.measurements.filter(row =>

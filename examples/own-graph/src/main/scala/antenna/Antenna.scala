@@ -7,7 +7,7 @@ import scala.concurrent.Future
 import skein.flow.*
 import skein.units.*
 
-/** Two instruments that answer late, sometimes never: where the balloon is, and where the antenna points; and
+/** Two instruments that answer late, sometimes never: the balloon's bearing and the antenna's azimuth; and
   * the motor.
   *
   * @param bearing of the balloon, rad
@@ -20,7 +20,8 @@ final case class Instruments(
     turn: Double => Future[Boolean]
 )
 
-/** Keeps an antenna pointed at a balloon. No drone, no simulator: the operators take any source of data. */
+/** Keeps an antenna pointed at a balloon. No drone, no simulator: the operators work with any source of data.
+  */
 object Antenna:
   private val period    = Span.ofMillis(200)
   private val gainPerS  = 1.5
@@ -31,9 +32,9 @@ object Antenna:
     val errorRad = StrictMath.IEEEremainder(bearingRad - azimuthRad, 2 * math.Pi)
     (gainPerS * errorRad).max(-mostRadPs).min(mostRadPs)
 
-  /** The loop as a graph: two instruments sensed, joined, decided upon, and the motor commanded.
+  /** The loop as a graph: senses two instruments, joins their values, decides, and commands the motor.
     *
-    * @param note told of every answer that was lost
+    * @param note called for every lost answer
     */
   def track(instruments: Instruments, clock: Clock, duration: Span, note: String => Unit)(using
       ActorSystem

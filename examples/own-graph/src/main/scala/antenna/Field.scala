@@ -19,18 +19,18 @@ final class Field(clock: Clock, seed: Long)(using system: ActorSystem):
   private var turnedAt = start
   private var moving   = Promise[Boolean]()
 
-  /** Where both point after each second: seconds, the balloon's bearing, the antenna's azimuth. */
+  /** The track, once a second: time in s, the balloon's bearing, the antenna's azimuth, rad. */
   var track: Vector[(Double, Double, Double)] = Vector.empty
 
   val instruments: Instruments = Instruments(() => answered(bearingRad), () => answered(azimuthRad), turn)
 
-  /** Notes where both point, once a second. */
+  /** Appends the current bearing and azimuth to the track. */
   def watch(): Unit = synchronized:
     track :+= (elapsedS, bearingRad, azimuthRad)
 
   private def elapsedS = clock.now().since(start).toSeconds
 
-  /** It passes 100 m away at 5 m/s. */
+  /** Bearing of the balloon, rad: it passes 100 m away at 5 m/s. */
   private def bearingRad = StrictMath.atan2(5 * (elapsedS - 20), 100)
 
   private def azimuthRad = azimuth + rateRadS * clock.now().since(turnedAt).toSeconds

@@ -5,10 +5,10 @@ import skein.policy.*
 import skein.scenario.*
 import skein.units.*
 
-/** Follows its opponent at a distance, and trusts a reading the less the older it is: where the opponent was
-  * seen to go, it goes too, but only as far as the reading is fresh. Remembers how old readings have been.
+/** Follows its opponent at a distance, and trusts a reading less the older it is: it matches the opponent's
+  * velocity in proportion to the reading's freshness. Remembers the readings' ages.
   *
-  * @param trustS at this age a reading's velocity counts half
+  * @param trustS age at which a reading's velocity counts half
   */
 final case class Patient(metres: Double, trustS: Double) extends Policy:
   type Memory = Double
@@ -16,7 +16,7 @@ final case class Patient(metres: Double, trustS: Double) extends Policy:
 
   def choose(seen: Observation, meanAgeS: Double): (Action, Double) =
     val other = seen.vehicles(seen.opponent)
-    // What a loop has carried forward to when the command acts is as good as fresh.
+    // A reading that the loop has predicted to the command's time counts as fresh.
     val old   = if other.isPredicted then 0.0 else other.age.toSeconds
     val age   = meanAgeS + (old - meanAgeS) * 0.1
     val trust = trustS / (trustS + age)
@@ -24,7 +24,7 @@ final case class Patient(metres: Double, trustS: Double) extends Policy:
     val wish  = other.kinematics.velocityNed * trust + way * (0.5 * (way.norm - metres) / way.norm.max(1e-9))
     (Action.Velocity(wish * (seen.cruise.value / wish.norm.max(seen.cruise.value)), Yaw.Forward), age)
 
-/** The paper's evader, and the patient one behind it. */
+/** The paper's evader, followed by the patient pursuer. */
 final case class Chase(metres: Double = 8, trustS: Double = 0.2) extends Scenario:
   def agents: Vector[Agent] =
     val evader = PaperDuel().agents.head

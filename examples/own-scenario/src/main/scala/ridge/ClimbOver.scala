@@ -3,10 +3,10 @@ package ridge
 import skein.policy.*
 import skein.units.*
 
-/** Flies north at a height above the ground ahead, and waits while the other would be lost from view: a
-  * policy in three dimensions, without a memory.
+/** Flies north at a height above the ground ahead, and waits while it would lose sight of the other vehicle:
+  * a policy in three dimensions, without a memory.
   *
-  * @param laneM east, that it keeps to
+  * @param laneM its position east, which it keeps
   */
 final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Double, other: Int)
     extends Policy:
@@ -15,7 +15,7 @@ final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Dou
 
   def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val (here, there) = (seen.own.kinematics.positionNed, seen.vehicles(other).kinematics.positionNed)
-    // As high as the highest ground of the next seconds: the vehicle lags behind its commands.
+    // Height over the highest ground of the next seconds, because the vehicle lags behind its commands.
     val ahead  = (0 to 4).map(metres => land.heightM(here.x + 3.0 * metres)).max
     val climb  = (-here.z - (ahead + aboveM)).max(-3).min(1.5)
     val isLost = land.clearanceM(here, there) < aboveM / 2 && here.x > there.x

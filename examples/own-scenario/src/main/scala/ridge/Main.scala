@@ -10,7 +10,7 @@ import skein.scenario.ScenarioKind
 /** All of Skein's commands for the ridge: `./sbtw "ownScenario/run fly --clock virtual"`. */
 object Main extends SkeinApp(RidgeKind)
 
-/** With a picture of its own: the ways from the side, over the ground. */
+/** The scenario with a picture of its own: trajectories from the side, over the ground. */
 object RidgeKind extends ScenarioKind(OverTheRidge()), ScenarioReport:
   override def figures(set: FlightSet): Vector[Figure] = super.figures(set) ++ set.scenarios.map: flown =>
     val panels = flown.flights.map: flight =>

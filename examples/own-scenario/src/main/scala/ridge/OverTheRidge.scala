@@ -7,7 +7,7 @@ import skein.units.*
 /** Two scouts climb over a ridge, side by side, and keep each other in view. The ridge runs from west to
   * east; its crest lies 60 m to the north.
   *
-  * @param sideM between the two; the second is told to begin the climb later than the first by `lateM`
+  * @param sideM distance of the two; the second begins to climb later than the first by `lateM`
   */
 final case class OverTheRidge(
     crestM: Double = 30,
@@ -36,9 +36,7 @@ final case class OverTheRidge(
     )
   )
 
-  /** How far the line between the two is above the ground where it is lowest: below 0 they do not see each
-    * other.
-    */
+  /** The least height of the line between the two above the ground: below 0 they cannot see each other. */
   private val view = Series("line of sight above the ground", "m", Some(Bound("in view", 0)))(tracks =>
     instant => land.clearanceM(tracks.positionNed(0, instant), tracks.positionNed(1, instant))
   )
@@ -56,6 +54,6 @@ final case class OverTheRidge(
 
   override def note: String = "Out of view: the ground is higher than the line between the two scouts."
 
-  /** When both are over. */
+  /** Ends when both have crossed the ridge. */
   override def isOver(known: Known): Boolean =
     known.vehicles.forall(_.kinematics.positionNed.x > goal - 2) || known.elapsed > Span.ofSeconds(90)

@@ -5,7 +5,7 @@ import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.util.Using
 
-/** Every command that a program of one's own has, as a command. */
+/** Runs every command of a user's own program. */
 class CommandsSimulation extends munit.FunSuite:
   override val munitTimeout: Duration = 3.minutes
 
@@ -15,14 +15,14 @@ class CommandsSimulation extends munit.FunSuite:
       Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
   )
 
-  /** Exit status, and both outputs together. */
+  /** Exit status, and both outputs combined. */
   private def run(words: String*): (Int, String) =
     val said   = ByteArrayOutputStream()
     val stream = PrintStream(said, true)
     val status = Console.withOut(stream)(Console.withErr(stream)(Main.run(words)))
     (status, said.toString)
 
-  folder.test("it flies, is reported and replayed from its recordings alone, and a model is fitted to them"):
+  folder.test("the scenario is flown, and its recordings are reported, replayed and fitted"):
     out =>
       val flown = run(
         "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --duration 20s --out".split(
@@ -46,14 +46,14 @@ class CommandsSimulation extends munit.FunSuite:
       val fitted = run("identify" +: recordings :+ "--out" :+ again.toString*)
       assertEquals(fitted._1, 0, fitted._2)
 
-  test("many seeds are flown and added up; it stands what goes wrong"):
+  test("many seeds are summarised, and flights with faults keep the rules"):
     val spread = run("spread --seeds 2 --loop paused --loop stream --link vpn --duration 12s".split(' ')*)
     assertEquals(spread._1, 0, spread._2)
     assert(clue(spread._2).contains("Spread: over-the-ridge"))
     val tortured = run("torture --seeds 2 --duration 12s".split(' ')*)
     assertEquals(tortured._1, 0, tortured._2)
 
-  folder.test("budget tells how much latency it bears"): out =>
+  folder.test("budget measures the tolerated latency"): out =>
     val swept = run(
       "budget --objective lowest-view --means 2 --jitters 2 --episodes 1 --duration 12s --out".split(
         ' '
@@ -62,7 +62,7 @@ class CommandsSimulation extends munit.FunSuite:
     assertEquals(swept._1, 0, swept._2)
     assert(clue(Files.readString(out.resolve("map.csv"))).linesIterator.size > 2)
 
-  folder.test("search chooses its settings by flights in virtual time, and says so"): out =>
+  folder.test("search chooses settings by flights in virtual time, and states that"): out =>
     val searched = run(
       ("search --objective lowest-view --vary cruise-mps=3..6 " +
         "--method random --candidates 4 --episodes 1 --fresh 2 " +
@@ -73,7 +73,7 @@ class CommandsSimulation extends munit.FunSuite:
     assert(searched._2.replaceAll("\\s+", " ").matches(".*; about [0-9,]+ a second.*"), searched._2)
     assert(clue(Files.readString(out.resolve("scenario.conf"))).contains("cruise-mps = "))
 
-  test("what cannot be had is refused in a line that says why"):
+  test("unsupported requests are refused in a line with the reason"):
     val searched = run("search --objective lowest --vary cruise-mps=3..6 --candidates 4".split(' ')*)
     assertEquals(searched._1, 1)
     assert(clue(searched._2).contains("expected one of lowest-view, "))
@@ -98,7 +98,7 @@ class CommandsSimulation extends munit.FunSuite:
       "3"
     )._2).contains("--vehicles: the scenario over-the-ridge has no setting 'vehicles'"))
 
-  test("its settings are listed"):
+  test("the scenario's settings are listed"):
     val (status, said) = run("scenarios")
     assertEquals(status, 0)
     assert(clue(said).contains("over-the-ridge: 2 vehicles"))

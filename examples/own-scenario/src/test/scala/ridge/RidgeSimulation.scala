@@ -20,9 +20,7 @@ class RidgeSimulation extends munit.FunSuite:
       assertEquals(result.value("out of view"), Some(0.0))
       assert(result.value("over after").exists(_ < 60), result.value("over after"))
 
-  test(
-    "where the ridge is steeper than a scout climbs, what happened is told: the limit, the scout, and when"
-  ):
+  test("where the ridge is too steep for a scout, the report names the limit, the scout, and when"):
     val broken = fly(OverTheRidge(crestM = 200, widthM = 10)).violations
     assert(clue(broken.map(_.limit.text)).contains("height above the ground of at least 3 m"))
     for one <- broken do

@@ -26,10 +26,10 @@ final case class Patrol(corners: Vector[Vector3], mps: Double) extends Policy:
     val mps  = this.mps / way.norm.max(1e-9)
     (Action.VelocityAt(way.x * mps, way.y * mps, Metres(0)), next)
 
-/** Drives towards another vehicle, the slower the nearer it is, and stops at a distance. A plan in its place
-  * has it that far behind the other.
+/** Drives towards another vehicle, slower the nearer it is, and stops at a distance. As a goal for planning,
+  * it keeps that distance behind the other.
   *
-  * @param leader its place in the scenario
+  * @param leader its index in the scenario
   */
 final case class Heel(leader: Int, distanceM: Double, mostMps: Double) extends GoalPolicy:
   def course(seen: TeamObservation): Course =
@@ -44,7 +44,7 @@ final case class Heel(leader: Int, distanceM: Double, mostMps: Double) extends G
     val sinceS        = aheadS - distanceM / StrictMath.hypot(north, east).max(0.1)
     (seen.northM(leader) + north * sinceS, seen.eastM(leader) + east * sinceS)
 
-/** Two robots: one patrols, the other stays at its heels. */
+/** Two robots: one patrols, the other follows closely. */
 final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Scenario:
   private val corners = Vector(Vector3(12, 0, 0), Vector3(12, 8, 0), Vector3(0, 8, 0), Vector3(0, 0, 0))
 
@@ -61,16 +61,16 @@ final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Sce
   override def measures: Vector[Measure] =
     Vector(distance.mean("last 10 s", Window.Last(10)), distance.least("closest"))
 
-/** All of Skein's commands, which know the scenario and the structure of the robots' plant. */
+/** All of Skein's commands, with the scenario and the structure of the robots' plant. */
 object Program extends SkeinApp(ScenarioKind(Rovers())):
   override def structures: Seq[Structure] = Seq(RoverPlant.structure)
 
-/** Drives, live and in virtual time. */
+/** Runs drives, live and in virtual time. */
 object Chase:
-  /** As its simulator drives. */
+  /** The prediction model that equals the simulator's. */
   val rover: PredictionModel = PredictionModel.Own(RoverPlant.structure, Vector(3, 1.5, 0.4, 0))
 
-  /** For one robot one search is enough. */
+  /** Settings for planning: one search suffices for one robot. */
   val planning: PlanSettings = PlanSettings(searches = 1)
 
   def flight(
@@ -93,7 +93,7 @@ object Chase:
       predictor = Some(predictor)
     )
 
-  /** Simulated robots listen at a host, the loop connects. */
+  /** Runs a drive: simulated robots listen at one host, the loop connects from another. */
   private def drive(
       flight: PortFlight,
       robots: (Transport, String),
@@ -112,7 +112,7 @@ object Chase:
       landed <- flight.start(vehicles, recorder).landed
     yield landed
 
-  /** Over TCP on loopback, in real time. */
+  /** Drives over TCP on loopback, in real time. */
   def live(loop: LoopKind | OwnLoop, duration: Span)(recorder: PortFlight => Future[Recorder])(using
       system: ActorSystem
   ) =
@@ -120,7 +120,7 @@ object Chase:
     val planned = flight(loop, duration, ClockKind.Real, Clock.system)
     recorder(planned).flatMap(drive(planned, (TcpTransport(), "127.0.0.1"), TcpTransport(), _))
 
-  /** The same in virtual time, in a moment, over a link. Equal seeds give equal recordings. */
+  /** Drives in virtual time, without waiting, over a link. Equal seeds give equal recordings. */
   def virtual(
       loop: LoopKind | OwnLoop,
       duration: Span,

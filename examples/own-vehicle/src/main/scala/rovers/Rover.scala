@@ -14,7 +14,7 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** The adapter: a robot that speaks [[RoverSimulator]]'s lines, as every loop takes it. */
+/** The adapter: a robot that speaks [[RoverSimulator]]'s protocol, as a loop's vehicle port. */
 final class Rover(transport: Transport, address: Address, clock: Clock)(using system: ActorSystem)
     extends VehiclePort:
   import Rover.Patience

@@ -4,13 +4,13 @@ import skein.forecast.Structure
 import skein.policy.{Axis, SearchSpace}
 import skein.vehicle.{ObservedPlant, PlaneReading}
 
-/** Where a robot is, where it heads, and how fast it drives. */
+/** A robot's position, heading and speed. */
 final case class Driving(northM: Double, eastM: Double, headingRad: Double, speedMps: Double)
 
-/** How a robot moves: it turns towards where it shall go, and drives the slower the more it has to turn.
+/** A robot's motion: it turns towards its commanded direction, and drives slower the more it has to turn.
   *
-  * @param turnPerS rate at which it turns, over the angle that is left
-  * @param lagS of its speed
+  * @param turnPerS turn rate over the remaining angle, 1/s
+  * @param lagS time constant of its speed, s
   */
 final case class RoverPlant(
     turnPerS: Double = 3,
@@ -42,7 +42,7 @@ final case class RoverPlant(
     state.speedMps * StrictMath.sin(state.headingRad)
   )
 
-  /** While it stands still, its velocity does not tell where it heads. */
+  /** Corrects the state by a reading; at rest, its velocity does not determine the heading. */
   def corrected(state: Driving, seen: PlaneReading): Driving =
     val speed   = StrictMath.hypot(seen.northMps, seen.eastMps)
     val heading = if speed > 0.01 then StrictMath.atan2(seen.eastMps, seen.northMps) else state.headingRad
@@ -51,7 +51,7 @@ final case class RoverPlant(
 object RoverPlant:
   val MostMps = 3.0
 
-  /** What `identify` fits to drives. */
+  /** The structure whose parameters `identify` fits to drives. */
   val structure: Structure = Structure(
     "rover",
     SearchSpace(Vector(

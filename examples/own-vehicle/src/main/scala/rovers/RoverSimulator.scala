@@ -9,8 +9,8 @@ import skein.link.{Address, Transport}
 import skein.units.*
 import skein.vehicle.PlantFlight
 
-/** A simulated robot on wheels that listens on a port of its own. Lines of text, a number first that the
-  * answer repeats:
+/** A simulated robot on wheels that listens on a port of its own. Lines of text, with a leading number that
+  * the answer repeats:
   *
   * {{{
   * 7 read                  7 at 1250000000 3.2 -1.5 0.7 1.0     clock, ns; north and east, m; heading, rad; speed, m/s
@@ -18,7 +18,7 @@ import skein.vehicle.PlantFlight
   * 9 stop                  9 done true
   * }}}
   *
-  * @param start when its clock began, which is that of all robots of a flight
+  * @param start start of its clock, common to all robots of a flight
   */
 final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: Instant)(using
     system: ActorSystem
@@ -29,7 +29,7 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
   private var driving = Promise[Boolean]()
   flight.start(0, Driving(northM, eastM, 0, 0))
 
-  /** @return where it listens at this host */
+  /** @return the address at which it listens */
   def listen(transport: Transport, host: String = "127.0.0.1"): Future[Address] =
     val lines = Flow[ByteString]
       .via(Framing.delimiter(ByteString("\n"), LongestLine))

@@ -9,7 +9,7 @@ import skein.record.DuckDbRecorder
 import skein.report.{Report, ReportSections}
 import skein.units.*
 
-/** Drives for 30 s over TCP, and the same in virtual time; writes both recordings and a report of them. */
+/** Drives for 30 s over TCP, then in virtual time; writes both recordings and a report of them. */
 @main def driveRovers(): Unit =
   given system: ActorSystem = ActorSystem("rovers")
   import Program.scenarios

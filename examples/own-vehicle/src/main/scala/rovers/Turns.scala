@@ -2,9 +2,7 @@ package rovers
 
 import skein.loop.{LoopEvent, OwnLoop, SnapshotGraph}
 
-/** A loop of one's own: once a period all robots say where they are, and one of them decides; they take
-  * turns.
-  */
+/** A loop of its own: once a period all robots report their states, and one of them decides, in turns. */
 val turns = OwnLoop(
   "turns",
   (team, stop) =>

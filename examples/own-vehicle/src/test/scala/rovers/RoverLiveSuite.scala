@@ -9,14 +9,14 @@ import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{DuckDbRecorder, RecordingReader}
 import skein.units.*
 
-/** Over TCP on loopback, in real time, recorded on disk. */
+/** Drives over TCP on loopback, in real time, recorded on disk. */
 class RoverLiveSuite extends munit.FunSuite:
   import Program.scenarios
   private given system: ActorSystem = ActorSystem("rovers")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Plan) do
-    test(s"${loop.label}: the robots drive over TCP; what was decided is decided again from the recording"):
+    test(s"${loop.label}: the robots drive over TCP, and all decisions are repeated from the recording"):
       import system.dispatcher
       val file   = Files.createTempDirectory("rovers").resolve("live.duckdb")
       val landed = Chase.live(loop, Span.ofSeconds(4)): flight =>

@@ -21,14 +21,14 @@ import skein.units.*
 import skein.vehicle.{PlantModel, Setpoint, VehicleModel}
 import skein.vtime.VirtualTime
 
-/** Stays where it was seen: a model without a plant. */
+/** A model without a plant: the vehicle stays at its last reading. */
 private object Coasting extends VehicleModel[Kinematics]:
   def start(seen: Kinematics): Kinematics                                         = seen
   def advanced(state: Kinematics, setpoint: Setpoint, span: Span): Kinematics     = state
   def corrected(state: Kinematics, seen: Kinematics, sinceSeen: Span): Kinematics = seen
   def kinematics(state: Kinematics): Kinematics                                   = state
 
-/** Two robots drive round a circuit whose turns are narrower than they drive at that speed. */
+/** Two robots on a circuit whose turns are too narrow for their speed. */
 private final case class Laps(mps: Double = 2) extends Scenario:
   val circuit: Racetrack    = Racetrack(straightM = 8, radiusM = 1.5)
   def agents: Vector[Agent] =
@@ -57,8 +57,8 @@ class RoverSimulation extends munit.FunSuite:
 
   for loop <- loops do
     test(
-      s"${loop.label}: after 10 s the hound is at the hare's heels, " +
-        "and everything is decided again from the recording"
+      s"${loop.label}: after 10 s the hound is close behind the hare, and the recording repeats all " +
+        "decisions"
     ):
       val recorder  = Chase.virtual(loop, Span.ofSeconds(20), seed = 1)
       val recording = recorder.recording
@@ -72,11 +72,11 @@ class RoverSimulation extends munit.FunSuite:
     assert(recorder.writeTo(file).isRight)
     file
 
-  /** By the command `replay`. */
+  /** Replays a recording by the command `replay`. */
   private def replayed(recorder: MemoryRecorder): Replayed =
     Replayed.of(fileOf(recorder)).fold(fail(_), identity)
 
-  /** How far the hound is off the place behind the hare after 10 s, on the average, m. */
+  /** Mean distance of the hound from its goal behind the hare after 10 s, m. */
   private def offM(recording: Recording): Double =
     val hare  = recording.readings.filter(_.vehicle == "Hare").map(_.state)
     val hound = recording.readings.filter(_.vehicle == "Hound").map(_.state)
@@ -92,14 +92,14 @@ class RoverSimulation extends munit.FunSuite:
 
   private val slow = PredictionModel.Own(RoverPlant.structure, Vector(1, 0.5, 1.2, 0))
 
-  test("planned by its own plant, the hound is at its place behind the hare, where its policy lags behind"):
+  test("with plans by its own plant, the hound reaches its goal behind the hare, where its policy lags"):
     def off(loop: LoopKind) =
       offM(Chase.virtual(loop, Span.ofSeconds(30), seed = 1, LatencyProfile.direct).recording)
     val (planned, byPolicy) = (off(LoopKind.Plan), off(LoopKind.Predictive))
     assert(planned < 0.3, s"$planned m")
     assert(byPolicy > 1, s"$byPolicy m")
 
-  test("round a circuit with narrow turns, plans by the robots' own plant stay on it, and by another do not"):
+  test("on a circuit with narrow turns, plans by the robots' own plant stay on it; those of another do not"):
     val laps                     = Laps()
     def off(by: PredictionModel) =
       val driven =
@@ -114,7 +114,7 @@ class RoverSimulation extends munit.FunSuite:
       val by = off(other)
       assert(own < by / 2, s"$own m by the own plant, $by m by $other")
 
-  test("the plant, and what no reading tells of a robot at rest, are on record; by another its plans differ"):
+  test("the plant, and the heading of a robot at rest, are recorded; with another plant its plans differ"):
     val recorder  = Chase.virtual(LoopKind.Plan, Span.ofSeconds(5), seed = 1)
     val recording = recorder.recording
     assert(recording.planned.forall(_.states.exists(_.own.size == 4)))
@@ -127,7 +127,7 @@ class RoverSimulation extends munit.FunSuite:
       Left("its parameter 'predictor': expected a model's name or five numbers")
     )
 
-  test("a model that cannot be planned by is refused before the drive, with the reason"):
+  test("a model unfit for planning is refused before the drive, with the reason"):
     val coasting = LoopSettings(model = _ => Coasting)
     val said     = intercept[IllegalArgumentException]:
       PortFlight(
@@ -157,7 +157,7 @@ class RoverSimulation extends munit.FunSuite:
     val page   = Files.readString(report.page)
     for id <- Seq("stream-rovers-virtual", "turns-rovers-virtual") do assert(page.contains(id), id)
 
-  /** What `identify` writes of a minute's drive. */
+  /** The output of `identify` for a minute's drive. */
   private def identified(seed: Long, link: LatencyProfile): Path =
     val folder = Files.createTempDirectory("rovers")
     val file   = folder.resolve("drive.duckdb")
@@ -167,7 +167,7 @@ class RoverSimulation extends munit.FunSuite:
 
   private lazy val withoutDelay = identified(seed = 1, LatencyProfile.none)
 
-  test("identify finds the robots' parameters: within its intervals where the link has no delay"):
+  test("identify finds the robots' parameters within its intervals if the link has no delay"):
     val model = modelOf(withoutDelay)
     for (name, value) <- Seq("turn-per-s" -> 3.0, "most-rad-per-s" -> 1.5, "lag-s" -> 0.4) do
       val (least, most) = (model.getDouble(s"$name.least"), model.getDouble(s"$name.most"))
@@ -175,7 +175,7 @@ class RoverSimulation extends munit.FunSuite:
       assert(least - 1e-5 <= value && value <= most + 1e-5, s"$name: $least to $most")
       assertEqualsDouble(model.getDouble(s"$name.value"), value, 1e-3 * value, name)
 
-  test("and within 5 % where it has, since when a command arrived is an estimate then"):
+  test("with a delay identify is within 5 %, since arrival times of commands are estimates"):
     for seed <- 1 to 3 do
       val model = modelOf(identified(seed, LatencyProfile.direct))
       for (name, value) <- Seq("turn-per-s" -> 3.0, "most-rad-per-s" -> 1.5, "lag-s" -> 0.4) do
@@ -184,7 +184,7 @@ class RoverSimulation extends munit.FunSuite:
   private def modelOf(file: Path): Config =
     ConfigFactory.parseFile(file.toFile).getConfig("skein.model.rover")
 
-  test("a program reads back the models of its own structures; another says which structures it knows"):
+  test("a program reads models of its own structures; a program without them lists those it has"):
     val path = withoutDelay.toString
     val read = ModelFile.read(path).map(_.plant).fold(fail(_), identity)
     assertEquals(PredictionModel.parse(path).map(_.at(0)), Right(PlantModel(read)))
@@ -200,7 +200,7 @@ class RoverSimulation extends munit.FunSuite:
         body(MemoryNetwork(NetworkPlan(), 1, clock), clock)
       .value
 
-  test("what the robot cannot do, an end of the connection and silence are told as errors"):
+  test("unsupported actions, an end of the connection and silence are reported as errors"):
     val (climbing, nobody) = inVirtualTime: (network, clock) =>
       given ExecutionContext = ExecutionContext.parasitic
       val host               = network.host("localhost")

@@ -7,8 +7,8 @@ import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 
-/** Sends samples to a server in batches, and keeps trying while the server is away. Plain Pekko; nothing here
-  * knows about virtual time.
+/** Sends samples to a server in batches, and retries while the server is unavailable. Plain Pekko; nothing
+  * here depends on virtual time.
   */
 object Uploader extends RetrySupport:
   val MostInBatch = 100
@@ -18,9 +18,9 @@ object Uploader extends RetrySupport:
   val ShortPause  = 1.second
   val LongPause   = 5.minutes
 
-  /** Emits the size of every batch when the server has it.
+  /** Emits the size of every batch once the server has it.
     *
-    * @param upload one batch; a call that takes longer than [[Patience]] counts as failed
+    * @param upload sends one batch; a call that takes longer than [[Patience]] counts as failed
     */
   def apply(upload: Seq[Int] => Future[Unit])(using system: ActorSystem): Flow[Int, Int, NotUsed] =
     import system.dispatcher

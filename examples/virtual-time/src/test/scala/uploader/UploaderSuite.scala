@@ -19,11 +19,12 @@ class UploaderSuite extends munit.FunSuite:
   test("the same seed gives the same two hours, to the nanosecond"):
     assertEquals(TwoHours.of(seed = 5).took.toNanos, TwoHours.of(seed = 5).took.toNanos)
 
-/** Ten samples a second; the server is away from the 10th to the 70th minute.
+/** Ten samples a second; the server is unavailable from the 10th to the 70th minute.
   *
   * @param received by the server
-  * @param inVain how often it was asked so
-  * @param waiting minutes, and how many samples the server had not received, as a batch came
+  * @param inVain failed requests to it
+  * @param waiting time in minutes and number of samples not yet received by the server, at the arrival of
+  *   each batch
   */
 final case class TwoHours(
     received: Vector[Int],

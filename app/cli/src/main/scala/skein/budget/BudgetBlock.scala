@@ -7,7 +7,7 @@ import skein.search.BlockBytes
 import skein.search.BlockBytes.given
 import skein.signal.LatencyDistribution
 
-/** Some cells of a budget's map, which any process that was asked the same question flies to the same bits.
+/** Some cells of a budget's map, which any process with an equal question simulates with identical bits.
   *
   * @param number of the subject, from 0
   * @param episodes of each link
@@ -16,9 +16,9 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
 
   def bytes: ArraySeq[Byte] = BlockBytes.of(this)
 
-  /** Of each link what it came to.
+  /** Simulates the cells and encodes each link's statistics.
     *
-    * @return or why there is none
+    * @return Left states why there is no answer
     */
   def answer(subjects: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
     for
@@ -26,7 +26,7 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
       tallies <- one.tallies(BudgetCells(links, episodes))
     yield BlockBytes.of(tallies)
 
-  /** What an answer says. */
+  /** Decodes the statistics of an answer, one per link. */
   def tallies(answer: ArraySeq[Byte]): Either[String, Vector[RunningStats]] =
     BlockBytes
       .read[Vector[RunningStats]](answer, "an answer to a block of a budget")
@@ -36,6 +36,9 @@ object BudgetBlock:
   private given Codec[LatencyDistribution] = Codec.derived
   private given Codec[BudgetBlock]         = Codec.derived
 
-  /** @return or what was expected, and what came */
+  /** Decodes a block.
+    *
+    * @return Left states what was expected and what was received
+    */
   def read(bytes: ArraySeq[Byte]): Either[String, BudgetBlock] =
     BlockBytes.read[BudgetBlock](bytes, "a block of a budget")

@@ -4,8 +4,8 @@ import skein.plot.*
 import skein.search.WholeFlights
 import skein.units.Decimals.significant
 
-/** How far the objective is off the truth, by latency and jitter, one panel per period: the contour where it
-  * leaves the tolerance, and the marked links.
+/** The objective's deviation from the truth by latency and jitter, one panel per period, with the contour at
+  * the tolerance, and the marked links.
   */
 object BudgetFigure:
   private val width  = 430.0
@@ -14,8 +14,7 @@ object BudgetFigure:
   private val limit  = Stroke(Colour(0x111111), 1.8)
   private val empty  = Colour(0xf0f0f0)
 
-  /** @param maps of the same question at several periods
-    */
+  /** @param maps of one question at several periods */
   def apply(maps: Vector[BudgetMap]): Drawing =
     val (_, unit) = maps.head.tolerance.shown(maps.head.unit)
     val scale     = scaleOf(maps)
@@ -34,7 +33,7 @@ object BudgetFigure:
     )
     Drawing.stacked(head, grid)
 
-  /** Of what is drawn of any of the maps. */
+  /** Legend of everything drawn in at least one of the maps. */
   private[budget] def legend(maps: Vector[BudgetMap]): Vector[Legend.Item] =
     val isPassed = maps.exists(contoursOf(_).nonEmpty)
     val hasGaps  = maps.exists(heatOf(_).values.exists(_.exists(_.isEmpty)))
@@ -96,8 +95,8 @@ object BudgetFigure:
         ) ++ panel.xAxis ++ panel.yAxis
     )
 
-  /** For the deviations of most cells: a few wild ones shall not make the others pale, nor those with a
-    * flight that never came to a measure.
+  /** A scale for the deviations of most cells: a few outliers must not make the others pale, nor must cells
+    * with a flight that never reached a measure.
     */
   private[budget] def scaleOf(maps: Vector[BudgetMap]): ColourScale =
     val offs =

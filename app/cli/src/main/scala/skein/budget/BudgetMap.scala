@@ -8,7 +8,7 @@ import skein.units.Decimals.{fixed, signed, significant}
 import skein.units.Interval
 import upickle.default.{ReadWriter, macroRW, write}
 
-/** A map of one loop at one period, with what is said of it.
+/** A map of one loop at one period, with its labels.
   *
   * @param policy or scenario
   * @param engine what flew it
@@ -29,7 +29,7 @@ final case class BudgetMap(
     legs: Legs
 ):
 
-  /** One sentence on how much latency the policy bears, at the row of cells nearest to a jitter. */
+  /** One sentence on how much latency the policy tolerates, from the row of cells nearest to a jitter. */
   def sentence(atJitterMs: Double): String =
     val row    = budget.jittersMs.indices.minBy(i => (budget.jittersMs(i) - atJitterMs).abs)
     val jitter = s"${ms(budget.jittersMs(row))} ms jitter"
@@ -42,7 +42,6 @@ final case class BudgetMap(
       case Bound.Below(mean)  => s"does not hold $within even at ${ms(mean)} ms mean and $jitter $end"
       case Bound.Unknown      => s"no link of the map has $jitter $end"
 
-  /** A line per marked link. */
   def markLines: Vector[String] = marks.map: mark =>
     val (factor, offUnit)                = tolerance.shown(unit)
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
@@ -58,15 +57,14 @@ final case class BudgetMap(
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
       came + where
 
-  /** Whether a picture of the map has a place for it. */
+  /** Whether a mark lies within the map's axes. */
   def isOnMap(mark: BudgetMark): Boolean =
     mark.roundTrip.mean.toMillis <= budget.meansMs.last && mark.roundTrip.jitter.toMillis <= budget.jittersMs.last
 
-  /** One row per cell. */
   def csvRows: Vector[String] = cells.map: (cell, count) =>
     Vector(periodMs, cell.meanMs, cell.jitterMs, cell.objective, cell.sd, count, cell.deviation).mkString(",")
 
-  /** Those that were flown, and how often. */
+  /** The simulated cells, each with its number of episodes. */
   private def cells: Vector[(BudgetMap.Cell, Int)] =
     for
       (jitter, i) <- budget.jittersMs.zipWithIndex
@@ -83,10 +81,10 @@ final case class BudgetMap(
   private def ms(roundTripMs: Double): String =
     (roundTripMs / legs.perRoundTrip).fixed(0)
 
-/** A link by name, and what the policy came to over it. */
+/** A named link, with the policy's result over it. */
 final case class BudgetMark(name: String, roundTrip: LatencyDistribution, tally: RunningStats)
 
-/** In what latencies are told: of the whole way there and back, or of one direction. */
+/** The unit in which latencies are stated: the whole round trip, or one direction. */
 enum Legs(val text: String, val perRoundTrip: Double):
   case RoundTrip extends Legs("round trips", 1)
   case OneWay    extends Legs("one way", 2)
@@ -94,7 +92,7 @@ enum Legs(val text: String, val perRoundTrip: Double):
 object BudgetMap:
   val CsvHeader = "periodMs,meanMs,jitterMs,objective,sd,episodes,deviation"
 
-  /** All maps as JSON: what was asked, and per map the truth and the cells. */
+  /** All maps as JSON: the question, and for each map the truth and the cells. */
   def json(maps: Vector[BudgetMap]): String = write(maps.map(Shown.of), indent = 1)
 
   private final case class Cell(

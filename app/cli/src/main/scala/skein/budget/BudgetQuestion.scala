@@ -7,14 +7,17 @@ import skein.search.Conditions
 import skein.settings.{PolicyFile, ScenarioSettings}
 import upickle.default.ReadWriter
 
-/** What a budget is asked of, in the words of the user: enough for another process to fly the same. */
+/** A budget's question in the user's words: enough for another process to simulate identical episodes. */
 sealed trait BudgetQuestion derives ReadWriter:
-  /** @return or what was expected, what came, and in which option */
+  /** Resolves the question.
+    *
+    * @return Left states what was expected, what was given, and in which option
+    */
   def subject(threads: Int)(using Scenarios): Either[String, BudgetSubject]
 
 object BudgetQuestion:
 
-  /** Of a policy in the paper's duel.
+  /** A question about a policy in the paper's duel.
     *
     * @param policy and `opponent`: as [[PolicyFile.text]] writes them
     * @param role of the policy
@@ -36,7 +39,7 @@ object BudgetQuestion:
         flown     <- conditions.resolved
       yield DuelSubject(conditions, flown, policy, opponent, objective, seed, threads)
 
-  /** Of a scenario.
+  /** A question about a scenario.
     *
     * @param set settings by their keys
     * @param objective a sum of its measures; without one, the first

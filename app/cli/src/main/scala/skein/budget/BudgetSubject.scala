@@ -9,10 +9,10 @@ import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 
-/** What a budget is of: something that is flown over links and comes to a number.
+/** The subject of a budget: simulated over links, it yields a number.
   *
   * @param loop by its name
-  * @param vehicles what flies, in a line
+  * @param vehicles the vehicle model, in a line
   * @param label of the policy, or of the scenario
   * @param formula of the number, in `unit`, which may be empty
   */
@@ -25,28 +25,28 @@ trait BudgetSubject(
     val formula: String,
     val unit: String
 ):
-  /** The number where the world waits for the controller; or why there is none. */
+  /** The number in a world that waits for the controller; Left states why there is none. */
   def truth: Either[String, Double]
 
   def engine(links: Vector[LatencyDistribution]): Engine
 
-  /** Episodes of a cell that are flown in seconds. */
+  /** Episodes of a cell that are simulated within seconds. */
   def cellEpisodes(links: Vector[LatencyDistribution]): Int
 
-  /** Rows of a map that are flown in one call. */
+  /** Number of rows of a map that one call simulates. */
   def rowsTogether: Int = 1
 
-  /** Of each cell; all meet the same random numbers.
+  /** The statistics of each cell; all cells use equal random numbers.
     *
-    * @return or why not
+    * @return Left states why there are none
     */
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]]
 
-/** Cells of a map that are to be flown.
+/** Cells of a map that are to be simulated.
   *
   * @param links by their round trips
   * @param episodes of each
-  * @param onProgress told how many episodes are flown
+  * @param onProgress called with the number of episodes done
   */
 final case class BudgetCells(
     links: Vector[LatencyDistribution],
@@ -54,11 +54,11 @@ final case class BudgetCells(
     onProgress: Long => Unit = _ => (),
     isCancelled: () => Boolean = () => false
 ):
-  /** Of each cell, once their [[CellWorlds]] are flown.
+  /** The statistics of each cell, after its [[CellWorlds]] were simulated.
     *
-    * @param flown how many worlds were
+    * @param flown number of worlds that were simulated
     * @param value of a world
-    * @return or that it was stopped before
+    * @return Left states that it was stopped before
     */
   def tallies(flown: Int)(value: Int => Double): Either[String, Vector[RunningStats]] = Either.cond(
     flown == links.size * episodes,
@@ -68,7 +68,9 @@ final case class BudgetCells(
     BudgetSubject.Stopped
   )
 
-/** The worlds of cells that are flown together: of each link the same episodes, one link after the other. */
+/** The worlds of cells that are simulated together: every link has the same episodes, and the links follow
+  * each other.
+  */
 abstract class CellWorlds(links: Vector[DelayTable], each: Int, seed: Long):
   private val tables               = links.toArray
   private val keys                 = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
@@ -79,7 +81,7 @@ abstract class CellWorlds(links: Vector[DelayTable], each: Int, seed: Long):
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
 
-/** A policy in the paper's duel. */
+/** A policy's result in the paper's duel, as a budget's subject. */
 final class DuelSubject(
     named: Conditions,
     flown: Conditions.Resolved,
@@ -101,7 +103,7 @@ final class DuelSubject(
   private val (pursuer, evader) =
     if policy.role == Role.Pursuer then (policy.policy, opponent.policy) else (opponent.policy, policy.policy)
 
-  /** The paused loop waits for every answer, so that no delay, and no chance, enters. */
+  /** Simulates the paused loop, which waits for every answer, so that neither delay nor chance matters. */
   def truth: Either[String, Double] =
     val paused = flown.paused.batch(1).fly(Worlds(Vector(DelayTable.none), 1), objective.captureRadiusM)
     Right(objective.value(paused, 0, policy.role, durationS))

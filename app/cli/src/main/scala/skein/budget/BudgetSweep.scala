@@ -5,32 +5,33 @@ import skein.lanes.Engine
 import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 
-/** Flies something over links of many latencies and jitters, and once over none while the world waits.
+/** Simulates a subject over links of many latencies and jitters, and once without a link in a world that
+  * waits.
   *
-  * @param asked episodes of each cell, where they were asked for
+  * @param asked episodes of each cell, if the user chose
   */
 final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
-  /** Of the map's cells, row by row. */
+  /** Links of the map's cells, row by row; None for impossible cells. */
   private val links: Vector[Vector[Option[LatencyDistribution]]] =
     axes.jittersMs.map(jitter => axes.meansMs.map(LatencyBudget.link(_, jitter)))
 
   private val known = links.flatten.flatten
 
-  /** Of each cell: as many as were asked for, or as are flown in seconds. */
+  /** Episodes of each cell: the user's number, or as many as are simulated within seconds. */
   lazy val episodes: Int = asked.getOrElse(subject.cellEpisodes(known))
 
   /** What flies the cells. */
   def engine: Engine = subject.engine(known)
 
-  /** Over a link with these round trips. */
+  /** The subject's statistics over a link with these round trips. */
   def over(roundTrip: LatencyDistribution): Either[String, RunningStats] =
     subject.tallies(BudgetCells(Vector(roundTrip), episodes)).map(_.head)
 
-  /** The whole map, row by row.
+  /** Simulates the whole map, row by row.
     *
-    * @param onProgress told how many episodes are flown
-    * @param onRow told of all rows that are known, after each
-    * @return of a map that was cancelled those rows; or why there are none
+    * @param onProgress called with the number of episodes done
+    * @param onRow called with all rows known, after each row
+    * @return the rows known, also of a cancelled map; Left states why there are none
     */
   def map(
       onProgress: Long => Unit,
@@ -64,17 +65,17 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
           onRow(known)
           rowsFrom(known, onProgress, isCancelled, onRow)
 
-  /** Episodes of the map. */
+  /** Number of episodes that the whole map takes. */
   def expected: Long = known.size.toLong * episodes
 
 object BudgetSweep:
   type Rows = Vector[Vector[Option[RunningStats]]]
 
-/** Where the cells lie: round trips' means and jitters, ms, from 0 in even steps. */
+/** The map's axes: means and jitters of round trips, ms, from 0 in even steps. */
 final case class BudgetAxes(meansMs: Vector[Double], jittersMs: Vector[Double])
 
 object BudgetAxes:
-  /** `count` values each, from 0 up to the most, which is left out. */
+  /** `count` values each, from 0 up to the greatest, which is excluded. */
   def of(mostMeanMs: Double, means: Int, mostJitterMs: Double, jitters: Int): BudgetAxes =
     BudgetAxes(
       Vector.tabulate(means)(_ * mostMeanMs / means),

@@ -10,10 +10,10 @@ import skein.signal.LatencyDistribution
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** Flown elsewhere, in blocks of some cells each, to the same bits as here.
+/** A subject simulated by other processes, in blocks of some cells each, with the bits of a local run.
   *
-  * @param number of it among all that the question asks
-  * @param blockEpisodes of a block, about; without it, as many as take seconds at most
+  * @param number of this subject among those of the question
+  * @param blockEpisodes approximate episodes in a block; without it, as many as take seconds at most
   */
 final class ClusterSubject(
     here: BudgetSubject,
@@ -33,7 +33,7 @@ final class ClusterSubject(
 
   export here.{cellEpisodes, engine, truth}
 
-  /** A map at once: there are always enough workers. */
+  /** A whole map in one call: there are always enough workers. */
   override def rowsTogether: Int = Int.MaxValue
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
@@ -50,13 +50,13 @@ final class ClusterSubject(
     yield tallies
 
 object ClusterSubject:
-  /** Of the size that a cell has unless told otherwise. */
+  /** Cells in a block at a cell's default number of episodes. */
   private val CellsOfBlock = 8
 
-  /** The question as workers get it.
+  /** The question as workers receive it.
     *
-    * @param probes what each came to at the coordinator in one episode: a worker that comes to anything else,
-    *   by a file of another content for example, does not answer the question
+    * @param probes each subject's result of one episode at the coordinator: a worker with another result, for
+    *   example because a file has other content, does not answer the question
     */
   private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[RunningStats])
       derives ReadWriter
@@ -70,7 +70,7 @@ object ClusterSubject:
   private def probes(subjects: Vector[BudgetSubject]): Either[String, Vector[RunningStats]] =
     Expect.each(subjects)(_.tallies(BudgetCells(Vector(LatencyDistribution.Vpn), 1)).map(_.head))
 
-  /** Answers the questions of budgets whose scenarios are known here. */
+  /** Answers budget questions about the scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[ProbedQuestion](asked, "a budget's question")

@@ -10,7 +10,7 @@ import skein.scenario.{Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, Effort, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 
-/** What is asked of a scenario: a sum of its measures, under a loop. */
+/** A budget's question about a scenario: a sum of its measures, under a loop. */
 final case class ScenarioQuestion(
     scenario: Scenario,
     objective: TeamObjective,
@@ -19,10 +19,10 @@ final case class ScenarioQuestion(
     threads: Int
 ):
 
-  /** How it is flown: forward by lanes or world by world where forward simulation knows its policies and
-    * measures, else in flights in virtual time.
+  /** Chooses the engine: forward simulation, with SIMD or world by world, where it supports the policies and
+    * measures, else flights in virtual time.
     *
-    * @return or what was expected, what came, and in which option
+    * @return Left states what was expected, what was given, and in which option
     */
   def subject(plantIsTold: Boolean)(using Scenarios): Either[String, BudgetSubject] =
     WholeFlights.plane(scenario, conditions.durationS) match
@@ -55,7 +55,7 @@ object ScenarioQuestion:
         .map("--objective: " + _)
     yield ScenarioQuestion(scenario, asked, conditions, seed, threads)
 
-/** In the plane, by measures that are of a quantity. */
+/** A scenario in forward simulation, with measures of quantities in the plane. */
 final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
     extends ScenarioSubject(question, flown.vehicle.description):
   private val candidate =
@@ -90,10 +90,10 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
         TeamWorlds:
     def candidate(world: Int): TeamCandidate = TeamSubject.this.candidate
 
-/** Whatever its measures are: each is taken of a whole flight.
+/** A scenario with any measures: each is taken of a whole flight.
   *
-  * @param over how an episode is flown, by its number, over a link by its round trips, or with a world that
-  *   waits; on the calling thread
+  * @param over runs an episode by its number, over a link given by its round trips, or in a world that waits;
+  *   on the calling thread
   */
 final class FlownSubject private (
     question: ScenarioQuestion,
@@ -128,7 +128,7 @@ final class FlownSubject private (
 
 object FlownSubject:
 
-  /** By forward simulation, world by world. */
+  /** Simulates flights forward, world by world. */
   def forward(question: ScenarioQuestion, flown: Conditions.Resolved): FlownSubject =
     def fly(timing: LoopTiming, link: Delays) = WholeFlights.forward(
       timing,
@@ -148,7 +148,7 @@ object FlownSubject:
       )
     )
 
-  /** By flights in virtual time: simulator, link, client and loop as they are. */
+  /** Runs flights in virtual time, with the actual simulator, link, client and loop. */
   def virtual(question: ScenarioQuestion, loop: LoopKind, reason: String): FlownSubject =
     FlownSubject(
       question,
@@ -164,7 +164,7 @@ object FlownSubject:
         )(question.scenario, _)
     )
 
-/** A scenario. */
+/** A scenario's result, as a budget's subject. */
 sealed abstract class ScenarioSubject(question: ScenarioQuestion, vehicles: String)
     extends BudgetSubject(
       question.conditions.loopText,

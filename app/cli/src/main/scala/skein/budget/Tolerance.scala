@@ -2,20 +2,20 @@ package skein.budget
 
 import skein.units.Decimals.significant
 
-/** How far off the truth still counts as holding. */
+/** The greatest deviation from the truth that counts as tolerated. */
 enum Tolerance:
-  /** A share of the truth, for example 0.05. */
+  /** A fraction of the truth, for example 0.05 for 5 %. */
   case Share(share: Double)
 
-  /** In the objective's unit: for what may be 0. */
+  /** A distance in the objective's unit: for objectives that may be 0. */
   case Within(distance: Double)
 
-  /** In what deviations are told. */
+  /** The tolerance as a number, in the unit of deviations. */
   def value: Double = this match
     case Share(share)     => share
     case Within(distance) => distance
 
-  /** What deviations are told by; or why they cannot be. */
+  /** The divisor of deviations; Left states why there is none. */
   def per(truth: Double): Either[String, Double] = this match
     case Share(_) if truth == 0 =>
       Left(
@@ -25,7 +25,7 @@ enum Tolerance:
     case Share(_)             => Right(truth.abs)
     case Within(_)            => Right(1)
 
-  /** By which deviations are multiplied for people, and the unit that they have then. */
+  /** The factor that scales deviations for display, and their unit then. */
   def shown(unit: String): (Double, String) = this match
     case Share(_)  => (100, "%")
     case Within(_) => (1, unit)

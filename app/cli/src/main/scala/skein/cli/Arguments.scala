@@ -6,10 +6,10 @@ import skein.settings.{ConfigKeys, TextFile}
 import skein.signal.LatencyProfile
 import skein.units.Expect
 
-/** What several commands read from their options. */
+/** Parses options that several commands share. */
 private[cli] object Arguments:
 
-  /** Settings of a scenario, `NAME=VALUE` each, by their keys, each once; or every mistake. */
+  /** Parses settings of a scenario, `NAME=VALUE` each, by their keys, each once; Left lists every mistake. */
   def settings(texts: Seq[String]): Either[String, Seq[(String, String)]] =
     for
       told <- Expect.all(texts): text =>
@@ -21,8 +21,8 @@ private[cli] object Arguments:
         Expect.that(values.size == 1)(s"--set: expected '$key' once, came ${values.mkString(" and ")}")
     yield told
 
-  /** Options that were given, also those of a group of options. One that has a value of its own is not told
-    * from it.
+  /** The options that differ from their defaults, including those of option groups. An option given its
+    * default value cannot be distinguished from an absent one.
     */
   def told(options: Product): Set[String] =
     options.productElementNames.zip(options.productIterator).toSet.flatMap:
@@ -36,7 +36,7 @@ private[cli] object Arguments:
   private def flag(name: String) =
     "--" + "[A-Z]".r.replaceAllIn(name, letter => "-" + letter.matched.toLowerCase(Locale.ROOT))
 
-  /** All but these is taken from the folder that is gone on with. */
+  /** Refuses options, other than `may`, that are read from the folder of the run being continued. */
   def resumed(options: Product, may: Set[String], what: String): Either[String, Unit] =
     val others = told(options) -- may - "--resume"
     Expect.that(others.isEmpty):

@@ -11,7 +11,7 @@ import skein.signal.LatencyDistribution
 import skein.units.Decimals.significant
 import skein.units.{Expect, Span}
 
-/** Options of `./skein budget`. */
+/** Command-line options of `./skein budget`, with their help texts. */
 final case class BudgetOptions(
     @arg(doc = "a policy file, or the name of a family (default: paper-pursuer)")
     policy: Option[String],
@@ -164,7 +164,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       forward.seed.getOrElse(1)
     )
 
-  /** Flown here, or by the workers whom the options choose. */
+  /** Where the subject is simulated: in this process, or by the workers that the options choose. */
   private def elsewhere(
       cluster: Option[ClusterOptions.Checked],
       options: BudgetOptions,
@@ -254,7 +254,8 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
               case Left(BudgetSubject.Stopped) if maps.nonEmpty => before
               case one                                          => one.map(maps :+ _)
 
-  /** A part of a map replaces no whole one, and has no picture: it may be of one row. */
+  /** Writes the maps. A partial map never replaces a whole one, and has no picture: it may have a single row.
+    */
   private def write(
       maps: Vector[BudgetMap],
       isWhole: Boolean,

@@ -3,7 +3,7 @@ package skein.cli
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.cluster.Certificates
 
-/** Options of `./skein cluster`. */
+/** Command-line options of `./skein cluster`, with their help texts. */
 final case class ClusterCommandOptions(
     @arg(doc =
       "name of a machine, to stand in its certificate: a host name, an address, or " +
@@ -16,7 +16,7 @@ final case class ClusterCommandOptions(
     words: Leftover[String]
 )
 
-/** `./skein cluster certificates`: makes the certificates by which machines know one another. */
+/** `./skein cluster certificates`: makes the certificates with which machines authenticate each other. */
 object ClusterCommand
     extends OptionsCommand[ClusterCommandOptions](
       "cluster",

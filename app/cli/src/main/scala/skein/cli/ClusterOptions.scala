@@ -7,7 +7,7 @@ import skein.link.Address
 import skein.search.SearchBlock
 import skein.units.Expect
 
-/** Whether other processes compute. */
+/** Options that distribute a computation to other processes. */
 final case class ClusterOptions(
     @arg(doc = "computes with this many processes of this machine, which share its cores")
     workers: Option[Int],
@@ -24,7 +24,7 @@ final case class ClusterOptions(
 ):
   import ClusterOptions.*
 
-  /** @return absent where this process alone computes */
+  /** The validated options; None where this process computes alone. */
   def checked: Either[String, Option[ClusterOptions.Checked]] =
     if workers.isEmpty && cluster.isEmpty then
       Either.cond(
@@ -54,7 +54,7 @@ object ClusterOptions:
 
   private val MostWorkers = 256
 
-  /** Any port of this machine alone. */
+  /** Any free port, reachable only from this machine. */
   val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
 
   def endpoint(option: String, text: String): Either[String, Endpoint] =

@@ -11,7 +11,7 @@ import skein.cluster.{CoordinatorNode, WorkerProcesses}
 import skein.report.TextTable
 import skein.search.{BlockExecutor, BlocksFailed}
 
-/** A coordinator for one question, and the workers that it started. */
+/** A coordinator for one question, with the workers that it started. */
 private[cli] final class ClusterRun private (
     node: CoordinatorNode,
     options: ClusterOptions.Checked,
@@ -22,7 +22,7 @@ private[cli] final class ClusterRun private (
 ) extends BlockExecutor:
   private val failure = AtomicReference(Option.empty[String])
 
-  /** When the first answers were seen, and how many: before, workers start. */
+  /** When the first answers were received, and their number: before, workers are starting. */
   private var begun = Option.empty[(atNanos: Long, accepted: Long)]
 
   private val processes = WorkerProcesses(
@@ -45,7 +45,7 @@ private[cli] final class ClusterRun private (
     failure.set(Some(reason))
     node.cancel()
 
-  /** Where all answers are in the ledger, nobody is needed. */
+  /** Starts workers only if the ledger lacks answers. */
   private def wanted(): Unit =
     val _ = Thread.ofVirtual().start: () =>
       try processes.start()
@@ -71,18 +71,18 @@ private[cli] final class ClusterRun private (
       .compute(works, onAnswer, () => wanted())
       .map(_.flatMap(answers => withReason(answers)))(using ExecutionContext.parasitic)
 
-  /** A call that was cancelled since nobody is left has a reason. */
+  /** Adds the reason to a call that was cancelled because no worker is left. */
   private def withReason[A](answers: Option[A]) =
     if answers.isDefined then Right(answers) else failure.get.toLeft(answers)
 
   def cancel(): Unit = node.cancel()
 
-  /** The share of the call under way that is done, 0 to 1. */
+  /** The fraction of the current call that is done, 0 to 1. */
   def share: Double =
     val now = node.progress
     now.done.toDouble / now.of.max(1)
 
-  /** How it goes, in a line. */
+  /** Workers and progress of the current call, in a line. */
   def status: String =
     val now      = node.progress
     val nanos    = System.nanoTime()
@@ -102,7 +102,7 @@ private[cli] final class ClusterRun private (
     s"${now.done} of ${now.of} blocks; " +
       s"$here${if now.here == 0 then "" else rate}; ${now.coordinator.workers.size} joined, ${now.died} lost"
 
-  /** Who did how much. */
+  /** Each worker's share of the work, in a line. */
   private def account: String =
     val now       = node.progress
     val counts    = now.coordinator.counts
@@ -128,7 +128,7 @@ private[cli] final class ClusterRun private (
 private[cli] object ClusterRun:
   private val MostRows = 40
 
-  /** Runs with a coordinator and workers, and ends them.
+  /** Runs `body` with a coordinator and workers, and stops them afterwards.
     *
     * @param program the class whose `main` starts the commands
     * @param folder for the ledger and the workers' logs

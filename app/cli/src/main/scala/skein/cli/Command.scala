@@ -5,7 +5,7 @@ import scala.annotation.unused
 import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
 
-/** A command of `./skein`: one file each.
+/** A command of `./skein`; each has a file of its own.
   *
   * @param name the word after `./skein`
   * @param summary one line for `./skein --help`
@@ -14,8 +14,8 @@ trait Command(val name: String, val summary: String):
 
   /** Runs with the words after the command's name.
     *
-    * @return the exit status: 0 success; 1 failure, or something that cannot be done; 2 unknown options, or
-    *   values of the wrong kind
+    * @return the exit status: 0 success; 1 failure, or a request that cannot be fulfilled; 2 unknown options,
+    *   or values of the wrong kind
     */
   def run(arguments: Seq[String]): Int
 
@@ -30,7 +30,7 @@ trait Command(val name: String, val summary: String):
 
   private[cli] def options: Seq[CommandOption]
 
-/** What some options take, whatever command they belong to. */
+/** Values of options that several commands share. */
 private object OptionValues:
   val known: Map[String, Seq[String]] = Map(
     "loop"  -> LoopKind.values.map(_.label).toSeq,
@@ -44,22 +44,20 @@ private object OptionValues:
 abstract class OptionsCommand[A](name: String, summary: String, parser: ParserForClass[A])
     extends Command(name, summary):
 
-  /** Does what the options say.
+  /** Executes the command.
     *
-    * @return or why it could not, in a line or more for a person
+    * @return Left states why it failed, in one or more lines for a person
     */
   protected def execute(options: A): Either[String, Unit]
 
   final def help: String = help(100)
 
-  /** @param width in columns
-    */
   private[cli] def help(width: Int): String = HelpText.of(name, summary, operandsAndOptions, width)
 
-  /** By options' names: what counts where one is not given and its own description does not tell. */
+  /** Defaults by option name, for options whose own description does not state one. */
   protected def defaults: Map[String, String] = Map.empty
 
-  /** By options' names: all values that one takes, where that is known. */
+  /** All values of an option, by option name, where the set is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
   final def run(words: Seq[String]): Int =
@@ -103,7 +101,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     Console.err.println(s"skein $name: --help lists the options")
     2
 
-  /** What looks like an option and is none, where mainargs would take it for a file. */
+  /** The first unknown option among the words, which mainargs would take for a file name. */
   private def strange(arguments: Seq[String]): Option[String] =
     if !parser.main.flattenedArgSigs.exists(_._2.isLeftover) then None
     else
@@ -111,19 +109,19 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
         .map(_.head)
         .find(word => word.startsWith("-") && word.length > 1 && !names.contains(word.takeWhile(_ != '=')))
 
-  /** What the user can mend is bad input. */
+  /** Executes; a mistake that the user can correct becomes an error message. */
   private def done(options: A): Either[String, Unit] =
     try execute(options)
     catch case error: Throwable => Left(NotFlown.mendable(error).getOrElse(throw error))
 
-  /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the
-    * first word without a dash for such words.
+  /** Moves options before files: `report FILE --out DIR` and `report --out DIR FILE` are equivalent, but
+    * mainargs treats everything after the first file as files.
     */
   private def optionsFirst(arguments: Seq[String]): Seq[String] =
     val (options, files) = parted(arguments).partition(_.head.startsWith("-"))
     options.flatten ++ files.flatten
 
-  /** Each option with its value, and each file. */
+  /** Splits the words into options with their values, and files. */
   private def parted(arguments: Seq[String]): Seq[List[String]] = Iterator
     .unfold(arguments.toList):
       case word :: value :: rest if takesValue(word) => Some((List(word, value), rest))
@@ -150,7 +148,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       (OptionValues.known ++ known).getOrElse(name, Nil)
     )
 
-  /** That of the options' case class. */
+  /** The default that the options' case class declares. */
   private def ownDefault(argument: ArgSig): Option[String] =
     argument.default.map(_(parser.companion())).collect:
       case value: (String | Int | Long | Double) => value.toString

@@ -1,11 +1,11 @@
 package skein.cli
 
-/** An option of a command, as help tells it and a shell completes it.
+/** An option of a command, for help texts and shell completion.
   *
-  * @param flag with its dashes; empty for what stands without one, files for example
-  * @param value what stands for its value in help; none for a flag alone
-  * @param default its value where it is not given, unless the summary says so
-  * @param values all that it takes, where that is known; else any, a file's name perhaps
+  * @param flag with its dashes; empty for positional words, such as files
+  * @param value placeholder of its value in help; none for a flag alone
+  * @param default its value where it is not given, unless the summary states it
+  * @param values all its values, if the set is known; else any, perhaps a file name
   */
 private[cli] final case class CommandOption(
     flag: String,

@@ -3,7 +3,7 @@ package skein.cli
 /** All commands with their options as a page of the documentation. */
 object CommandReference:
 
-  /** What `--help` prints for every command. */
+  /** The `--help` of every command, as Markdown. */
   def markdown: String =
     val commands = Main.commands.map: command =>
       s"## ${command.name}\n\n${command.summary.capitalize}.\n\n```\n${command.help.stripTrailing}\n```\n"

@@ -2,23 +2,23 @@ package skein.cli
 
 import skein.report.TextTable
 
-/** What is wrong with what a user gave, as it is printed. Names and values come from files, command lines and
-  * other machines: nothing of them moves the terminal's cursor, and long ones are cut.
+/** Formats messages about a user's mistakes. Names and values are from files, command lines and other
+  * machines: none of them can move the terminal's cursor, and long ones are cut.
   */
 private[cli] object Complaint:
 
-  /** Letters of a word that are shown, and of a line. */
+  /** Characters of a word, and of a line, that are shown. */
   val MostOfAWord = 200
   val MostOfALine = 1000
 
   /** @param reason a line for each mistake
-    * @return as many lines
+    * @return as many lines, printable and cut
     */
   def text(reason: String): String =
     TextTable.printable(reason).linesIterator.map(line => cut(words(line), MostOfALine)).mkString("\n")
 
-  /** Line breaks and other control characters are in no name and value that a command takes: no message could
-    * be one line with them.
+  /** Refuses words with line breaks or other control characters: no valid name or value has them, and a
+    * message with them would not be one line.
     */
   def ofWord(word: String): Option[String] =
     Option.when(word.exists(_.isControl)):
@@ -33,7 +33,7 @@ private[cli] object Complaint:
         word => java.util.regex.Matcher.quoteReplacement(cut(word.matched, MostOfAWord))
       )
 
-  /** With its beginning and its end, and how much is not shown. */
+  /** Keeps beginning and end of a text, and states how much is left out. */
   private def cut(text: String, most: Int): String =
     if text.length <= most then text
     else

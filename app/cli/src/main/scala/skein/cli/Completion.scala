@@ -1,11 +1,10 @@
 package skein.cli
 
-/** What shells complete, written from the commands' own definitions. */
+/** Writes shell completion scripts from the commands' own definitions. */
 private[cli] object Completion:
   val Shells: Seq[String] = Seq("bash", "zsh")
 
-  /** For bash: completes the program's commands, each one's options, the values that are known, and else
-    * files.
+  /** A script for bash: completes the program's commands, the options of each, known values, and else files.
     */
   def bash(program: String, commands: Seq[Command]): String =
     val values =
@@ -39,7 +38,7 @@ private[cli] object Completion:
        |}
        |complete -o filenames -F _$program $program""".stripMargin
 
-  /** For zsh: the same, with what each option does beside it. */
+  /** A script for zsh, which completes like bash's and shows a description of each option. */
   def zsh(program: String, commands: Seq[Command]): String =
     def quoted(text: String)    = text.replace("'", "'\\''")
     def bracketed(text: String) = quoted(text.replace("[", "\\[").replace("]", "\\]"))

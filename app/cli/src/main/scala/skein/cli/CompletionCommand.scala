@@ -2,11 +2,10 @@ package skein.cli
 
 import mainargs.{Leftover, ParserForClass, arg}
 
-/** Options of `./skein completion`. */
+/** Command-line options of `./skein completion`, with their help texts. */
 final case class CompletionOptions(@arg(doc = "bash or zsh") shell: Leftover[String])
 
-/** @param commands all of the program, this one included
-  */
+/** @param commands all of the program, including this one */
 final class CompletionCommand(commands: => Seq[Command])
     extends OptionsCommand[CompletionOptions](
       "completion",

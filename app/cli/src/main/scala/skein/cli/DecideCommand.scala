@@ -19,7 +19,7 @@ import skein.signal.LatencyProfile
 import skein.solver.{Briefing, FlightDeciders, SolverDesk, SolverServer}
 import skein.units.{Clock, Decimals, Expect}
 
-/** Options of `./skein decide`. */
+/** Command-line options of `./skein decide`, with their help texts. */
 final case class DecideOptions(
     @arg(doc =
       "address at which flights ask, which they name with --solver: tcp://HOST:PORT of " +
@@ -58,9 +58,9 @@ final class DecideCommand(using scenarios: Scenarios)
           )
     yield ()
 
-  /** Where it is asked.
+  /** A solver in service.
     *
-    * @param failed fails where nobody can ask there any more
+    * @param failed fails when flights can no longer reach it
     */
   private final case class Served(close: () => Future[Done], failed: Future[Nothing] = Future.never)
 
@@ -121,7 +121,7 @@ final class DecideCommand(using scenarios: Scenarios)
       name = plan.settings.scenario.name
       _ <- Expect.that(only.forall(_ == name)):
         s"this solver decides for ${only.getOrElse("")} alone, the flight flies $name"
-      _ = // Whoever comes meanwhile waits for it, too.
+      _ = // Flights that connect meanwhile wait for it, too.
         warm.computeIfAbsent(
           s"$name ${briefing.loop} ${PredictionModel.text(plan.settings.predictor)}",
           _ =>
@@ -131,7 +131,7 @@ final class DecideCommand(using scenarios: Scenarios)
       deciders <- FlightDeciders.of(plan, FlightAssembler.threads)
     yield deciders
 
-  /** So that the first decisions do not wait for the compiler. */
+  /** Makes decisions before the first flight, so that its first ones do not wait for the JIT compiler. */
   private def warmUp(plan: RecordedPlan): Unit =
     val alike = plan.settings.copy(
       links = List(LatencyProfile.direct),

@@ -5,7 +5,7 @@ import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.Digest
 import skein.units.Expect
 
-/** Options of `./skein digest`. */
+/** Command-line options of `./skein digest`, with their help texts. */
 final case class DigestOptions(
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String]

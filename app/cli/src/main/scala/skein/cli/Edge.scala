@@ -7,24 +7,25 @@ import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
 import skein.units.OwnFailure
 
-/** Where a command's main thread waits for what runs asynchronously. */
+/** Blocks a command's main thread on asynchronous work. */
 private[cli] object Edge:
 
   def await[A](future: Future[A]): A = Await.result(future, Duration.Inf)
 
   @volatile private var interrupted = false
 
-  /** Whether Ctrl-C ends the program: then a hook waits for the main thread to end by itself, and `sys.exit`
-    * would wait for the hook.
+  /** Whether Ctrl-C is ending the program: then a shutdown hook waits for the main thread, and calling
+    * `sys.exit` would deadlock with it.
     */
   def isInterrupted: Boolean = interrupted
 
-  /** Runs `body`; if the program is ended from outside meanwhile, says so, and how far it was. */
+  /** Runs `body`; if the process is terminated from outside meanwhile, prints that, and the progress so far.
+    */
   def tellingIfCut[A](progress: => String)(body: => A): A = hooked(body):
     val how = if exitedAt.isEmpty then "ended from outside; " else ""
     Console.err.println(s"skein: $how$progress")
 
-  /** Runs `body`; if code of the user's own ends the program meanwhile, says so: nothing else would. */
+  /** Runs `body`; if user code ends the process meanwhile, prints that, since nothing else would. */
   def tellingExit[A](body: => A): A = hooked(body):
     exitedAt.foreach(at => Console.err.println(s"skein: ended by System.exit in $at"))
 
@@ -34,14 +35,14 @@ private[cli] object Edge:
     try body
     finally removeHook(hook)
 
-  /** Where `System.exit` was called, if it was: then nobody has ended the program from outside. The JVM tells
-    * a logger, also of virtual threads, which no list of threads has.
+  /** Where `System.exit` was called, if it was: then the process was not terminated from outside. The JVM
+    * logs the call, also from virtual threads, which thread dumps omit.
     */
   private def exitedAt: Option[String] = exited.flatMap(OwnFailure.line(_))
 
   @volatile private var exited = Option.empty[Vector[StackTraceElement]]
 
-  /** Not `private`: then no field would hold it, and loggers that nobody holds are collected. */
+  /** Not `private`, so that a field holds it: unreferenced loggers are garbage-collected. */
   private[cli] val exits: Logger = Logger.getLogger("java.lang.Runtime")
   exits.setUseParentHandlers(false)
   exits.setLevel(Level.FINE)
@@ -55,12 +56,11 @@ private[cli] object Edge:
 
   private val stops = ConcurrentLinkedDeque[() => Unit]()
 
-  /** Ends whatever runs [[untilInterrupted]] now, as Ctrl-C would; the process goes on. */
+  /** Stops whatever [[untilInterrupted]] runs now, as Ctrl-C would; the process continues. */
   def interrupt(): Unit = stops.asScala.foreach(_())
 
-  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most
-    * `graceMillis`. Where code of the user's own ends the program, for a short while: `body` may wait for
-    * that code, and so for ever.
+  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` end by itself, for at most `graceMillis`.
+    * Where user code ends the process, waits only briefly: `body` may wait for that code, and so for ever.
     */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()
@@ -78,8 +78,7 @@ private[cli] object Edge:
       stops.remove(stop): Unit
       removeHook(hook)
 
-  /** @return `false` where the JVM is shutting down already, and so waits for nobody
-    */
+  /** @return `false` where the JVM is shutting down already, and accepts no more hooks */
   private def added(hook: Thread): Boolean =
     try
       Runtime.getRuntime.addShutdownHook(hook)

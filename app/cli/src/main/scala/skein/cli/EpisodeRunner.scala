@@ -5,19 +5,18 @@ import skein.gpu.GpuFailure
 import skein.optimise.Evaluator
 import skein.search.*
 
-/** Who flies a search's candidates: this process, or the workers of a cluster, with the same bits. */
+/** Evaluates a search's candidates in this process or by a cluster's workers, with identical bits. */
 private[cli] trait EpisodeRunner:
   def apply(judge: Judge): Evaluator
 
-  /** Shows how it goes while others fly and this thread waits.
+  /** Reports progress while others compute and this thread waits.
     *
-    * @param show told how many episodes of the call under way are flown, and what to say
+    * @param show called with the number of episodes that the current call has done, and a text
     */
   def onWait(show: (Long, String) => Unit): Unit
 
 private[cli] object EpisodeRunner:
 
-  /** This process. */
   private def here(ready: ReadySearch, threads: Int): EpisodeRunner = new EpisodeRunner:
     private val judges                             = ready.judges(threads)
     def apply(judge: Judge): Evaluator             = judges(judge)
@@ -34,7 +33,7 @@ private[cli] object EpisodeRunner:
         episodes => show((episodes * run.share).toLong, run.status)
       )
 
-  /** Runs with those whom the options choose, and ends them.
+  /** Runs `body` with the evaluators that the options choose, and stops them afterwards.
     *
     * @param program the class whose `main` starts the commands
     */

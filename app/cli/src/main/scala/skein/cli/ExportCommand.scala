@@ -5,7 +5,7 @@ import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.{Export, McapRecording}
 import skein.units.Expect
 
-/** Options of `./skein export`. */
+/** Command-line options of `./skein export`, with their help texts. */
 final case class ExportOptions(
     @arg(doc = "one recording")
     file: Leftover[String],
@@ -15,7 +15,7 @@ final case class ExportOptions(
     mcap: Option[String]
 )
 
-/** `./skein export`: a recording as Parquet or MCAP. */
+/** `./skein export`: writes a recording as Parquet or MCAP. */
 object ExportCommand
     extends OptionsCommand[ExportOptions](
       "export",

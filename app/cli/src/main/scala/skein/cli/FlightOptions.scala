@@ -10,7 +10,7 @@ import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, ConfigMistakes, FlySettings, HoconFile, ScenarioSettings, Wire}
 import skein.units.Expect
 
-/** What to fly; what is not given stands in the configuration `skein.fly`. */
+/** What to fly; options that are not given are read from the configuration `skein.fly`. */
 final case class FlightOptions(
     @arg(doc =
       "paused, sequential, futures, stream, predictive, plan, or a loop of the program's own; can be repeated"
@@ -103,7 +103,7 @@ final case class FlightOptions(
     config: Option[String]
 ):
 
-  /** Flags before file before defaults. */
+  /** The settings: flags take precedence over the file, the file over defaults. */
   def settings(using Scenarios): Either[String, FlySettings] =
     configuration.flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
@@ -112,7 +112,7 @@ final case class FlightOptions(
           .foreach(Console.err.println)
       settings
 
-  /** The same before it is read: `skein.fly` with all that counts. */
+  /** The merged configuration before it is read: all of `skein.fly`. */
   def configuration(using Scenarios): Either[String, Config] =
     ConfigMistakes.guarded("--config")(merged)
 
@@ -157,7 +157,7 @@ final case class FlightOptions(
       ("--images", "images", strings(images))
     ).collect { case (flag, key, Some(value)) => (flag, key, value) })
 
-  /** Flags for settings of the scenario that is flown. */
+  /** Adds the flags for settings of the chosen scenario. */
   private def ofScenario(merged: Config)(using Scenarios): Either[String, Config] =
     val short = Seq(
       "vehicles"     -> ("--vehicles", vehicles),
@@ -183,7 +183,7 @@ final case class FlightOptions(
 object FlightOptions:
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
 
-  /** What counts where nothing is said, by flags' names: the configuration's own. */
+  /** Defaults by flag name, from the configuration. */
   lazy val defaults: Map[String, String] =
     val own = ConfigFactory.defaultReference().getConfig("skein.fly")
     Seq(
@@ -202,7 +202,7 @@ object FlightOptions:
           case one                        => one.toString.replace(" ", ""))
       .toMap
 
-  /** By flags' names: all values of those that have no others. */
+  /** All values of flags that take no others, by flag name. */
   def known(using Scenarios): Map[String, Seq[String]] = Map("loop" -> AnyLoop.names)
 
   private val paperLoops =
@@ -214,15 +214,15 @@ object FlightOptions:
     "plan: this JVM runs without jdk.incubator.vector, so " +
       "candidates are flown one by one, some fifty times fewer"
 
-  /** Flags, keys below `skein.fly`, and values: mistakes in these name the flag. */
+  /** Makes a configuration of flags, keys below `skein.fly`, and values: mistakes in these name the flag. */
   private def configured(values: Seq[(String, String, Any)]): Config =
     values.foldLeft(ConfigFactory.empty):
       case (config, (flag, key, value)) =>
         config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, flag))
 
-  /** A vehicle whose solver is not heard of is told to hover, unless somebody says otherwise. */
+  /** Makes a vehicle hover while its solver is silent, unless the configuration chooses otherwise. */
   private def hovering(told: Config): Config =
-    // Where it refers to what stands elsewhere, it cannot be asked yet.
+    // A reference to another key cannot be resolved yet.
     def says(key: String) = Try(told.hasPath(s"skein.fly.$key")).getOrElse(true)
     if !says("solver") || says("fallback") then told
     else told.withFallback(configured(Seq(("--fallback", "fallback", Fallback.Hover.label))))
@@ -233,7 +233,7 @@ object FlightOptions:
       _    <- beside(file).toLeft(())
     yield file
 
-  /** Where it refers to what stands elsewhere, it cannot be asked yet. */
+  /** Finds keys outside `skein.fly`; a file with unresolved substitutions is not checked yet. */
   private def beside(file: Config): Option[String] =
     try ConfigMistakes.besideInFile(file, "skein.fly")
     catch case _: ConfigException.NotResolved => None

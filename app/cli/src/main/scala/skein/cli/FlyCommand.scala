@@ -15,7 +15,7 @@ import skein.settings.{FlightPlan, FlySettings, Wire}
 import skein.units.{Clock, Decimals, Expect}
 import skein.view.Shows
 
-/** Options of `./skein fly`. */
+/** Command-line options of `./skein fly`, with their help texts. */
 final case class FlyOptions(
     flights: FlightOptions,
     @arg(doc =
@@ -42,7 +42,7 @@ final case class FlyOptions(
     json: Flag
 )
 
-/** `./skein fly`: flies loops over links, live or in virtual time, and reports on them. */
+/** `./skein fly`: runs loops over links, live or in virtual time, and reports on them. */
 final class FlyCommand(using Scenarios)
     extends OptionsCommand[FlyOptions](
       "fly",
@@ -147,7 +147,7 @@ final class FlyCommand(using Scenarios)
       finally
         val _ = Edge.await(system.terminate())
 
-  /** Virtual twins of the flights that were flown to their end. */
+  /** Runs virtual twins of the completed live flights. */
   private def flyTwins(
       landed: Vector[FlightResult],
       settings: FlySettings,
@@ -174,12 +174,12 @@ final class FlyCommand(using Scenarios)
         if landed.written.isRight then written.incrementAndGet(): Unit
         Console.err.println(s"${landed.plan.id} has ended; SHA-256 of its recording: $contents")
 
-  /** Whoever ends the command behind the flights is told where they are. */
+  /** Names the recordings' folder if the command is ended after the flights. */
   private def kept[A](out: Path)(body: => A): A =
     Edge.tellingIfCut(s"the flights are recorded; ${FlyCommand.shows(out)}")(body)
 
-  /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot
-    * be shown or written, all that went wrong is told.
+  /** Reports on the flights, also after a failed one: its recording is readable to its end. If showing or
+    * writing fails, all errors are reported.
     */
   private def report(landed: Vector[FlightResult], out: Path, shown: Shown): Either[String, Unit] =
     val told =
@@ -192,7 +192,7 @@ final class FlyCommand(using Scenarios)
         all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)
 
-  /** Both mistakes, where there are two. */
+  /** Combines two results; keeps both errors if there are two. */
   private def all(one: Either[String, Unit], other: Either[String, Unit]): Either[String, Unit] =
     Expect.all(Seq(one, other))(identity).map(_ => ())
 
@@ -209,14 +209,14 @@ final class FlyCommand(using Scenarios)
 private[cli] object FlyCommand:
   private val Tcp = "tcp://"
 
-  /** Of each live flight. */
+  /** Number of virtual twins for each live flight. */
   private val Twins = 1
 
-  /** Loops that this process has compiled: its next command need not. */
+  /** Loops that this process has already warmed up: its next command can skip them. */
   @volatile private var warm = Set.empty[AnyLoop]
 
-  /** Before anything warms up: whether the simulator answers, and has the scenario's vehicles. One that
-    * speaks MAVLink is asked when its vehicles are brought to their starts, which needs their clocks.
+  /** Checks before any warm-up whether the simulator answers and has the scenario's vehicles. A MAVLink
+    * simulator is checked when its vehicles move to their starts, which needs their clocks.
     */
   def vehiclesThere(settings: FlySettings, simulator: Option[Address]): Either[String, Unit] =
     simulator.filter(_ => settings.wire == Wire.AirSim) match
@@ -227,8 +227,8 @@ private[cli] object FlyCommand:
         finally
           val _ = Edge.await(system.terminate())
 
-  /** How many flights in virtual time are left to somebody who ends them: these are recorded when they have
-    * ended.
+  /** A line for a user who ended the command: how many virtual flights were recorded; each is recorded when
+    * it ends.
     */
   def recorded(ended: Int, of: Int, out: Path): String =
     val flights = Decimals.counted(of, "flight")
@@ -237,11 +237,11 @@ private[cli] object FlyCommand:
 
   private def shows(out: Path) = s"./skein report ${Typed.recordings(out)} shows them"
 
-  /** A flight in which no vehicle was ever read for a decision is none, unless it failed or somebody ended
-    * it.
+  /** Refuses flights in which no vehicle was ever read for a decision, unless it failed or was ended by the
+    * user.
     *
     * @param decisions by flight
-    * @param ended flights that failed, or that somebody ended
+    * @param ended flights that failed, or that the user ended
     */
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }

@@ -8,7 +8,7 @@ import skein.search.Conditions
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.{Expect, Span}
 
-/** How forward simulation flies, for the commands that do nothing else. */
+/** Options of forward simulation, for commands that use nothing else. */
 final case class ForwardOptions(
     @arg(doc =
       "the objective: last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M), or a " +
@@ -47,8 +47,7 @@ final case class ForwardOptions(
     @arg(doc = "number of threads; does not change the result (default: one per core)")
     threads: Option[Int]
 ):
-  /** @param otherwise how long an episode is, unless it is told
-    */
+  /** @param otherwise an episode's duration, if no option sets it */
   def conditions(period: Span, otherwise: Span = ForwardOptions.DuelDuration): Either[String, Conditions] =
     for duration <- duration.fold(Right(otherwise))(Span.parse).left.map("--duration: " + _)
     yield Conditions(
@@ -63,8 +62,7 @@ final case class ForwardOptions(
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)
 
-  /** @param role of the policy that is judged
-    */
+  /** @param role of the policy that is evaluated */
   def opponentOf(role: Role)(using Scenarios): Either[String, PolicyFile] =
     val other = Role.opponentOf(role)
     opponent.fold(Right(PolicyFile.paperOf(other)))(ForwardOptions.policy("--opponent", _, other))
@@ -72,7 +70,9 @@ final case class ForwardOptions(
 object ForwardOptions:
   private val DuelDuration = Span.ofSeconds(60)
 
-  /** Of the scenario's flights, and so of its episodes; what is wrong with its settings is told elsewhere. */
+  /** Duration of the scenario's flights, and so of its episodes; mistakes in its settings are reported
+    * elsewhere.
+    */
   def durationOf(scenario: String, settings: Map[String, String])(using Scenarios): Span =
     stated(scenario, settings).fold(_ => DuelDuration, _.duration)
 
@@ -84,9 +84,9 @@ object ForwardOptions:
       read <- ScenarioSettings.ofKeys(kind, settings).left.map("--set: " + _)
     yield read
 
-  /** What a scenario's flights are judged by, which has to be told.
+  /** The objective of a scenario's flights, which the user must choose.
     *
-    * @param known names of the measures that it may be a sum of
+    * @param known names of the measures that it may sum
     */
   def objectiveOf(told: Option[String], scenario: String, settings: Map[String, String])(
       known: Scenario => Iterable[String]
@@ -98,12 +98,12 @@ object ForwardOptions:
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
 
-  /** As many as there are cores, unless told. */
+  /** Number of threads: the number of cores by default. */
   def threadCount(told: Option[Int]): Either[String, Int] =
     val count = told.getOrElse(Runtime.getRuntime.availableProcessors)
     Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, came $count")
 
-  /** Options that are a duel's, and were given. */
+  /** Refuses options that only apply to duels. */
   def ofDuels(others: (String, Option[?])*)(options: ForwardOptions): Either[String, Unit] =
     val told = (others ++ Seq(
       "--opponent" -> options.opponent,
@@ -114,6 +114,6 @@ object ForwardOptions:
     Expect.that(told.isEmpty):
       s"--scenario: expected settings of the scenario, came ${told.mkString(", ")}, which is a duel's"
 
-  /** A policy file, or a family with its defaults. */
+  /** Reads a policy file, or a family with its defaults. */
   def policy(option: String, text: String, role: Role)(using Scenarios): Either[String, PolicyFile] =
     PolicyFile.chosen(role, text).left.map(mistake => s"$option: $mistake")

@@ -2,13 +2,13 @@ package skein.cli
 
 import skein.report.Paragraph
 
-/** What `--help` prints of a command. */
+/** Formats the text that `--help` prints for a command. */
 private[cli] object HelpText:
 
-  /** What stands for a value, as usage lines show it.
+  /** A value's placeholder in usage lines.
     *
     * @param option its name without dashes
-    * @param kind as mainargs names its type
+    * @param kind the type's name in mainargs
     */
   def placeholder(option: String, kind: String): String =
     Named.getOrElse(
@@ -19,8 +19,6 @@ private[cli] object HelpText:
         case _                  => option.replaceAll("^.*-", "").toUpperCase(java.util.Locale.ROOT)
     )
 
-  /** @param width in columns
-    */
   def of(command: String, summary: String, options: Seq[CommandOption], width: Int): String =
     val (flags, operands) = options.partition(_.flag.nonEmpty)
     val usage             = s"./skein $command [OPTION…]${operands.flatMap(_.value).map(" " + _).mkString}"
@@ -37,7 +35,7 @@ private[cli] object HelpText:
       first ++ wrapped.tail.map(" " * (column + 4) + _)
     (usage +: (Paragraph.lines(summary, width) ++ lines)).mkString("", "\n", "\n")
 
-  /** Where neither type nor name says it. */
+  /** Placeholders for options whose type and name do not suggest one. */
   private val Named: Map[String, String] =
     def all(word: String, options: String*) = options.map(_ -> word)
     Map.from(

@@ -13,7 +13,7 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{Fit, ModelFile, SensorFile}
 import skein.units.{Expect, Interval, Span}
 
-/** Options of `./skein identify`. */
+/** Command-line options of `./skein identify`, with their help texts. */
 final case class IdentifyOptions(
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String],
@@ -42,7 +42,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       ParserForClass[IdentifyOptions]
     ):
 
-  /** More panels than this make no picture. */
+  /** Most panels of a figure; with more it is left out. */
   private val MostPanels = 16
 
   protected def execute(options: IdentifyOptions): Either[String, Unit] =
@@ -89,7 +89,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
     Expect.each(files)(file => RecordingReader.read(Path.of(file)).left.map(_.message))
 
-  /** A flight that counted twice would make the intervals too narrow. */
+  /** Refuses recordings given twice: they would make the intervals too narrow. */
   private def once(files: Vector[String]): Either[String, Unit] =
     if files.sizeIs < 2 then Right(())
     else
@@ -140,7 +140,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
           case Left(reason) => Left(reason)
       .map(_.flatten)
 
-  /** What a plant of the program's own throws is a reason of its own structure alone. */
+  /** Fits a structure; an exception of a user's plant becomes the reason why it has no fit. */
   private def identified(
       flights: Vector[TimeHistory],
       structure: Structure,
@@ -152,7 +152,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       try OwnFailure.told("its plant")(found)
       catch case failed: OwnFailure => Left(failed.getMessage)
 
-  /** Of the eyes that the flights had, if any, and if they saw enough. */
+  /** Fits the model of the flights' sensor, if they had one and saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =
     val seeing = recordings.flatMap(RecordedSeeing.of)
     Option.when(seeing.nonEmpty)(SensorFit.of(seeing)).flatMap: fit =>
@@ -170,8 +170,8 @@ final class IdentifyCommand(using scenarios: Scenarios)
     val flight = recording.flight
     s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator}"
 
-  /** Flights in virtual time fly the built-in simulator only: not what a fit to another one should be mixed
-    * with.
+  /** Notes which flights were virtual: these use only the built-in simulator and should not be mixed with
+    * fits to another one.
     */
   private def clocks(recordings: Vector[Recording]): String =
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
@@ -181,14 +181,14 @@ final class IdentifyCommand(using scenarios: Scenarios)
     val all = flights.map(-_.downM)
     Option.when(all.max - all.min < 0.5)(all.sum / all.size)
 
-  /** How to use the file, by this program where it alone knows the structure. */
+  /** States how to use the model file, with this program if it alone knows the structure. */
   private def flyBy(use: Structure, file: Path, flights: Vector[TimeHistory]): String =
     val named = Typed.path(file)
     if Structure.ours.contains(use) then
       s"use it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
     else s"use it, with this program: fly --loop predictive --predictor $named, search --plant $named"
 
-  /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
+  /** States the altitude that a flight by the model needs, if the vehicles did not fly at the duel's. */
   private def elsewhere(flights: Vector[TimeHistory]): String =
     altitude(flights).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
       s" --altitude ${(metres * 10).round / 10.0}"
@@ -248,7 +248,6 @@ final class IdentifyCommand(using scenarios: Scenarios)
       )
     TextTable(cells, rows)
 
-  /** The files written. */
   private def write(
       out: Path,
       model: String,

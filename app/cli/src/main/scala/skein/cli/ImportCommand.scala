@@ -4,7 +4,7 @@ import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.{Digest, McapRecording}
 
-/** Options of `./skein import`. */
+/** Command-line options of `./skein import`, with their help texts. */
 final case class ImportOptions(
     @arg(doc = "one MCAP file that ./skein export wrote")
     file: Leftover[String],
@@ -12,7 +12,7 @@ final case class ImportOptions(
     recording: String
 )
 
-/** `./skein import`: an exported MCAP file as a recording again. */
+/** `./skein import`: converts an exported MCAP file back to a recording. */
 object ImportCommand
     extends OptionsCommand[ImportOptions](
       "import",

@@ -15,7 +15,7 @@ import skein.signal.LatencyProfile
 import skein.units.Decimals.fixed
 import skein.units.{Clock, Expect, Span}
 
-/** Options of `./skein latency`. */
+/** Command-line options of `./skein latency`, with their help texts. */
 final case class LatencyOptions(
     @arg(doc = "the simulator")
     simulator: String = "127.0.0.1:41451",
@@ -99,7 +99,7 @@ object LatencyCommand
 
   private final class NoAnswer(reason: String) extends RuntimeException(reason)
 
-  /** Measured, and beside it what the link's profile gives. */
+  /** Quantiles as measured, beside those of the link's profile. */
   private def quantileTable(profile: LatencyProfile, samples: Distribution): TextTable =
     val measured = "measured, ms" +: quantiles(samples.quantile)
     val expected = expectedOf(profile).collect:
@@ -107,7 +107,7 @@ object LatencyCommand
         s"$name, ms" +: quantiles(roundTrip.quantile(_).toMillis)
     TextTable("<quantile, %" +: probabilities.map(_.toString), measured +: expected.toVector)
 
-  /** What a round trip without load is drawn from. */
+  /** The distribution of round trips without load. */
   private def expectedOf(profile: LatencyProfile): Option[LatencyProfile] = profile match
     case LatencyProfile.Limited(_, latency, _)    => expectedOf(latency)
     case LatencyProfile.Correlated(_, latency, _) => expectedOf(latency)

@@ -15,7 +15,7 @@ import skein.training.*
 import skein.units.Decimals.significant
 import skein.units.{Expect, Span}
 
-/** Options of `./skein learn`. */
+/** Command-line options of `./skein learn`, with their help texts. */
 final case class LearnOptions(
     @arg(doc = "sac, ddpg or ppo (default: sac)")
     algorithm: Option[String],
@@ -161,14 +161,14 @@ final class LearnCommand(program: String)(using Scenarios)
         val goOn   = s"stopped; ./skein learn --resume ${Typed.path(folder)} goes on"
         end.failure match
           case Some(reason) =>
-            // Not measured: what failed may fail again.
+            // Not measured: a failure may occur again.
             LearnResult.unmeasured(setup, state).fold(Right(())): file =>
               OutFolder.write(folder, Seq(OutFolder.text("policy.conf", file))).map: written =>
                 shown.say(s"ended early; the best policy until then: ${written.mkString}")
             .flatMap(_ => Left(reason))
           case None if state.best.isEmpty => Right(shown.tables(Nil, goOn))
           case None                       =>
-            // Before it measures, which may be cut short: nobody waits long for what is stopped.
+            // Before measuring, which may be cut short: a user who stops a run does not wait long.
             if !isDone then shown.say(goOn)
             conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
 
@@ -190,7 +190,7 @@ final class LearnCommand(program: String)(using Scenarios)
     state.best.fold("not judged yet"): best =>
       s"now ${state.scores.last.mean.significant(4)} $unit, best ${best.mean.significant(4)} $unit"
 
-  /** Measures the best policy and writes it and the curve. */
+  /** Evaluates the best policy and writes it and the learning curve. */
   private def conclude(
       setup: LearnSetup,
       measure: Measuring,
@@ -213,7 +213,7 @@ final class LearnCommand(program: String)(using Scenarios)
       )
     yield shown.say(s"written: ${(file ++ pictures).mkString(", ")}")
 
-  /** Flies the policy in virtual time, against the scenario's own of the other side. */
+  /** Runs the policy in virtual time, against the scenario's own policy of the other side. */
   private def virtual(
       setup: LearnSetup,
       measure: Measuring,
@@ -228,7 +228,7 @@ final class LearnCommand(program: String)(using Scenarios)
       Right(None)
     else measure.distances(policy, flights).map(distances => Some(RunningStats.of(distances.size)(distances)))
 
-  /** Who measures what was learned: this process, or workers, with the same bits. */
+  /** Chooses who evaluates the learned policy: this process, or workers, with identical bits. */
   private def measuring(
       setup: LearnSetup,
       options: Option[ClusterOptions.Checked],
@@ -260,12 +260,12 @@ final class LearnCommand(program: String)(using Scenarios)
         finally line.end()
 
 object LearnCommand:
-  /** So many at most measure the best of learning that was stopped. */
+  /** Most fresh episodes that evaluate the best policy of a stopped run. */
   private val FreshIfStopped = 100
 
-  /** What the options ask.
+  /** The question of the options.
     *
-    * @return or what was expected, what came, and in which option
+    * @return Left states what was expected, what was given, and in which option
     */
   def question(options: LearnOptions)(using scenarios: Scenarios): Either[String, LearnQuestion] =
     import options.forward
@@ -315,7 +315,7 @@ object LearnCommand:
       set
     )
 
-  /** Conditions in which a scenario's team flies: as high as it does. */
+  /** Conditions of a scenario's team, at the altitude that it flies at. */
   private def ofTeam(
       scenario: String,
       set: Map[String, String],
@@ -326,7 +326,7 @@ object LearnCommand:
       _      <- ForwardOptions.ofDuels()(forward)
       kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
       stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
-    // Teams fly low, where the model of three parameters does not hold.
+    // Teams fly low, where the model of three parameters is not valid.
     yield conditions.copy(
       plant = forward.plant.getOrElse("drag"),
       altitudeM = -stated.agents.head.startPositionNed.z
@@ -338,8 +338,10 @@ object LearnCommand:
         Right((least, most))
       case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
 
-  /** @param distances what so many flights in virtual time with a policy come to: [[LearnGame.came]]
-    * @param isElsewhere whether workers do it
+  /** Evaluates learned policies.
+    *
+    * @param distances results of a number of virtual flights with a policy: [[LearnGame.came]]
+    * @param isElsewhere whether workers compute
     */
   private final case class Measuring(
       judge: Judge => Evaluator,
@@ -347,12 +349,12 @@ object LearnCommand:
       isElsewhere: Boolean
   )
 
-  /** What flights in virtual time with a policy come to, flown by this process. */
+  /** Results of virtual flights with a policy, run by this process. */
   private[skein] def flown(setup: LearnSetup, policy: PolicyFile, count: Int)(using
       Scenarios
   ): Either[String, Vector[Double]] = summaries(setup, policy, count).map(_.flatMap(setup.game.came))
 
-  /** Such flights. */
+  /** Summaries of virtual flights with a policy, run by this process. */
   private[skein] def summaries(setup: LearnSetup, policy: PolicyFile, count: Int)(using
       Scenarios
   ): Either[String, Vector[FlightSummary]] =

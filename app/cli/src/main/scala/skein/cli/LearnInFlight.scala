@@ -11,7 +11,7 @@ import skein.training.LearnFile
 import skein.units.Decimals.significant
 import skein.units.Expect
 
-/** Whether a policy learns while it flies. */
+/** Options for a policy that learns in flight. */
 final case class LearnInFlight(
     @arg(doc =
       "a folder of the command learn, by sac or ddpg: its policy replaces " +
@@ -36,9 +36,9 @@ final case class LearnInFlight(
 ):
   import LearnInFlight.*
 
-  /** Who learns, in the flights of these settings.
+  /** The learner for flights with these settings.
     *
-    * @return or what was expected, what came, and in which option
+    * @return Left states what was expected, what was given, and in which option
     */
   def chosen(settings: FlySettings)(using Scenarios): Either[String, Option[ChosenPolicy]] =
     val alone =

@@ -12,14 +12,13 @@ import skein.training.{LearnQuestion, LearnSetup}
 import skein.units.{Expect, Span}
 import upickle.default.ReadWriter
 
-/** What was learned, as workers measure it: on fresh episodes of forward simulation, and by flights in
+/** Workers' evaluation of a learned policy: on fresh episodes of forward simulation, and by flights in
   * virtual time.
   */
 private[cli] object LearnWork:
   import SearchFile.given
 
-  /** @param probe what the baseline came to at the coordinator
-    */
+  /** @param probe the baseline's result at the coordinator */
   private final case class ProbedQuestion(question: LearnQuestion, probe: Vector[RunningStats])
       derives ReadWriter
 
@@ -51,15 +50,15 @@ private[cli] object LearnWork:
       case Block.Flight(number, numbers) => landed(setup, number, numbers).map(BlockBytes.of(_))
     answered.fold(wrong => throw IllegalArgumentException(wrong), identity)
 
-  /** Blocks of episodes, among others. */
+  /** An executor for blocks of episodes on a shared cluster. */
   def episodes(run: BlockExecutor): BlockExecutor = new BlockExecutor:
     def cancel(): Unit                                                           = run.cancel()
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
       run.compute(works.map(work => BlockBytes.of(Block.Episodes(work))), onAnswer)
 
-  /** Flights of the scenario with a policy instead of its own, as the commands fly it.
+  /** Flights of the scenario in which a policy replaces its own, as the commands run them.
     *
-    * @return settings, and a plan for each flight; or why there are none
+    * @return settings, and a plan for each flight; Left states why there are none
     */
   def flights(
       setup: LearnSetup,
@@ -86,7 +85,7 @@ private[cli] object LearnWork:
         yield plan.copy(seed = settings.seed + number)
       (settings, plans)
 
-  /** What the same flights came to, flown elsewhere; none where a flight has no such value. */
+  /** Results of these flights, run by other processes; None for a flight without a result. */
   def distances(run: BlockExecutor, policy: PolicyFile, count: Int)(
       onWait: => Unit
   ): Either[String, Vector[Option[Double]]] =
@@ -110,7 +109,7 @@ private[cli] object LearnWork:
       case FlightAnswer.NotFlown(reason) => Left(reason)
 
   private enum Block derives Codec:
-    /** Of a search. */
+    /** A block of a search's episodes, encoded. */
     case Episodes(block: ArraySeq[Byte])
 
     /** One flight with a policy of these parameters. */

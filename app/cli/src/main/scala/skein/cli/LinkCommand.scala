@@ -7,7 +7,7 @@ import skein.link.*
 import skein.signal.{Bandwidth, LatencyProfile}
 import skein.units.{Clock, Decimals, Span}
 
-/** Options of `./skein link`. */
+/** Command-line options of `./skein link`, with their help texts. */
 final case class LinkOptions(
     @arg(doc = "where clients connect; 0.0.0.0 opens it to other machines")
     listen: String,
@@ -115,7 +115,7 @@ object LinkCommand
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
 
-  /** To end within, whatever crosses the link. */
+  /** Time within which it ends, whatever crosses the link. */
   private val GraceMillis = 2_000L
 
   private def described(profile: LinkProfile): String =

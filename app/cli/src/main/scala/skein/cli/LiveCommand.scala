@@ -11,11 +11,11 @@ import skein.record.Record
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Clock
 
-/** What `./skein fly` flies by the clock.
+/** Runs the live flights of `./skein fly`.
   *
-  * @param simulator one that runs already; without it, each flight has a built-in one
-  * @param shown where flights are looked at meanwhile
-  * @param sinks for what is written beside the recordings
+  * @param simulator a running one; without it, each flight starts a built-in one
+  * @param shown where flights can be viewed while they run
+  * @param sinks further outputs besides the recordings
   * @param requests that end or hold flights from outside
   * @param isMavlinkByTcp see [[FlightAssembler]]
   */
@@ -31,7 +31,7 @@ private[cli] final class LiveCommand(
 ):
   import LiveCommand.*
 
-  /** Blocks until all have ended. */
+  /** Runs all flights; blocks until the last has ended. */
   def fly(plans: Vector[FlightPlan]): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val assembler             = FlightAssembler(
@@ -49,8 +49,8 @@ private[cli] final class LiveCommand(
     finally
       val _ = Edge.await(system.terminate())
 
-  /** On one simulator that runs already. What has ended is kept when a later flight cannot start; Ctrl-C ends
-    * them all.
+  /** Runs flights one after another on a running simulator. Completed flights are kept when a later one
+    * cannot start; Ctrl-C ends them all.
     */
   private def inTurn(assembler: FlightAssembler, plans: Vector[FlightPlan])(using
       ActorSystem
@@ -81,7 +81,7 @@ private[cli] final class LiveCommand(
     def stop()    =
       val why = "ended from outside before it began"
       requests.stopAll(why)
-      // Vehicles that nothing is heard of are not waited for.
+      // Silent vehicles are not waited for.
       system.scheduler.scheduleOnce(CalledOffWithin)(
         abandoned.trySuccess(Left(s"${plans.head.id}: $why")): Unit
       ): Unit
@@ -113,8 +113,7 @@ private[cli] final class LiveCommand(
             board.close()
 
 private[cli] object LiveCommand:
-  /** @param grounded why the flights that are not among those that landed were not flown, if any was not
-    */
+  /** @param grounded why some flights were not run, if so */
   final case class Flown(landed: Vector[FlightResult], grounded: Option[String]):
     def and(more: Either[String, Vector[FlightResult]]): Flown =
       more.fold(
@@ -122,10 +121,10 @@ private[cli] object LiveCommand:
         twins => copy(landed ++ twins)
       )
 
-  /** Vehicles on the way to their starts are told to hover within so long, about. */
+  /** Approximate time within which vehicles on the way to their starts receive a hover command. */
   private val CalledOffWithin = 5.seconds
 
-  /** What goes wrong in flight, above the line of progress. */
+  /** Prints an in-flight problem above the progress line. */
   private def tell(line: String): Unit =
     val isTerminal = System.console() != null && System.console().isTerminal
     Console.err.println((if isTerminal then "\r\u001b[K" else "") + line)

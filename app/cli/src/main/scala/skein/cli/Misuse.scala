@@ -3,14 +3,13 @@ package skein.cli
 import mainargs.{ArgSig, Result, TokensReader, Util}
 import skein.scenario.Nearest
 
-/** What is wrong with the words of a command line, a line for each mistake. */
+/** Describes mistakes in a command line, a line for each. */
 private object Misuse:
 
-  /** @param options of the command, with their dashes
-    */
+  /** @param options of the command, with their dashes */
   def text(failure: Result.Failure, options: Seq[String]): String = failure match
     case Result.Failure.MismatchedArguments(missing, unknown, duplicate, incomplete) =>
-      // mainargs takes all that stands behind an unknown word for unknown, too.
+      // mainargs also reports everything after an unknown word as unknown.
       val all = missing.map(option => s"${name(option)}: expected, but not given") ++
         unknown.take(1).map(noSuch(_, options)) ++
         duplicate.map((option, words) =>
@@ -26,7 +25,6 @@ private object Misuse:
         .mkString("\n")
     case other => other.toString
 
-  /** An option that there is none of. */
   def noSuch(word: String, options: Seq[String]): String =
     val option = word.takeWhile(_ != '=')
     renamed.get(option).flatMap(_.find(options.contains)) match
@@ -36,10 +34,10 @@ private object Misuse:
           options.minByOption(Nearest.distance(option, _)).filter(Nearest.distance(option, _) <= MostWrong)
         s"$word: no such option or argument${near.fold("")(one => s"; the nearest is $one")}"
 
-  /** Letters of a word that is meant for another. */
+  /** Most differing letters of a word that is suggested as a correction. */
   private val MostWrong = 2
 
-  /** `--model` was what predicts in flights, and what flies in forward simulation. */
+  /** Renamed options: `--model` was both the predictor of flights and the plant of forward simulation. */
   private val renamed = Map("--model" -> Seq("--predictor", "--plant"))
 
   private def expected(option: ArgSig, words: Seq[String]): String =
@@ -49,7 +47,7 @@ private object Misuse:
       case other              => s"a $other"
     s"${name(option)}: expected $wanted, came ${words.mkString("'", "' '", "'")}"
 
-  /** As mainargs names the type of an option's value. */
+  /** The name of an option value's type in mainargs. */
   def kind(reader: TokensReader[?]): String = reader match
     case simple: TokensReader.ShortNamed[?] => simple.shortName
     case _                                  => "value"

@@ -10,7 +10,7 @@ import skein.record.FileReason
 import skein.report.Typed
 import skein.units.Expect
 
-/** Options of `./skein new`. */
+/** Command-line options of `./skein new`, with their help texts. */
 final case class NewOptions(
     @arg(doc = "folder to create; without it, ./NAME")
     out: Option[String],
@@ -46,12 +46,11 @@ object NewCommand
   private def className(name: String)   = name.split('-').map(_.capitalize).mkString
   private def packageName(name: String) = name.replace("-", "")
 
-  /** Why a project of this name would not compile: its package or class means something else in its own
-    * sources.
+  /** Why a project of this name would not compile: its sources already use the name of its package or class.
     */
   private def taken(name: String): Option[String] =
     val sources = Seq("Scenario.scala.txt", "Suite.scala.txt").map(resource).mkString("\n")
-    // Neither members of others nor what stands between quotes.
+    // Ignores members of other names, and string literals.
     val isUsed = s"""(?<![.\"\\w])${className(name)}\\b""".r.findFirstIn(sources).isDefined
     Option.when(isUsed || Reserved(packageName(name)))(
       s"expected a name that means nothing else in Scala, came '$name'; for example $name-flight"
@@ -101,7 +100,7 @@ object NewCommand
         emptied(folder)
         Left(s"cannot write into the folder $folder: ${FileReason.of(failed)}")
 
-  /** Half a project would be in the way of the next try. */
+  /** Deletes a partially written project, which would block the next attempt. */
   private def emptied(folder: Path): Unit =
     try
       Using.resource(Files.walk(folder)): all =>
@@ -110,7 +109,7 @@ object NewCommand
 
   private val executable = Set("sbtw", "skein")
 
-  /** Beside the classes: what this version was built by, and what a project begins with. */
+  /** A resource of the distribution: its version, or a file of the project template. */
   private[cli] def resource(name: String): String =
     Using.resource(getClass.getResourceAsStream(s"/skein/project/$name"))(stream =>
       String(stream.readAllBytes, "UTF-8")

@@ -10,7 +10,7 @@ import skein.observe.{Observed, ObservingProxy}
 import skein.report.{ObservedTables, Paragraph, Section}
 import skein.units.{Clock, Expect}
 
-/** Options of `./skein observe`. */
+/** Command-line options of `./skein observe`, with their help texts. */
 final case class ObserveOptions(
     @arg(doc = "where the program connects, in place of the simulator; 0.0.0.0 opens it to other machines")
     listen: String = "127.0.0.1:41452",
@@ -97,7 +97,7 @@ object ObserveCommand
     Edge.untilInterrupted(() => stopped.countDown())(stopped.await())
     Right(())
 
-  /** With the terminal of this command. */
+  /** Runs the command to its end in this terminal. */
   private def runToEnd(command: Seq[String]): Either[String, Unit] =
     try
       val program = ProcessBuilder(command*).inheritIO().start()

@@ -11,7 +11,7 @@ import skein.scenario.Scenario
 import skein.units.{Clock, Span}
 import skein.view.{FlightControl, Feed, Gauge, LiveShow, Shows}
 
-/** Live flights on show, each with its records and its graph as it runs. */
+/** Live flights in the viewer, each with its records and its running graph. */
 private[cli] final class OnShow(
     shows: Shows,
     requests: OutsideRequests,
@@ -21,7 +21,7 @@ private[cli] final class OnShow(
 ):
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
 
-  /** What is shown of a flight that begins. */
+  /** Starts showing a flight; the result receives its records. */
   def observe(heading: RecordingHeader): Record => Unit =
     val feed  = Feed()
     val gauge = GraphGauge()
@@ -44,7 +44,6 @@ private[cli] final class OnShow(
     case FlightControl.Continue => requests.continue(id, "continued from the page")
     case FlightControl.Abort    => requests.stop(id, "ended from the page")
 
-  /** These fly now. */
   def flying(flights: LiveFlights): Unit =
     for
       (id, graph) <- flights.graphs
@@ -61,7 +60,9 @@ private[cli] object OnShow:
       """"to":{"type":"string"}}}}}}"""
   )
 
-/** A graph in numbers: its parts are asked for until the interpreter tells them, their meters each time. */
+/** A graph's meters for the viewer: asks the interpreter for the graph's parts until they are known, and
+  * reads the meters each time.
+  */
 private[cli] final class GraphGauge:
   val graph: AtomicReference[Option[RunningGraph]] = AtomicReference(None)
   private val shape                                = AtomicReference(Option.empty[LoopGraph])

@@ -4,12 +4,11 @@ import com.sun.management.UnixOperatingSystemMXBean
 import java.lang.management.ManagementFactory
 import skein.units.Expect
 
-/** How many files and connections a process may have open: too few of them look like a simulator that does
-  * not answer.
+/** Checks the limit of open files and connections: a low limit looks like a simulator that does not answer.
   */
 private[cli] object OpenFiles:
-  /** Measured: the program has some 60 open before it flies; a flight in real time, with simulator and link,
-    * 26.
+  /** Files that the program and each flight need. Measured: about 60 before it flies; 26 for a flight in real
+    * time with simulator and link.
     */
   private val OfTheProgram = 96
   private val OfAFlight    = 30

@@ -4,8 +4,8 @@ import skein.recognition.BlindPursuit
 import skein.report.DuelReport
 import skein.scenario.{ScenarioKind, Scenarios}
 
-/** What `./skein` flies: the scenarios of the core, the duel with its report, and those whose policies
-  * recognise.
+/** The scenarios of `./skein`: those of the core, the duel with its report, and those whose policies
+  * recognise images.
   */
 object OurScenarios:
   val all: Scenarios = Scenarios(DuelReport.scenarios.kinds :+ ScenarioKind(BlindPursuit()))

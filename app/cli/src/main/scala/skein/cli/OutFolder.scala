@@ -12,17 +12,15 @@ import skein.plot.{Drawing, Png, Svg}
 import skein.record.FileReason
 import skein.units.Expect
 
-/** Folders that commands write into. */
+/** Creates and writes the output folders of commands. */
 private[cli] object OutFolder:
 
   private val Lock = ".skein.lock"
 
-  /** Those that the calling thread's command has made, the inner ones first. */
+  /** Folders created by the calling thread's command, innermost first. */
   private val fresh = ThreadLocal.withInitial[Vector[Path]](() => Vector.empty)
 
-  /** What a command does that tells why it cannot be done; then a folder that it made, and wrote nothing
-    * into, is gone.
-    */
+  /** Runs a command; if it is refused, deletes the folders that it created and wrote nothing to. */
   def unlessRefused[A](command: => Either[String, A]): Either[String, A] =
     fresh.remove()
     val done = command
@@ -32,14 +30,14 @@ private[cli] object OutFolder:
           if Option(folder.toFile.list).exists(_.sameElements(Seq(Lock))) then
             Files.delete(folder.resolve(Lock))
           Files.delete(folder)
-      catch case _: IOException => () // there is something in it
+      catch case _: IOException => () // not empty
     done
 
-  /** Makes the folder if need be and sees whether files can be written there, so that a command of minutes
-    * does not fail at its end.
+  /** Creates the folder if necessary and checks that it is writable, so that a command of minutes does not
+    * fail at its end.
     *
     * @param option that names the folder, for example `--out`
-    * @return or why not, in a line
+    * @return Left states why not, in a line
     */
   def made(option: String, text: String): Either[String, Path] =
     if text.isEmpty then Left(s"$option: expected a folder, came ''")
@@ -48,7 +46,7 @@ private[cli] object OutFolder:
       try
         val missing =
           Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(Files.notExists(_)).toVector
-        // One by one: where `gone` is missing, so is `gone/..`, until `gone` is made.
+        // One by one: if `gone` is missing, so is `gone/..`, until `gone` is made.
         for part <- missing.reverse if Files.notExists(part) do
           Files.createDirectories(part)
           fresh.set(part +: fresh.get)
@@ -58,7 +56,7 @@ private[cli] object OutFolder:
         case failed: IOException =>
           Left(s"$option: cannot write into the folder $folder: ${FileReason.of(failed)}")
 
-  /** A name that is new every second. */
+  /** A folder name made of the date and time, in seconds. */
   def dated(parent: String): String =
     s"$parent/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
 
@@ -67,15 +65,15 @@ private[cli] object OutFolder:
     val whole = file.toAbsolutePath
     Option(whole.getParent).getOrElse(whole).toString
 
-  /** Runs `body` as the only command at work in a folder.
+  /** Runs `body` as the only command that writes to a folder.
     *
-    * @return or that another is
+    * @return Left if another command does
     */
   def alone[A](folder: Path)(body: => Either[String, A]): Either[String, A] =
     val other = Left(s"another command is at work in $folder; expected it to end first")
     try
       Using.resource(FileChannel.open(folder.resolve(Lock), CREATE, WRITE)): channel =>
-        // Without a lock that this process holds already.
+        // None if another process holds the lock.
         Option(channel.tryLock()).fold(other)(_ => body)
     catch
       case _: OverlappingFileLockException => other
@@ -83,7 +81,7 @@ private[cli] object OutFolder:
 
   /** Writes files by their names.
     *
-    * @return where they are, or why not, in a line
+    * @return their paths, or Left with the reason in a line
     */
   def write(folder: Path, files: Seq[(String, Array[Byte])]): Either[String, Vector[Path]] =
     try Right(files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes)))
@@ -91,7 +89,7 @@ private[cli] object OutFolder:
 
   def text(name: String, text: String): (String, Array[Byte]) = (name, text.getBytes(UTF_8))
 
-  /** `NAME.svg` and, where this machine can paint, `NAME.png`; where it cannot, that is said.
+  /** Writes `NAME.svg` and, if this machine can render it, `NAME.png`; else states why not.
     *
     * @param scale pixels for a unit of the drawing
     */
@@ -105,7 +103,7 @@ private[cli] object OutFolder:
     painted.left.foreach(reason => Console.err.println(s"no PNG: $reason"))
     text(s"$name.svg", Svg.file(drawing, title)) +: painted.toOption.map(s"$name.png" -> _).toVector
 
-  /** Whether a file that an option names would stand in a folder. */
+  /** Checks that the folder of a file named by an option exists. */
   def isThere(option: String, file: String): Either[String, Unit] =
     for
       _ <- Expect.that(file.nonEmpty)(s"$option: expected a file, came ''")

@@ -7,7 +7,7 @@ import skein.report.{Section, TextTable}
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 
-/** Options of `./skein policy`. */
+/** Command-line options of `./skein policy`, with their help texts. */
 final case class PolicyOptions(
     @arg(doc = "a policy file, or an ONNX file")
     file: Leftover[String],
@@ -19,7 +19,7 @@ final case class PolicyOptions(
     json: Flag
 )
 
-/** `./skein policy`: shows what a policy file holds, and converts it to or from ONNX. */
+/** `./skein policy`: shows a policy file's content, and converts it to or from ONNX. */
 final class PolicyCommand(using Scenarios)
     extends OptionsCommand[PolicyOptions](
       "policy",

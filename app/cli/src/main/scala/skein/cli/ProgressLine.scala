@@ -2,11 +2,10 @@ package skein.cli
 
 import java.io.PrintStream
 
-/** One line that tells how far long work is, and how long it will take: rewritten on a terminal, else a new
-  * one every 5 s.
+/** A line with the progress and remaining time of long work: rewritten on a terminal, else printed every 5 s.
   *
   * @param total of the work
-  * @param from what was done before this run
+  * @param from part that was done before this run
   */
 private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long = 0):
   private val isTerminal = System.console() != null && System.console().isTerminal
@@ -15,8 +14,7 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
   private var shownAt    = startedAt
   private var width      = 0
 
-  /** @param text what else is to be said now
-    */
+  /** @param text additional status, computed only if shown */
   def show(done: Long, text: => String): Unit =
     val now = System.nanoTime()
     if now - shownAt >= every then
@@ -30,11 +28,11 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
         width = line.length
       else out.println(whole)
 
-  /** Leaves the line. */
+  /** Clears the line on a terminal. */
   def end(): Unit = if isTerminal && width > 0 then out.print("\r" + " " * width + "\r")
 
   private def left(now: Long, done: Long): String =
-    // The first part runs while the just-in-time compiler still works and tells nothing.
+    // The first part runs while the just-in-time compiler still works, and is no measure of the rate.
     if done - from < (total / 200).max(1) then ""
     else
       val seconds = (now - startedAt) * 1e-9 * (total - done).max(0) / (done - from)
@@ -44,7 +42,7 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
 
 private[cli] object ProgressLine:
 
-  /** What fits into one line of a terminal. The last place stays free: some terminals wrap as soon as it is
+  /** Cuts a text to one line of a terminal. The last column stays free: some terminals wrap as soon as it is
     * written.
     */
   def cut(line: String, width: Option[Int]): String = width match

@@ -8,7 +8,7 @@ import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.scenario.Scenarios
 import skein.search.VerifiedQuestion
 
-/** What commands ask their workers. A question's first line says of which kind it is. */
+/** The kinds of questions that commands send to workers. A question's first line names its kind. */
 private[cli] enum QuestionKind:
   case Search, Budget, Torture, Spread, Learn
 
@@ -19,7 +19,7 @@ private[cli] enum QuestionKind:
 
 private[cli] object QuestionKind:
 
-  /** Answers every kind, about scenarios that are known here. */
+  /** Answers every kind, about scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     val (line, question) = asked.splitAt(asked.indexOf('\n'.toByte).max(0))
     val told             = String(line.toArray, UTF_8)

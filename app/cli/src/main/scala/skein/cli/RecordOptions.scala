@@ -8,7 +8,7 @@ import skein.record.{ClockKind, McapRecording, McapRowSink, PostgresRowSink, Rec
 import skein.scene.Scene
 import skein.settings.{FlightPlan, NamedScene}
 
-/** Where flights are recorded besides their DuckDB files. */
+/** Options for outputs of flights besides their DuckDB files. */
 final case class RecordOptions(
     @arg(doc =
       "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; " +
@@ -28,7 +28,7 @@ final case class RecordOptions(
     )
     unknown.orElse(untaken).toLeft(())
 
-  /** What stands behind a colon may hold a password. */
+  /** Removes what follows a colon, which may be a password. */
   private def withoutSecrets(one: String) =
     val scheme = one.takeWhile(_ != ':')
     if scheme == one then one else s"$scheme:…"
@@ -50,9 +50,9 @@ final case class RecordOptions(
     val recording = plan.file(folder)
     recording.resolveSibling(recording.getFileName.toString.stripSuffix(".duckdb") + ".mcap")
 
-  /** Of a flight that is flown already.
+  /** Exports the recording of a completed flight.
     *
-    * @return or why not
+    * @return Left states why not
     */
   def exported(plan: FlightPlan, folder: Path): Either[String, Unit] =
     if wantsMcap then
@@ -62,15 +62,14 @@ final case class RecordOptions(
 object RecordOptions:
   given ParserForClass[RecordOptions] = ParserForClass[RecordOptions]
 
-  /** What stood in a flight's world, by its recording's parameters; nothing where these do not tell it. */
+  /** The scene of a flight, from its recording's parameters; empty where these do not state it. */
   def sceneOf(parameters: Map[String, String]): Scene =
     NamedScene.ofRecording(parameters).fold(_ => Scene.Empty, _.scene)
 
-  /** Those that are written while flights fly, and what went wrong with them. */
+  /** Outputs that are written while flights run, and their errors. */
   final class Sinks(options: RecordOptions, folder: Path, scene: Scene):
     private val opened = ConcurrentLinkedQueue[(flight: String, sink: RowSink)]()
 
-    /** For a flight that begins. */
     def open(plan: FlightPlan, heading: RecordingHeader): Either[String, Vector[RowSink]] =
       val (wrong, sinks) = options.sinksOf(plan, folder, heading, scene).partitionMap(identity)
       if wrong.isEmpty then
@@ -82,7 +81,7 @@ object RecordOptions:
           sink.discard()
         Left(wrong.mkString("\n"))
 
-    /** These could not be flown: what was opened for them is taken away. */
+    /** Removes outputs opened for flights that could not start. */
     def discard(flights: Seq[FlightPlan]): Unit =
       for one <- opened.asScala if flights.exists(_.id == one.flight) do
         one.sink.close()

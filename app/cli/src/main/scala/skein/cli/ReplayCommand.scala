@@ -9,14 +9,14 @@ import skein.scenario.Scenarios
 import skein.units.Expect
 import skein.view.{RecordedShow, Shows}
 
-/** Options of `./skein replay`. */
+/** Command-line options of `./skein replay`, with their help texts. */
 final case class ReplayOptions(
     view: ViewOptions,
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String]
 )
 
-/** `./skein replay`: repeats the decisions of a recording and compares, or plays it with `--view`. */
+/** `./skein replay`: recomputes the decisions of a recording and compares them, or plays it with `--view`. */
 final class ReplayCommand(using Scenarios)
     extends OptionsCommand[ReplayOptions](
       "replay",
@@ -31,7 +31,7 @@ final class ReplayCommand(using Scenarios)
       _ <- if options.view.view.value then play(options) else replayAll(options.files.value)
     yield ()
 
-  /** To be looked at, until Ctrl-C. */
+  /** Plays recordings in the viewer, until Ctrl-C. */
   private def play(options: ReplayOptions): Either[String, Unit] =
     val shows = Shows()
     for

@@ -5,7 +5,7 @@ import mainargs.{Flag, Leftover, ParserForClass, arg}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 
-/** Options of `./skein report`. */
+/** Command-line options of `./skein report`, with their help texts. */
 final case class ReportOptions(
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String],
@@ -15,7 +15,7 @@ final case class ReportOptions(
     json: Flag
 )
 
-/** `./skein report`: tables and figures from recordings alone. */
+/** `./skein report`: makes tables and figures from recordings alone. */
 final class ReportCommand(using Scenarios)
     extends OptionsCommand[ReportOptions](
       "report",

@@ -8,11 +8,11 @@ import skein.units.*
 import skein.units.Decimals.brief
 import skein.view.Gauge
 
-/** What a scenario draws and forbids, computed from a flight's readings while it flies. By one thread.
+/** Computes a scenario's plots and limits from a flight's readings while it runs. For one thread.
   *
-  * Series and limits are functions of the whole flight so far. So a computation takes the longer the longer a
-  * flight is; the next one follows after twenty times as long. Of very many readings every second is
-  * forgotten.
+  * Series and limits are functions of the whole flight so far, so a computation takes longer as the flight
+  * goes; the next one starts after twenty times that long. Beyond `most` readings every second one is
+  * dropped.
   *
   * @param vehicles in the scenario's order
   * @param most readings that are kept
@@ -42,7 +42,6 @@ private[cli] final class ScenarioGauge(
         if count > most then thin()
     case _ => ()
 
-  /** Readings that are kept. */
   private[cli] def kept: Int = count
 
   private def thin(): Unit =
@@ -53,7 +52,7 @@ private[cli] final class ScenarioGauge(
         at % 2 == 1
     count = seen.values.map(_.size).sum
 
-  /** What is new since it was asked last, if there is anything. */
+  /** What has changed since the last call, if anything. */
   def json(): Option[String] =
     val from = clock.now()
     if from < nextAt || failed.isDefined || scenario.series.isEmpty && scenario.limits.isEmpty then None
@@ -63,7 +62,7 @@ private[cli] final class ScenarioGauge(
           val tracks = vehicles.map(name => Track.of(name, "", seen(name).toVector))
           Option.when(seen.values.forall(_.nonEmpty))(tracks).flatMap(Tracks.of).map(message(_).render())
         catch
-          // The scenario is the user's.
+          // The scenario is user code, which may throw.
           case NonFatal(error) =>
             failed = Some(Option(error.getMessage).getOrElse(error.toString))
             Some(ujson.Obj("series" -> ujson.Arr(), "limits" -> ujson.Arr(), "failed" -> failed.get).render())
@@ -82,7 +81,7 @@ private[cli] final class ScenarioGauge(
       "limits" -> ujson.Arr.from(scenario.limits.map(limit(_, tracks)))
     )
 
-  /** Those after what was told, a tenth of a second apart; what is no number is left out. */
+  /** Points after those already sent, a tenth of a second apart; NaN is left out. */
   private def points(curve: Curve): ujson.Arr =
     val fresh = curve.points.drop(
       1 + curve.points.lastIndexWhere(_._1 <= toldS)
@@ -109,16 +108,16 @@ private[cli] final class ScenarioGauge(
 private[cli] object ScenarioGauge:
   private val Every = Span.ofMillis(500)
 
-  /** Of the time that a computation took, until the next. */
+  /** Pause after a computation, as a multiple of its duration. */
   private val Rest = 20
 
-  /** Instants of tracks between two points. */
+  /** Instants of the tracks from one point to the next. */
   private val PointEvery = 5
 
-  /** Of one message: half a minute, as long as the page's plots are. */
+  /** Most points in one message: half a minute, the length of the page's plots. */
   private val MostPoints = 300
 
-  /** 20 vehicles at 20 Hz for five minutes. */
+  /** Most readings kept: 20 vehicles at 20 Hz for five minutes. */
   private val MostReadings = 120_000
 
   private val number = """{"type":"number"}"""

@@ -5,10 +5,10 @@ import skein.report.{Section, TextTable}
 import skein.scenario.{Scenario, Scenarios}
 import skein.settings.ConfigKeys
 
-/** Options of `./skein scenarios`. */
+/** Command-line options of `./skein scenarios`, with their help texts. */
 final case class ScenariosOptions(@arg(doc = Shown.Doc) json: Flag)
 
-/** `./skein scenarios`: the scenarios of the program with their settings. */
+/** `./skein scenarios`: lists the program's scenarios with their settings. */
 final class ScenariosCommand(using scenarios: Scenarios)
     extends OptionsCommand[ScenariosOptions](
       "scenarios",

@@ -13,7 +13,7 @@ import skein.settings.PolicyFile
 import skein.simd.LaneFunction
 import skein.units.{Expect, Span}
 
-/** Options of `./skein search`. */
+/** Command-line options of `./skein search`, with their help texts. */
 final case class SearchOptions(
     @arg(doc = "family of policies to search (default: paper-pursuer)")
     family: Option[String],
@@ -153,7 +153,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _ <- asked.setup
     yield asked
 
-  /** What was not told, for an engine that flies some candidates a second. */
+  /** Sets smaller defaults for an engine that evaluates only some candidates a second. */
   private def inFlights(question: TeamQuestion, options: SearchOptions): TeamQuestion =
     val candidates = options.candidates.getOrElse(40)
     question.copy(

@@ -6,7 +6,7 @@ import skein.report.Typed
 import skein.search.*
 import skein.units.Decimals.significant
 
-/** A search in a terminal, to its end or until it is stopped. */
+/** Runs a search in a terminal, to its end or until it is stopped. */
 private[cli] final class SearchJob(
     ready: ReadySearch,
     question: SearchFile.Question,
@@ -17,7 +17,7 @@ private[cli] final class SearchJob(
 ):
   import SearchJob.*
 
-  /** Notes who does not fly as the others do. */
+  /** Records candidates that use another engine than the expected one. */
   private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))
 
   def run(from: SearchState): Either[String, Unit] =
@@ -72,9 +72,9 @@ private[cli] final class SearchJob(
     state.best.fold("no candidate measured yet"): best =>
       s"best ${best.tally.mean.significant(4)} ${ready.unit} with ${ready.label(best.candidate)}"
 
-  /** Measures the winner on fresh episodes and writes it with pictures.
+  /** Evaluates the winner on fresh episodes and writes it with pictures.
     *
-    * @param isLate whether somebody who stopped the search waits no longer for its winner's measures
+    * @param isLate whether a user who stopped the search has waited long enough for the winner's measures
     * @return whether nothing is left to do
     */
   private def conclude(
@@ -83,7 +83,7 @@ private[cli] final class SearchJob(
       isLate: () => Boolean
   ): Either[String, Boolean] =
     val effort = ready.effort
-    // Somebody who stops a search does not wait for long.
+    // A user who stops a search does not wait for long.
     val most  = if state.isDone then Int.MaxValue else effort.freshEpisodes
     val fresh = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
     say(f"measuring the best on $fresh%,d fresh episodes")
@@ -160,5 +160,5 @@ private[cli] final class SearchJob(
 private[cli] object SearchJob:
   private val MostAxes = 4
 
-  /** For how long somebody who has stopped a search waits for what it has found. */
+  /** How long a user who stopped a search waits for its result. */
   private val PatienceNanos = 2_000_000_000L

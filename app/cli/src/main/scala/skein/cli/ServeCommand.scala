@@ -21,7 +21,7 @@ import skein.simulator.{
 import skein.units.{Clock, Expect, Span}
 import skein.view.Shows
 
-/** Options of `./skein serve`. */
+/** Command-line options of `./skein serve`, with their help texts. */
 final case class ServeOptions(
     @arg(doc =
       "where it listens; 0.0.0.0 opens it to other machines " +
@@ -75,7 +75,7 @@ object ServeCommand
       ParserForClass[ServeOptions]
     ):
 
-  /** No machine flies faster. */
+  /** Greatest speed accepted; no machine simulates faster. */
   private val MostSpeed = 1000.0
 
   protected def execute(options: ServeOptions): Either[String, Unit] =
@@ -131,7 +131,7 @@ object ServeCommand
       )
     yield ()
 
-  /** Where it listens: as the command line says, else on this machine, at the settings' port. */
+  /** Listening address: the command line's, else this machine's at the settings' port. */
   private[cli] def addressOf(listen: Option[String], world: WorldSettings): Either[String, Address] =
     listen match
       case Some(named) => Address.parse(named).left.map("--listen: " + _)
@@ -161,8 +161,7 @@ object ServeCommand
       file <- SettingsFile.read(text).left.map(error => s"$name: ${error.message}")
     yield file
 
-  /** @param notice said when it has begun
-    */
+  /** @param notice printed after the start */
   private def serve(
       settings: SimulatorSettings,
       shows: Option[Shows],
@@ -188,7 +187,7 @@ object ServeCommand
         system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings))(using
           system.dispatcher
         )
-      // What it runs is compiled by then.
+      // The code it runs is compiled by then.
       val leading =
         system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
       val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
@@ -203,16 +202,16 @@ object ServeCommand
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
 
-  /** For so long clients' moves may hold all workers, as AirSim's do. */
+  /** How long clients' moves may hold all workers, as in AirSim. */
   private val Patience = Span.ofSeconds(30)
 
-  /** To end within, whatever the simulation does. */
+  /** Time within which it ends, whatever the simulation does. */
   private val GraceMillis = 2_000L
 
   private val NewsEvery  = 10.seconds
   private val LeadsAfter = 10.seconds
 
-  /** Says what clients were refused whenever there is more of it. */
+  /** Prints newly refused requests of clients, as they occur. */
   private def tellNews(server: SimulatorServer, settings: SimulatorSettings): Runnable = new Runnable:
     private var told   = Option.empty[String]
     private val called = settings.hil.fold("MAVLink")(_.autopilot.label)

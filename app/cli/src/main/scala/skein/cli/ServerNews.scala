@@ -3,10 +3,10 @@ package skein.cli
 import skein.rpc.{ServerLimits, ServerStats}
 import skein.simulator.PeerStats
 
-/** What a person who runs a simulator is told of clients that were refused something. */
+/** Describes refused requests of clients to the person who runs a simulator. */
 private[cli] object ServerNews:
 
-  /** One line, or nothing as long as all is well. Equal lines mean that nothing has happened between them. */
+  /** One line, or None while nothing was refused. Equal lines mean that nothing has happened between them. */
   def line(
       stats: ServerStats,
       limits: ServerLimits,

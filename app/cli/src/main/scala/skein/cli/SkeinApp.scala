@@ -16,26 +16,27 @@ import skein.scenario.{ScenarioKind, Scenarios}
   * object Patrol extends SkeinApp(ScenarioKind(OverTheRidge()))
   * }}}
   *
-  * @param kinds at least one; the first is flown where none is named
+  * @param kinds at least one; the first is the default
   */
 open class SkeinApp(kinds: ScenarioKind[?]*):
-  // First of all: numbers, dates and what libraries do with letters are the same wherever the machine stands.
+  // First of all: numbers, dates and the libraries' treatment of letters must not depend on the machine's
+  // locale.
   Locale.setDefault(Locale.ROOT)
   Terminal.adapt()
 
-  /** Families of policies of your own, for the duel's roles: `search`, `budget`, policy files, `--opponent`
-    * and `--fallback` know them by name. It is read before the object's own fields are set, so it must not
+  /** Your own families of policies, for the duel's roles: `search`, `budget`, policy files, `--opponent` and
+    * `--fallback` accept their names. Read before the object's own fields are initialised, so it must not
     * refer to them.
     */
   def policyFamilies: Seq[PolicyFamily] = Nil
 
-  /** Structures of plants of your own: `identify` fits them, and `--plant FILE` and `--predictor FILE` know
-    * them. It is read as [[policyFamilies]] is.
+  /** Your own structures of plants: `identify` fits them, and `--plant FILE` and `--predictor FILE` accept
+    * them. Read as early as [[policyFamilies]].
     */
   def structures: Seq[Structure] = Nil
 
-  /** Loops of your own: `fly` and `spread` fly them by `--loop`, and `report` and `replay` know them. It is
-    * read as [[policyFamilies]] is.
+  /** Your own loops: `fly` and `spread` run them by `--loop`, and `report` and `replay` accept them. Read as
+    * early as [[policyFamilies]].
     */
   def loops: Seq[OwnLoop] = Nil
 
@@ -44,7 +45,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   private def program = getClass.getName.stripSuffix("$")
 
-  /** By what they are for, as `--help` lists them. */
+  /** The commands by purpose, as `--help` lists them. */
   private val groups: Seq[(String, Seq[Command])] = Seq(
     "Fly" -> Seq(
       FlyCommand(),
@@ -79,7 +80,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     if !Edge.isInterrupted then
       sys.exit(if status == 0 then written(System.out, FileOutputStream(FileDescriptor.out)) else status)
 
-  /** What was said must have come through. Who closes a pipe has seen enough of it. */
+  /** Flushes the outputs; a reader that closed its pipe early is no failure. */
   private[skein] final def written(out: PrintStream, again: OutputStream): Int =
     val why = Option.when(out.checkError()):
       try
@@ -95,8 +96,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   /** Runs one command, for tests.
     *
-    * @return the exit status: 0 success; 1 failure, or something that cannot be done; 2 unknown options, or
-    *   values of the wrong kind
+    * @return the exit status: 0 success; 1 failure, or a request that cannot be fulfilled; 2 unknown options,
+    *   or values of the wrong kind
     */
   final def run(arguments: Seq[String]): Int =
     arguments.headOption match
@@ -109,7 +110,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       case Some(word) =>
         commands.find(_.name == word) match
           case Some(command) =>
-            // Set up before several threads of a command need it at once, which it would remark on.
+            // Set up before several threads of a command need it simultaneously, which it would log.
             val _ = LoggerFactory.getILoggerFactory
             try command.run(arguments.tail)
             catch
@@ -125,13 +126,13 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
             )
             2
 
-  /** Says what nothing expected, last, behind whatever other threads still print.
+  /** Reports an unexpected exception, after all that other threads still print.
     *
     * @return an exit status of its own
     */
   private[skein] final def unexpected(word: String, error: Throwable): Int =
     error match
-      // Only what a start waits for has such a limit.
+      // Only waits at the start have such a limit.
       case late: TimeoutException =>
         val why = s"this machine has too much else to do: ${late.getMessage}"
         Console.err.println(s"skein $word: given up before it began, for $why")
@@ -140,7 +141,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
         Console.err.println(s"skein $word: ended by an error that nothing expected: $error")
     1
 
-  /** Where the locale knows ASCII alone, Java is not told what else a name holds. */
+  /** Explains names that Java cannot decode because the locale is ASCII. */
   private def wrongName(mistake: InvalidPathException): String =
     if mistake.getReason.contains("unmappable") then
       s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot tell a file's name, " +

@@ -10,16 +10,16 @@ import skein.settings.{FlightPlan, FlySettings, SolverChoice}
 import skein.solver.TcpLink
 import skein.units.Decimals.fixed
 
-/** What `--solver` means to the commands that fly. */
+/** Interprets `--solver` for the commands that run flights. */
 private[cli] object SolverOptions:
 
-  /** In virtual time a solver is behind a link, or there is none. */
+  /** Checks that a solver in virtual time is behind a link. */
   def virtual(settings: FlySettings): Either[String, Unit] = settings.solver match
     case None | Some(SolverChoice.Link(_)) => Right(())
     case Some(other)                       =>
       Left(s"--solver ${other.text}: in virtual time expected link:PROFILE, such as link:lognormal:4ms,0.5")
 
-  /** In real time it is another process. */
+  /** Checks that a solver in real time is another process. */
   def real(settings: FlySettings): Either[String, Unit] = settings.solver match
     case Some(choice: SolverChoice.Link) =>
       Left(
@@ -28,8 +28,8 @@ private[cli] object SolverOptions:
       )
     case _ => Right(())
 
-  /** To every solver that a flight can name in real time. To name the build takes a while, and only they ask
-    * for it.
+  /** Connects to every kind of solver that a flight can name in real time. Computing the build's name takes a
+    * while, and only this needs it.
     */
   def reached(settings: FlySettings, secured: SolverSecurity.Checked)(using ActorSystem): Solvers =
     if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current, secured)
@@ -48,14 +48,14 @@ private[cli] object SolverOptions:
     }
   )
 
-  /** Why a solver closes a connection without certificates, where it asks for them. */
+  /** Explains why a solver closes a connection without certificates, if it requires them. */
   private[cli] def wantsTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
     Future(blocking(TlsProbe.answers(at)))(using system.dispatcher)
       .map(Option.when(_)(
         s"the solver at $at asks for certificates; expected --tls FOLDER with this machine's"
       ))(using system.dispatcher)
 
-  /** Why one closes a connection with certificates, where it knows no TLS. */
+  /** Explains why a solver closes a connection with certificates, if it does not use TLS. */
   private[cli] def lacksTls(at: Address)(using system: ActorSystem): Future[Option[String]] =
     Future(blocking(TlsProbe.isRefused(at)))(using system.dispatcher)
       .map(Option.when(_)(
@@ -66,8 +66,8 @@ private[cli] object SolverOptions:
 
   private[cli] val HasTls = "; has ./skein decide there --tls, too?"
 
-  /** A flight's plans in virtual time, with its solver behind a link that is as the way to it was: its
-    * median, and its spread by a lognormal distribution.
+  /** Plans of virtual twins, whose solver is behind a link like that of the flight: its median, and its
+    * spread by a lognormal distribution.
     */
   def twins(flown: FlightResult, count: Int): Vector[FlightPlan] =
     flown.plan.twins(count).flatMap: plan =>

@@ -12,7 +12,7 @@ import skein.link.Address
 import skein.settings.SolverChoice
 import skein.units.Expect
 
-/** How a flight and a solver trust one another. */
+/** Options for mutual authentication of a flight and its solver. */
 final case class SolverSecurity(
     @arg(doc =
       "for a solver or a Kafka broker of another machine: folder of ./skein " +
@@ -27,7 +27,7 @@ final case class SolverSecurity(
 ):
   import SolverSecurity.*
 
-  /** @return or what is missing for this way to a solver, or not of it */
+  /** @return Left states which option this way to a solver lacks, or does not take */
   def checked(way: Option[SolverChoice]): Either[String, Checked] = way match
     case Some(SolverChoice.Tcp(at)) =>
       for
@@ -72,13 +72,13 @@ object SolverSecurity:
   given ParserForClass[SolverSecurity] = ParserForClass[SolverSecurity]
 
   /** @param certificates for a solver behind TCP
-    * @param kafka of Kafka's clients
+    * @param kafka settings of Kafka's clients
     */
   final case class Checked(certificates: Option[SSLContext], kafka: Map[String, String])
 
   private def isLoopback(at: Address) = Endpoint(at.host, at.port).isLoopback
 
-  /** The same certificates, once it is seen that they can be read. */
+  /** Kafka's settings with these certificates, after checking that they are readable. */
   private def ofKafka(tls: Tls): Either[String, Map[String, String]] =
     tls.context.map(_ => KafkaCertificates.settings(tls.keyStore, tls.trustStore, tls.password))
 

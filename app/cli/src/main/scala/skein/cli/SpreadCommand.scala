@@ -9,7 +9,7 @@ import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.units.Expect
 
-/** Options of `./skein spread`. */
+/** Command-line options of `./skein spread`, with their help texts. */
 final case class SpreadOptions(
     flights: FlightOptions,
     @arg(doc = "how many times each flight is flown, each time with another seed")
@@ -106,5 +106,5 @@ final class SpreadCommand(program: String)(using Scenarios)
     yield flown
 
 private object SpreadCommand:
-  /** What all these flights come to is kept until the last has ended: about 40 kB a vehicle and minute. */
+  /** Most flights: their summaries are kept until the last has ended, about 40 kB a vehicle and minute. */
   private val MostSeeds = 100_000

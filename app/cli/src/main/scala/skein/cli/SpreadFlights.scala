@@ -6,17 +6,17 @@ import skein.measure.FlightSummary
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
 
-/** Many flights in virtual time, of which summaries are kept. */
+/** Runs many flights in virtual time and keeps their summaries. */
 private[cli] object SpreadFlights:
 
-  /** Tells its progress on the error output. */
+  /** Runs the flights; prints progress on the error output. */
   def fly(settings: FlySettings, plans: Vector[FlightPlan])(using
       Scenarios
   ): Vector[Either[NotFlown, FlightSummary]] =
     val landed = SpreadProgress(plans.size)
     landed.tellingIfCut(summaries(settings, plans)(landed.one))
 
-  /** One of them, on a thread of its own. Blocks. */
+  /** Runs one flight on a thread of its own. Blocks. */
   def one(settings: FlySettings, plan: FlightPlan)(using Scenarios): Either[NotFlown, FlightSummary] =
     summaries(settings, Vector(plan))(()).head
 
@@ -32,12 +32,12 @@ private[cli] object SpreadFlights:
         summary
       .map(_.flatten)
 
-  /** How many have ended, told now and then. */
+  /** Counts the flights that have ended, and prints the count from time to time. */
   final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):
     @volatile private var landed = 0
     private def progress()       = s"$landed of $of flights have ended"
 
-    /** Told in order, though flights land on several threads. */
+    /** Counts one more; in order, although flights end on several threads. */
     def one: Unit = synchronized:
       landed += 1
       if landed % (of / 20).max(1) == 0 then tell(progress())

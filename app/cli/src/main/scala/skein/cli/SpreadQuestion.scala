@@ -13,11 +13,11 @@ import skein.settings.{FlightPlan, FlySettings}
 import skein.units.{Expect, Span}
 import upickle.default.ReadWriter
 
-/** What is flown many times, as workers get it. A block is one flight: a plan's place among those of the
-  * settings, and a seed.
+/** A spread's flights as workers receive them. A block is one flight: the index of a plan of the settings,
+  * and a seed.
   *
   * @param settings `skein.fly`, as JSON
-  * @param probe digests of short flights: who flies them otherwise must not take part
+  * @param probe digests of short flights: a worker with other digests must not take part
   */
 private[cli] final case class SpreadQuestion(settings: String, probe: Vector[String]) derives ReadWriter:
   def bytes: ArraySeq[Byte] = JsonText.bytes(this)
@@ -25,7 +25,7 @@ private[cli] final case class SpreadQuestion(settings: String, probe: Vector[Str
 private[cli] object SpreadQuestion:
 
   /** @param config `skein.fly`, from which the settings were read
-    * @return or why others cannot fly it
+    * @return Left states why other processes cannot run it
     */
   def of(config: Config, settings: FlySettings): Either[String, SpreadQuestion] =
     val outside = config.getStringList("skein.fly.policies").asScala.find(_.startsWith("unix:"))
@@ -35,8 +35,8 @@ private[cli] object SpreadQuestion:
       case None =>
         probe(settings).map(SpreadQuestion(config.root.render(ConfigRenderOptions.concise), _))
 
-  /** What is read from a file may be another elsewhere. A recording begins with policies, models and scenes;
-    * links tell on vehicles alone.
+  /** Digests of short flights, since a file may differ on another machine. A recording begins with policies,
+    * models and scenes; links affect only vehicles.
     */
   private def probe(settings: FlySettings): Either[String, Vector[String]] =
     val plans = settings.plans
@@ -47,7 +47,7 @@ private[cli] object SpreadQuestion:
 
   private val ProbeDuration = Span.ofSeconds(1)
 
-  /** Flies what was asked of scenarios that are known here. */
+  /** Runs flights of scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       question <- JsonText.read[SpreadQuestion](asked, "spread's question")
@@ -61,17 +61,16 @@ private[cli] object SpreadQuestion:
           "--link, --policy, --predictor or --scene names another content here?"
     yield () => (Ready(settings).answer(_)): BlockSolver
 
-  /** Flies, or has flown. */
   final case class Ready(settings: FlySettings)(using Scenarios):
     private val plans = settings.plans
 
-    /** Every plan with so many seeds, in the plans' order. */
+    /** Every plan with `seeds` seeds, in the plans' order. */
     def flights(seeds: Int): Vector[FlightPlan] =
       for plan <- plans; number <- Vector.range(0, seeds) yield plan.copy(seed = settings.seed + number)
 
-    /** Has them flown elsewhere. What does not fit into a message is flown here, and told.
+    /** Has flights run by other processes. Those whose summary exceeds a message are run here, and reported.
       *
-      * @param onLanded told of each, in any order
+      * @param onLanded called with each, in any order
       */
     def elsewhere(by: BlockExecutor, seeds: Int, tell: String => Unit)(onLanded: => Unit)(
         onWait: => Unit
@@ -110,16 +109,16 @@ private[cli] object SpreadQuestion:
       case FlightAnswer.NotFlown(reason) => Right(Left(NotFlown(plan, reason)))
       case FlightAnswer.TooLarge         => Right(SpreadFlights.one(settings, plan))
 
-  /** What came of a flight. */
+  /** A worker's answer: the result of one flight. */
   private[cli] enum FlightAnswer derives Codec:
-    /** As [[SummaryBytes]]. */
+    /** The summary, encoded as [[SummaryBytes]]. */
     case Flown(summary: ArraySeq[Byte])
     case NotFlown(reason: String)
 
-    /** For a message. */
+    /** The summary does not fit into a message. */
     case TooLarge
 
   private val MostReason = 16 << 10
 
-  /** Of an answer: what fits into a message. */
+  /** Greatest encoded answer that fits into a message. */
   private val MostBytes = 600 << 10

@@ -5,10 +5,10 @@ import java.nio.charset.{Charset, StandardCharsets}
 import org.jline.terminal.TerminalBuilder
 import scala.util.{Try, Using}
 
-/** Where commands say what they have to say. */
+/** Adapts the outputs of commands to the terminal. */
 private[cli] object Terminal:
 
-  /** What is printed in the place of what a terminal without it cannot show. */
+  /** Replacements for characters that a terminal cannot show. */
   private val plain: Map[Char, String] = Map(
     '─' -> "-",
     '│' -> "|",
@@ -31,15 +31,15 @@ private[cli] object Terminal:
     '’' -> "'"
   )
 
-  /** Columns of the terminal that is printed to; absent where there is none, or it does not say. */
+  /** Columns of the terminal; None where there is none, or it does not report them. */
   def width: Option[Int] =
     Option(System.console())
       .filter(_.isTerminal)
       .flatMap(_ => Try(Using.resource(TerminalBuilder.builder().dumb(true).build())(_.getWidth)).toOption)
       .filter(_ > 0)
 
-  /** Makes both outputs readable on terminals that know other letters than ours, ASCII alone for example. To
-    * be called before anything is printed.
+  /** Makes both outputs readable on terminals with another charset, such as ASCII. To be called before
+    * anything is printed.
     */
   def adapt(): Unit =
     if !knows(System.out.charset) then System.setOut(stream(FileDescriptor.out, System.out.charset))
@@ -50,7 +50,7 @@ private[cli] object Terminal:
   private def stream(to: FileDescriptor, charset: Charset) =
     PrintStream(Plain(FileOutputStream(to), charset), true, StandardCharsets.UTF_8)
 
-  /** Takes UTF-8 and hands on what the charset can show. */
+  /** Accepts UTF-8 and passes on what the charset can show. */
   private[cli] final class Plain(to: OutputStream, charset: Charset) extends OutputStream:
     private val encoder = charset.newEncoder
     private var waiting = Array.emptyByteArray
@@ -70,7 +70,7 @@ private[cli] object Terminal:
 
     override def flush(): Unit = to.flush()
 
-    /** Bytes up to the last letter that has come whole. */
+    /** Number of bytes up to the end of the last complete character. */
     private def wholeLetters(bytes: Array[Byte]): Int =
       val start = bytes.lastIndexWhere(byte => (byte & 0xc0) != 0x80)
       if start < 0 then bytes.length

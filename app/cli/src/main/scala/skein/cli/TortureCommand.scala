@@ -7,7 +7,7 @@ import skein.settings.NamedScene
 import skein.torture.{FaultPlan, FaultVerdict}
 import skein.units.*
 
-/** Options of `./skein torture`. */
+/** Command-line options of `./skein torture`, with their help texts. */
 final case class TortureOptions(
     @arg(doc = "flights to fly, one for each seed")
     seeds: Int = 100,
@@ -106,14 +106,14 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
       .flatMap(_.toRight("no worker is left").map(_ => ()))
 
 object TortureCommand:
-  /** All blocks are known from the beginning. */
+  /** Most seeds with workers: all blocks are listed in advance. */
   private val MostElsewhere = 1_000_000
 
-  /** About half a second's, of one core. */
+  /** Flights in a block: about half a second of one core. */
   private val BlockFlights = 2
   private val ShowNanos    = 10_000_000_000L
 
-  /** Flights as they land, told on the terminal. */
+  /** Counts flights as they end, and prints progress. */
   private final class Count(options: TortureOptions, duration: Span, shown: Shown):
     private val startedAt = System.nanoTime()
     private var flown     = 0
@@ -153,7 +153,7 @@ object TortureCommand:
           f"${failed.size} failed, $seconds%.0f s, $speed%.0f times real time"
       )
 
-    /** A row for each rule that a flight broke. */
+    /** A table with a row for each rule that a flight broke. */
     private def table: Section = Section(
       "Broken rules",
       table = Some(

@@ -10,10 +10,10 @@ import skein.units.{Expect, Span}
 import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
 
-/** What flies through faults, as workers get it. A block is a range of seeds.
+/** Flights with faults, as workers receive them. A block is a range of seeds.
   *
   * @param scenario by its name; without one, duels
-  * @param scene what a recording keeps of it; without one, what the scenario says
+  * @param scene as recorded; without one, the scenario's
   */
 private[cli] final case class TortureQuestion(
     durationNanos: Long,
@@ -22,7 +22,7 @@ private[cli] final case class TortureQuestion(
 ) derives ReadWriter:
   def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
-  /** @return or what was expected, what came, and in which option */
+  /** @return Left states what was expected, what was given, and in which option */
   def ready(using Scenarios): Either[String, TortureQuestion.Ready] =
     for
       task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
@@ -47,20 +47,19 @@ private[cli] object TortureQuestion:
   def read(bytes: ArraySeq[Byte])(using Scenarios): Either[String, Ready] =
     JsonText.read[TortureQuestion](bytes, "torture's question").flatMap(_.ready)
 
-  /** @param scenario absent where duels are flown, as many as the seed says
-    */
+  /** @param scenario None for duels, each with the number of vehicles that its seed draws */
   final case class Ready(duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]):
 
-    /** Flies them here, as many at once as there are `threads`. */
+    /** Runs flights in this process, `threads` at a time. */
     def fly(seeds: Iterator[Long], threads: Int)(onVerdict: FaultVerdict => Unit): Unit =
       Torture.all(seeds, duration, threads, scenario, scene)(onVerdict)
 
-    /** Has them flown elsewhere, in blocks of so many. */
+    /** The blocks for other processes, of at most `atMost` seeds each. */
     def blocks(first: Long, seeds: Int, atMost: Int): Vector[ArraySeq[Byte]] =
       Vector.range(0, seeds, atMost).map: from =>
         BlockBytes.of((first + from, atMost.min(seeds - from)))
 
-    /** Of each of a block's seeds the rules that its flight broke. */
+    /** The broken rules of each seed in a block, encoded. */
     def answer(block: ArraySeq[Byte]): ArraySeq[Byte] =
       val (first, count) = told[(Long, Int)](block, "a block of torture")
       val broken         =
@@ -68,7 +67,7 @@ private[cli] object TortureQuestion:
         yield seed -> TortureQuestion.short(Torture.of(seed, duration, scenario, scene).violations)
       BlockBytes.of(broken)
 
-    /** What a block's answer says. */
+    /** Decodes the verdicts of a block's answer. */
     def verdicts(answer: ArraySeq[Byte]): Vector[FaultVerdict] =
       for (seed, violations) <- told[Vector[(Long, Vector[String])]](answer, "torture's answer")
       yield FaultVerdict(Torture.plan(seed, duration, scenario, scene), violations)
@@ -76,7 +75,7 @@ private[cli] object TortureQuestion:
     private def told[A: Codec](bytes: ArraySeq[Byte], what: String): A =
       BlockBytes.read[A](bytes, what).fold(wrong => throw IllegalArgumentException(wrong), identity)
 
-  /** What fits into a message with a block's others. */
+  /** Shortens violations so that a block's answer fits into a message. */
   private def short(violations: Vector[String]): Vector[String] =
     val lines = violations
       .take(MostLines)
@@ -85,5 +84,5 @@ private[cli] object TortureQuestion:
 
   private val MostLines, MostOfLine = 200
 
-  /** Of a block. */
+  /** Most seeds that one block may contain. */
   val MostSeeds = 8

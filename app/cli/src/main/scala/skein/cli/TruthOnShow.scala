@@ -10,11 +10,11 @@ import skein.units.*
 import skein.vehicle.VehicleKind
 import skein.view.{Feed, LiveShow, Shows}
 
-/** The vehicles of a simulator where they truly are, for viewers: as readings that took no time. */
+/** Shows a simulator's true vehicle motions to viewers, as readings without latency. */
 private[cli] object TruthOnShow:
   private val Every = 50.millis
 
-  /** Until it is cancelled. */
+  /** Starts showing, until the result is cancelled. */
   def start(settings: SimulatorSettings, server: SimulatorServer, shows: Shows, clock: Clock)(using
       system: ActorSystem
   ): Cancellable =

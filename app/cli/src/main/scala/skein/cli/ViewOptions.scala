@@ -6,7 +6,7 @@ import scala.concurrent.ExecutionContext
 import skein.units.Clock
 import skein.view.{Shows, Token, ViewServer}
 
-/** Whether and where a flight can be looked at. */
+/** Options for viewing a flight in the browser. */
 final case class ViewOptions(
     @arg(doc = "shows it in the browser and in Foxglove; the address is printed")
     view: Flag,
@@ -22,9 +22,9 @@ final case class ViewOptions(
     )
     viewOrigin: Seq[String]
 ):
-  /** Serves `shows` while `body` runs, if that is wanted.
+  /** Serves `shows` while `body` runs, if requested.
     *
-    * @param controlled whether anything can be done to them from the page
+    * @param controlled whether the page can control the flights
     */
   def serving[A](shows: Shows, controlled: Boolean = false)(body: => Either[String, A]): Either[String, A] =
     val port = viewPort.getOrElse(ViewServer.DefaultPort)
@@ -32,7 +32,7 @@ final case class ViewOptions(
       case Some(line)       => Left(line)
       case _ if !view.value => body
       case _                =>
-        // Not in the scheduler's idle class: whoever aborts a flight is heard on a busy machine, too.
+        // Not in the scheduler's idle class: a user can abort a flight on a busy machine, too.
         val threads = Executors.newSingleThreadExecutor(Thread.ofPlatform.daemon.name("skein-view").factory)
         val token   = Token.drawn()
         try
@@ -61,7 +61,7 @@ final case class ViewOptions(
             finally Edge.await(server.close()): Unit
         finally threads.shutdown()
 
-  /** What would be ignored, or could never be. */
+  /** Options that would have no effect, or contradict each other. */
   private[cli] def mistake: Option[String] =
     def alone(name: String, is: Boolean) = Option.when(is && !view.value)(s"$name: expected with --view")
     alone("--view-port", viewPort.isDefined)
@@ -75,7 +75,7 @@ final case class ViewOptions(
       ))
 
 object ViewOptions:
-  /** Scheme, host, and a port where it is not the scheme's own. */
+  /** A site: scheme, host, and a port if it is not the scheme's own. */
   private val Site = "[a-z][a-z0-9+.-]*://[^/\\s]+"
 
   given ParserForClass[ViewOptions] = ParserForClass[ViewOptions]

@@ -9,7 +9,7 @@ import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
 import skein.scenario.Scenarios
 import skein.units.{Expect, Span}
 
-/** Options of `./skein worker`. */
+/** Command-line options of `./skein worker`, with their help texts. */
 final case class WorkerOptions(
     @arg(doc = "a coordinator: a command with --cluster")
     join: String,
@@ -36,7 +36,7 @@ final class WorkerCommand(using Scenarios)
       ParserForClass[WorkerOptions]
     ):
 
-  /** After which a worker that is to end does so, whatever it computes. */
+  /** Time after which a stopping worker ends, whatever it computes. */
   private val Grace = 3_000L
 
   private val LongestPatience = Span.ofSeconds(7 * 24 * 3600)

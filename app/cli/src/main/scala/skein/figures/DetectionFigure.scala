@@ -10,9 +10,9 @@ import skein.simulator.MultirotorBody
 import skein.units.Decimals.fixed
 import skein.vehicle.Quadrotor
 
-/** What cameras saw at decisive moments: drawn anew by the built-in simulator's renderer, from where the
-  * camera was at the exposure and where the vehicle was that it looked at, with a box around the place at
-  * which it was recognised.
+/** Camera views at decisive moments: rendered again by the built-in simulator, from the camera's position at
+  * the exposure with the observed vehicle at its true position, and a box around the position at which it was
+  * recognised.
   */
 object DetectionFigure:
   private val shownPx = 330.0
@@ -22,8 +22,8 @@ object DetectionFigure:
     val rows = set.flights.flatMap(flight => flight.seeing.flatMap(row(flight, _)))
     Option.when(rows.nonEmpty)(Drawing.stacked(rows*))
 
-  /** A row of a flight's moments; none where nothing was found, or the scenario does not say what its camera
-    * is.
+  /** A row of a flight's moments; None where nothing was detected, or the scenario does not define its
+    * camera.
     */
   private def row(flight: FlightSummary, seen: SeeingSummary): Option[Drawing] =
     for

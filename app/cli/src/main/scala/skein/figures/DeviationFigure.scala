@@ -14,7 +14,7 @@ object DeviationFigure:
   private val gap    = 26.0
   private val height = 200.0
 
-  /** Of a small text. */
+  /** Approximate width of a letter of small text. */
   private val letterWidth = 4.6
 
   def apply(deviations: Vector[Deviation]): Option[Drawing] = Option.when(deviations.nonEmpty):

@@ -6,15 +6,15 @@ import skein.units.Decimals.brief
 
 /** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a
   * panel stand mean and range of the last 10 s of each flight, above its name: ours as a coloured disc, the
-  * paper's as a black diamond. The axis fits our curves; where a range of the paper's goes on beyond it, an
-  * arrow says how far, or where the mean is.
+  * paper's as a black diamond. The axis fits our curves; where a range of the paper extends beyond it, an
+  * arrow states how far, or where the mean is.
   */
 object DistanceFigure:
   private val plotWidth  = 830.0
   private val plotHeight = 220.0
   private val slotWidth  = 26.0
 
-  /** Of a small text. */
+  /** Approximate width of a letter of small text. */
   private val letterWidth = 4.9
 
   def apply(set: FlightSet): Option[Drawing] =

@@ -12,7 +12,7 @@ final case class Figure(name: String, title: String, caption: String, drawing: D
 
 object Figure:
 
-  /** How far from the paused truth flights ended. */
+  /** Deviations of flights from the paused truth. */
   def ofDeviations(deviations: Vector[Deviation]): Vector[Figure] =
     DeviationFigure(deviations).toVector.map: drawing =>
       Figure(
@@ -24,7 +24,7 @@ object Figure:
         drawing
       )
 
-  /** How far predictions were off. */
+  /** Errors of predictions, by prediction time. */
   def ofPredictions(groups: Vector[PredictionGroup]): Vector[Figure] =
     PredictionFigure(groups).toVector.map: drawing =>
       Figure(
@@ -38,7 +38,7 @@ object Figure:
         drawing
       )
 
-  /** Of flights of a pursuer and an evader, beside the paper's. */
+  /** Figures of flights of a pursuer and an evader, beside the paper's. */
   def ofDuels(set: FlightSet): Vector[Figure] = trajectories(set).toVector ++ DistanceFigure(set).map:
     drawing =>
       Figure(
@@ -51,7 +51,7 @@ object Figure:
         drawing
       )
 
-  /** Where the vehicles of any flights flew. */
+  /** Trajectories of the vehicles, for any flights. */
   def trajectories(set: FlightSet): Option[Figure] = TrajectoryFigure(set).map: drawing =>
     Figure(
       "trajectories",
@@ -61,8 +61,7 @@ object Figure:
       drawing
     )
 
-  /** What any scenario has: where the vehicles flew, from above and, where they climb, their altitudes; and
-    * its series.
+  /** Figures of any scenario: trajectories from above and, if the vehicles climb, altitudes; and its series.
     */
   def ofScenario(flown: ScenarioFlights): Vector[Figure] =
     val name  = flown.scenario.name
@@ -90,7 +89,7 @@ object Figure:
       )
     (above +: altitudes.toVector) ++ series
 
-  /** What cameras saw. */
+  /** Camera views of flights with image recognition. */
   def ofDetections(set: FlightSet): Vector[Figure] = DetectionFigure(set).toVector.map: drawing =>
     Figure(
       "detections",
@@ -101,7 +100,7 @@ object Figure:
       drawing
     )
 
-  /** Upon what was decided. */
+  /** Figures of the observations on which decisions were based. */
   def ofDecisions(set: FlightSet): Vector[Figure] = Vector(
     ObservationFigure(set).map: drawing =>
       Figure(

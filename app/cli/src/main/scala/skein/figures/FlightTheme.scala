@@ -4,7 +4,9 @@ import skein.loop.LoopKind
 import skein.measure.FlightSummary
 import skein.plot.{Colour, Legend, Point, Mark, Stroke}
 
-/** One colour per loop in every picture: Okabe and Ito's palette, told apart by colour-blind readers too. */
+/** One colour per loop in every picture: Okabe and Ito's palette, which colour-blind readers can distinguish,
+  * too.
+  */
 object FlightTheme:
   private def of(loop: LoopKind): Colour = loop match
     case LoopKind.Paused     => Colour(0x404040)
@@ -14,29 +16,28 @@ object FlightTheme:
     case LoopKind.Predictive => Colour(0xaa4499)
     case LoopKind.Plan       => Colour(0xe69f00)
 
-  /** Of the loop that a recording names; one that is not known is ochre. */
+  /** The colour of a recording's loop; ochre for an unknown one. */
   def of(loop: String): Colour = LoopKind.parse(loop).fold(_ => Colour(0xb58900), of)
 
-  /** What was published stands in black beside our colours. */
+  /** The colour of published values, beside our colours. */
   val published: Colour = Colour(0x111111)
   val halo: Colour      = Colour(0xffffff)
   val evader: Colour    = Colour(0x8c8c8c)
 
-  /** The curves of flights that stand in one picture, by the flights' names: in the colours of their loops,
-    * each with dashes of its own, so that they are told apart without colours too.
+  /** Curves of flights in one picture, by the flights' names: in their loops' colours, each with its own
+    * dashes, so that they can be distinguished without colours, too.
     */
   def curves(flights: Vector[FlightSummary]): Map[String, Stroke] =
     flights.distinctBy(_.name).zipWithIndex
       .map((flight, index) => flight.name -> line(of(flight.flight.loop)).dashed(index))
       .toMap
 
-  /** Of flights' curves, each name once. */
+  /** Legend entries of flights' curves, each name once. */
   def names(flights: Vector[FlightSummary], curves: Map[String, Stroke]): Vector[Legend.Item] =
     flights.map(_.name).distinct.map(name => Legend.line(name, curves(name).copy(width = 2.2)))
 
   def line(colour: Colour, width: Double = 1.4): Stroke = Stroke(colour, width)
 
-  /** How a link is named in titles. */
   def link(name: String): String = if name == "none" then "no network" else s"$name link"
 
   /** The mark of a published value. */

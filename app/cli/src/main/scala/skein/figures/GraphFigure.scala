@@ -3,7 +3,7 @@ package skein.figures
 import skein.loop.{GraphLayout, LoopGraph, Spot}
 import skein.plot.{Anchor, Colour, Drawing, Point, Mark, Stroke}
 
-/** A loop's graph: its parts by their names in the code, what leads where, and below what is fed back. */
+/** A loop's graph: parts by their names in the code, edges between them, and feedback edges below. */
 object GraphFigure:
   private val High      = 26.0
   private val ColumnGap = 30.0
@@ -23,8 +23,7 @@ object GraphFigure:
     def bottom: Double = top + High
     def centre: Double = top + High / 2
 
-  /** @param graph with a part at least
-    */
+  /** @param graph with at least one part */
   def apply(graph: LoopGraph): Drawing =
     val spots  = GraphLayout.of(graph)
     val placed = boxesOf(spots)
@@ -39,7 +38,7 @@ object GraphFigure:
     val parts = graph.stages.flatMap(name => part(name, placed(name)))
     Drawing(right, bottom + turned.size * TurnGap, leads ++ backs ++ parts)
 
-  /** Each column as wide as its longest name. */
+  /** Boxes of the parts; a column is as wide as its longest name. */
   private def boxesOf(spots: Map[String, Spot]): Map[String, Box] =
     val widths = spots.groupMapReduce(_._2.column)((name, _) => name.length * Letter * 0.56 + 16)(_ max _)
     val lefts  = (0 to widths.keys.max).scanLeft(Margin)((left, column) =>
@@ -55,7 +54,7 @@ object GraphFigure:
     Mark.Text(Point(box.middle, box.centre + 4), name, Letter, ink, Anchor.Middle)
   )
 
-  /** Behind the boxes between, where it passes any. */
+  /** An edge, drawn behind the boxes that it passes. */
   private def led(from: Box, to: Box) =
     val (start, end) = (Point(from.right, from.centre), Point(to.left, to.centre))
     val bend         = ColumnGap / 2

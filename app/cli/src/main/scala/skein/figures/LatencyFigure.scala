@@ -17,11 +17,11 @@ object LatencyFigure:
   /** One panel.
     *
     * @param title of what was measured
-    * @param link its profile is drawn beside it, if it has one
+    * @param link its profile is overlaid, if it has one
     */
   final case class Measured(title: String, link: String, roundTripsMs: Distribution)
 
-  /** In the order of the panels. */
+  /** Draws one panel for each measurement, in order. */
   def apply(measured: Seq[Measured]): Option[Drawing] =
     Option.when(measured.nonEmpty):
       val panels = Drawing.grid(measured.map(panel), columns = 3.min(measured.size))
@@ -32,7 +32,7 @@ object LatencyFigure:
       for
         link    <- set.links
         samples <- Distribution.of(set.over(link).flatMap(_.roundTripsMs).flatMap(_.sorted))
-        // Virtual flights without a network have but one round trip.
+        // In virtual flights without a network all round trips are equal.
         if samples.sorted.head < samples.sorted.last
       yield Measured(FlightTheme.link(link), link, samples)
 
@@ -83,14 +83,13 @@ object LatencyFigure:
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
 
-  /** A few round trips may be many times as long as all others, such as when a program stands still: then
-    * they are told as a number, and lie beyond the axis.
+  /** Round trips many times as long as the others, such as during a pause of the process, lie beyond the axis
+    * and are only counted.
     */
   private def axisEndMs(samples: Distribution, profile: Option[LatencyDistribution]): Double =
     val longest = samples.most.min(1.25 * samples.p99)
     profile.fold(longest)(known => known.quantile(1).toMillis.max(longest))
 
-  /** Of what is drawn. */
   private def legend(measured: Seq[Measured], width: Double): Drawing =
     val profiles = measured.flatMap(one => profileOf(one.link))
     val items    = Seq(
@@ -104,7 +103,7 @@ object LatencyFigure:
     ).flatten
     Legend.rows(52, width, items*)
 
-  /** The profile's 5, 50 and 95 % quantiles. */
+  /** Marks of the profile's 5, 50 and 95 % quantiles. */
   private def quantileMarks(panel: Panel, profile: LatencyDistribution): Vector[Mark] =
     val anchors = Vector(0.05 -> Anchor.End, 0.5 -> Anchor.Middle, 0.95 -> Anchor.Start)
     anchors.flatMap: (p, anchor) =>
@@ -114,7 +113,7 @@ object LatencyFigure:
         Mark.Text(Point(x, panel.top + 9), s"${(p * 100).round} %", Theme.smallSize, anchor = anchor)
       )
 
-  /** Per cent per bin along the round trip, as a step line. */
+  /** Density of the profile, per cent per bin, as a step line. */
   private def densityOf(profile: LatencyDistribution, step: Double): Vector[(Double, Double)] = profile match
     case LatencyDistribution.Quantiles(probabilities, roundTripsMs) =>
       val pieces = probabilities.zip(roundTripsMs).sliding(2).toVector.collect:
@@ -124,8 +123,7 @@ object LatencyFigure:
       ((roundTripsMs.head, 0.0) +: pieces.flatten) :+ (roundTripsMs.last, 0.0)
     case _ => Vector.empty
 
-  /** The same for what an emulated link does: half of one sample on the way there, half of another one back.
-    */
+  /** Density of an emulated link's round trips: half of one sample forth, half of another one back. */
   private def densityOfHalves(profile: LatencyDistribution, step: Double): Vector[(Double, Double)] =
     val count  = 400
     val halves = Vector.tabulate(count)(index => profile.quantile((index + 0.5) / count).toMillis / 2)
@@ -140,6 +138,6 @@ object LatencyFigure:
     LatencyProfile.parse(link, _ => Left("not read for a picture")).toOption.collect:
       case LatencyProfile.Steady(_, roundTrip) if roundTrip.quantile(1) > roundTrip.quantile(0) => roundTrip
 
-  /** About 40 bins, of a width that reads well. */
+  /** A round bin width that gives about 40 bins. */
   private def binWidthMs(most: Double): Double =
     Seq(0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0).find(_ * 45 >= most).getOrElse(100)

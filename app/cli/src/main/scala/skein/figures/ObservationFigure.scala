@@ -86,7 +86,7 @@ object ObservationFigure:
 
   private def widthOf(summary: FlightSummary): Double = summary.roles.size * barWidth
 
-  /** Left edges of the flights' groups of bars, wider apart between links. */
+  /** Left edges of the flights' groups of bars, with wider gaps between links. */
   private def placed(flights: Vector[FlightSummary]): Vector[Double] =
     flights
       .sliding(2)

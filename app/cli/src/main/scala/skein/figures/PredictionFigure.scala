@@ -3,10 +3,9 @@ package skein.figures
 import skein.measure.{Distribution, PredictionErrors, PredictionGroup}
 import skein.plot.*
 
-/** Prediction error by how far readings were carried forward, a panel per loop and link: medians and 95 %
-  * quantiles, each with dashes of its own; of the deciding vehicle itself in colour, of others in grey. A
-  * line ends where too little was measured, and fewer than three neighbours are discs, of a 95 % quantile
-  * hollow ones.
+/** Prediction error by prediction time, a panel per loop and link: medians and 95 % quantiles, each with
+  * dashes of its own; of the deciding vehicle itself in colour, of others in grey. A line ends where too
+  * little was measured; fewer than three adjacent points are drawn as discs, hollow for a 95 % quantile.
   */
 object PredictionFigure:
   val name = "prediction"
@@ -19,7 +18,7 @@ object PredictionFigure:
       legend(drawn, kinds.filter(kind => drawn.exists(kind.of(_).byAge.nonEmpty)).reverse)
     ))
 
-  /** Whose predictions. */
+  /** Whose predictions: the deciding vehicle's, or the others'. */
   private final case class Kind(
       name: String,
       colour: Colour,
@@ -27,13 +26,13 @@ object PredictionFigure:
       of: PredictionGroup => PredictionErrors
   )
 
-  /** In the order in which they are painted. */
+  /** The kinds in the order of painting. */
   private val kinds = Vector(
     Kind("others", FlightTheme.evader, 2, _.others),
     Kind("own vehicle", FlightTheme.of("predictive"), 0, _.own)
   )
 
-  /** What is drawn of the errors of one age. */
+  /** A quantile of the errors at one age, with its style. */
   private final case class Share(
       name: String,
       ofM: Distribution => Double,
@@ -74,7 +73,7 @@ object PredictionFigure:
     val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
-  /** Two points are no curve. */
+  /** Fewest points of a curve; fewer are drawn as discs. */
   private val FewestOfCurve = 3
 
   private def marks(
@@ -90,13 +89,13 @@ object PredictionFigure:
     if isHollow then Mark.Disc(at, 2.6, Some(Stroke(stroke.colour, 1.2)), Some(FlightTheme.halo))
     else Mark.Disc(at, 2.6, None, Some(stroke.colour))
 
-  /** As the marks of the curves are, where there is a curve, and of discs where there are only these. */
+  /** A legend entry that shows the curve's style, or the discs' where there are only discs. */
   private def item(groups: Vector[PredictionGroup], kind: Kind, share: Share): Legend.Item =
     val label   = s"${kind.name}, ${share.name}"
     val isCurve = groups.exists(kind.of(_).stretches.exists(_.sizeIs >= FewestOfCurve))
     if isCurve then Legend.line(label, share.stroke(kind))
     else Legend.Item(label, 8, at => Vector(sign(at.moved(4, 0), share.stroke(kind), share.isHollow)))
 
-  /** A row for each, so that it is no wider than a panel. */
+  /** A legend row for each kind, so that it is no wider than a panel. */
   private def legend(groups: Vector[PredictionGroup], kinds: Vector[Kind]): Drawing =
     Drawing.stacked(kinds.map(kind => Legend(52, shares.map(item(groups, kind, _))*))*)

@@ -4,9 +4,9 @@ import skein.identify.TimeHistory
 import skein.plot.*
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
-/** How a fitted model follows what was measured: per vehicle the velocity north and east, measured as dots
-  * and modelled as a line, east's dashed, and below what remains. The model flies from the first reading to
-  * the last, told nothing but the commands.
+/** Fit of a model to measurements: per vehicle the velocity north and east, measured as dots and modelled as
+  * a line, east's dashed, and below the residuals. The model is simulated from the first reading to the last,
+  * with only the commands as input.
   */
 object ResponseFigure:
   private val width    = 620.0
@@ -63,7 +63,7 @@ object ResponseFigure:
   private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Mark] =
     values.map((at, value) => Mark.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
 
-  /** The modelled velocity at every sample. */
+  /** The modelled velocity at the time of every sample. */
   private def flight[S](model: ObservedPlant[S], flown: TimeHistory): Vector[(Double, Double)] =
     val start    = flown.samples.head
     val modelled = Vector.newBuilder[(Double, Double)]

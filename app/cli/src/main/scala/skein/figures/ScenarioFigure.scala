@@ -5,14 +5,14 @@ import skein.measure.ScenarioFlights
 import skein.plot.*
 import skein.scenario.{Curve, Fence, Kept, Limit, Result, Scenario, Series}
 
-/** Pictures of a scenario's flights: where the vehicles flew, and what it draws over time. */
+/** Pictures of a scenario's flights: trajectories, and its series over time. */
 object ScenarioFigure:
   private val side       = 250.0
   private val plotWidth  = 900.0
   private val plotHeight = 190.0
 
-  /** Every vehicle's way from above (north is up), one panel per flight, all panels of one scale; where a
-    * limit was broken the worst, a red ring around each vehicle of it.
+  /** Trajectories from above (north is up), one panel per flight, all panels of one scale; where a limit was
+    * broken, the worst violation has a red ring around each vehicle involved.
     */
   def trajectories(flown: ScenarioFlights): Drawing =
     val tracks = flown.flights.map(_.result.tracks)
@@ -42,7 +42,7 @@ object ScenarioFigure:
       )
     )
 
-  /** As far as it lies in the panel. */
+  /** The outline of a fence, cut to the panel. */
   private def outline(panel: Panel, fence: Fence): Vector[Mark] =
     val corners = fence match
       case Fence.Circle(north, east, radius) =>
@@ -77,7 +77,7 @@ object ScenarioFigure:
         Mark.Disc(at(track.instants.last), 3, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
       )
 
-  /** Lines that get thinner from vehicle to vehicle, so that those who fly the same way are all seen. */
+  /** Lines that get thinner from vehicle to vehicle, so that coinciding trajectories all stay visible. */
   private def layered(scenario: Scenario, width: Double): Vector[Stroke] =
     val strokes = VehicleTheme.of(scenario, width)
     if strokes.sizeIs > MostNamed then strokes
@@ -94,7 +94,7 @@ object ScenarioFigure:
       val place   = panel.at(result.tracks.eastM(vehicle)(instant), result.tracks.northM(vehicle)(instant))
       Mark.Disc(place, 5, Some(Stroke(red, 1.2)))
 
-  /** Whether altitudes differ, or are limited. */
+  /** Whether altitudes vary, or are limited. */
   def hasAltitudes(flown: ScenarioFlights): Boolean =
     !flown.scenario.isPlanar || flown.flights.exists(_.result.violations.exists(at =>
       altitudeOf(at.limit).isDefined
@@ -104,8 +104,8 @@ object ScenarioFigure:
     case Kept.Above(least) => least
     case Kept.Below(most)  => most
 
-  /** Every vehicle's altitude over time, one panel per flight, all panels of one scale; limits of altitude
-    * where they were broken or are near, and a red ring where one was broken worst.
+  /** Altitudes over time, one panel per flight, all panels of one scale; altitude limits where they were
+    * broken or are near, and a red ring at the worst violation.
     */
   def altitudes(flown: ScenarioFlights): Drawing =
     val tracks = flown.flights.map(_.result.tracks)
@@ -140,7 +140,7 @@ object ScenarioFigure:
       Option.when(broken.exists(altitudeOf(_).isDefined))(brokenItem)
     Drawing.stacked(grid, Legend.rows(52, grid.width - 52, items*))
 
-  /** What the scenario draws over time, one panel per link, a line per loop, the truth in each.
+  /** A scenario's series over time, one panel per link, a line per loop, with the truth in each.
     *
     * @param index of the scenario's series
     */
@@ -167,7 +167,7 @@ object ScenarioFigure:
     def drawn(flight: ScenarioFlights.Flown): (Series, Curve) = flight.result.curves(index)
     val series                                                = drawn(flights.head)._1
     val bound                                                 = series.bound
-    // What is no number at some instants has gaps there.
+    // A curve has gaps where its value is NaN.
     val curves  = flights.map(drawn(_)._2.stretches.flatten).filter(_.nonEmpty)
     val highest = (curves.map(highestShown) ++ bound.map(_.value)).maxOption.getOrElse(0.0)
     val panel   = Panel(
@@ -195,8 +195,7 @@ object ScenarioFigure:
     val plot = Drawing(plotWidth + 76, plotHeight + 84, panel.axes ++ held ++ lines)
     Legend.titled(panel, FlightTheme.link(link), plot, items*)
 
-  /** The highest of a curve, but where it begins far above all that follows: then some more than what
-    * follows.
+  /** The greatest value of a curve; of one that begins far above all later values, somewhat more than these.
     */
   private def highestShown(curve: Vector[(Double, Double)]): Double =
     val highest = curve.map(_._2).max
@@ -215,7 +214,7 @@ object ScenarioFigure:
 
   private def brokenItem = disc("a limit broken", 5, Some(Stroke(red, 1.2)), None)
 
-  /** Few by their names, many by their roles. */
+  /** Legend of the vehicles: by name if few, else by role. */
   private[figures] def vehicles(scenario: Scenario): Seq[Legend.Item] =
     if scenario.agents.sizeIs > MostNamed then roles(scenario)
     else scenario.agents.zip(layered(scenario, 1.6)).map((agent, stroke) => Legend.line(agent.name, stroke))
@@ -233,7 +232,7 @@ object ScenarioFigure:
   private def disc(label: String, radius: Double, edge: Option[Stroke], fill: Option[Colour]): Legend.Item =
     Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), radius, edge, fill)))
 
-  /** Dashed lines are as long as it takes to tell them apart. */
+  /** A legend entry of several lines; dashed lines are long enough to be distinguished. */
   private def many(label: String, strokes: Vector[Stroke]): Legend.Item =
     val lengths = strokes.map(stroke => if stroke.dash.isEmpty then 11.0 else 27.0)
     val starts  = lengths.scanLeft(0.0)(_ + _ + 6)
@@ -247,8 +246,8 @@ object ScenarioFigure:
 
   private val MostInLegend = 12
 
-  /** Vehicles that stand in a legend by their names. */
+  /** Most vehicles that a legend lists by name. */
   private val MostNamed = 8
 
-  /** By how much the first vehicle's line is wider than the last one's. */
+  /** How much wider the first vehicle's line is than the last one's. */
   private val WidestMore = 3.0

@@ -6,8 +6,8 @@ import skein.policy.Role
 import skein.scenario.Track
 import skein.units.*
 
-/** The paper's Figures 4 and 5: where the vehicles flew, seen from above (north is up), one panel per flight,
-  * all of one range, with equal scales on both axes. Starts are rings, ends are discs.
+/** The paper's Figures 4 and 5: trajectories seen from above (north is up), one panel per flight, all of one
+  * range, with equal scales on both axes. Starts are rings, ends are discs.
   */
 object TrajectoryFigure:
   private val side = 210.0

@@ -4,8 +4,8 @@ import skein.measure.{Compared, Distribution, FlightSet, Twin}
 import skein.plot.*
 import skein.units.Decimals.{fixed, signed}
 
-/** Cumulative distributions in live flights and in their virtual twins, one line of panels per live flight:
-  * what the decisions for evader and pursuer were made on.
+/** Cumulative distributions of the decisions' observations in live flights and in their virtual twins, one
+  * row of panels per live flight, for evader and pursuer.
   */
 object TwinFigure:
   val name = "twins"
@@ -51,7 +51,9 @@ object TwinFigure:
       )
     )
 
-  /** From the panel's left edge to its right one; the last half per cent may lie beyond. */
+  /** A distribution's curve from the panel's left edge to its right one; the last half per cent may lie
+    * beyond.
+    */
   private def curve(panel: Panel, samples: Distribution, stroke: Stroke): Mark =
     val rising = Vector
       .tabulate(points + 1)(index => index.toDouble / points)

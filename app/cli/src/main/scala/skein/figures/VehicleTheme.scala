@@ -3,19 +3,18 @@ package skein.figures
 import skein.plot.{Colour, Stroke}
 import skein.scenario.Scenario
 
-/** How the vehicles of a scenario are drawn: one line for each [[Scenario.shade]] of each role, no two alike.
-  */
+/** Line styles of a scenario's vehicles: one for each [[Scenario.shade]] of each role, all different. */
 object VehicleTheme:
-  /** Okabe and Ito's, as for the loops, and two of Tol's: here by what a vehicle is to the others. */
+  /** Okabe and Ito's colours, as for the loops, and two of Tol's: here by a vehicle's role. */
   private val colours   = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9).map(Colour(_))
   private val lead      = Colour(0x404040)
   private val lightness = Vector(1.0, 0.65, 0.4)
 
-  /** As many lines as differ. */
+  /** Number of distinct line styles. */
   private[figures] val Most: Int = colours.size * Stroke.Dashes.size * lightness.size
 
-  /** By vehicle. Grey is the first that is alone in its role among others; the rest take colours in turn,
-    * then the colours again with dashes, then lighter.
+  /** Line styles by vehicle. The first vehicle that is alone in its role is grey; the others take colours in
+    * turn, then with dashes, then lighter.
     *
     * @param width of the lines, in the drawing's units
     */

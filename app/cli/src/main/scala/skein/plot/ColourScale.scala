@@ -2,9 +2,9 @@ package skein.plot
 
 import skein.units.Decimals.significant
 
-/** Colours for values between two ends; values beyond get the end's colour.
+/** Colours for values between two ends; values beyond an end have its colour.
   *
-  * @param beyond which ends stand for values beyond them, too; the bar says so
+  * @param beyond which ends also stand for values beyond them; the bar marks these
   */
 final case class ColourScale(
     from: Double,
@@ -49,15 +49,17 @@ object ColourScale:
   enum End:
     case Low, High
 
-  /** Matplotlib's viridis by nine of its colours: even in lightness, also for colour-blind readers. */
+  /** Matplotlib's viridis, interpolated from nine of its colours: even in lightness, also for colour-blind
+    * readers.
+    */
   def viridis(from: Double, to: Double): ColourScale = ColourScale(
     from,
     to,
     Vector(0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725)
   )
 
-  /** White at zero, blue below and red above (ColorBrewer's RdBu, turned round), as far to either side as
-    * there are values: where all are on one side of zero, that side alone.
+  /** White at zero, blue below and red above (ColorBrewer's RdBu, reversed), symmetric around zero; one side
+    * only, where all values are on one side.
     *
     * @param least at most 0
     * @param most at least 0

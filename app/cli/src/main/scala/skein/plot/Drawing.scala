@@ -16,7 +16,6 @@ object Drawing:
       cell.shapes.map(_.moved(index % columns * width, index / columns * height))
     Drawing(width * columns.min(cells.size), height * ((cells.size + columns - 1) / columns), shapes.toVector)
 
-  /** Drawings one below the other. */
   def stacked(parts: Drawing*): Drawing =
     val tops = parts.scanLeft(0.0)(_ + _.height)
     Drawing(
@@ -41,7 +40,7 @@ final case class Point(x: Double, y: Double):
 final case class Colour(rgb: Int, opacity: Double = 1):
   def faded(opacity: Double): Colour = copy(opacity = opacity)
 
-  /** Mixed with white: `share` of this colour. */
+  /** Mixed with white: `share` is the fraction of this colour. */
   def tinted(share: Double): Colour =
     def channel(shift: Int) = math.round(255 + ((rgb >> shift & 0xff) - 255) * share).toInt << shift
     copy(rgb = channel(16) | channel(8) | channel(0))
@@ -53,8 +52,8 @@ final case class Colour(rgb: Int, opacity: Double = 1):
   */
 final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty):
 
-  /** With the dashes of this number; no two look alike without colours either. Beyond [[Stroke.Dashes]] it is
-    * a dash and so many dots: three, four, and on.
+  /** The stroke with the dash pattern of this number; all patterns differ without colours, too. Beyond
+    * [[Stroke.Dashes]] a pattern is a dash and three, four or more dots.
     */
   def dashed(number: Int): Stroke =
     def dashAndDots =
@@ -62,7 +61,7 @@ final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Ve
     copy(dash = Stroke.Dashes.applyOrElse(number, _ => dashAndDots))
 
 object Stroke:
-  /** Solid first. */
+  /** Dash patterns, the solid line first. */
   val Dashes: Vector[Vector[Double]] = Vector(
     Nil,
     Seq(7, 3),
@@ -74,7 +73,7 @@ object Stroke:
     Seq(12, 3, 5, 3)
   ).map(_.map(_.toDouble).toVector)
 
-/** The looks that all pictures share. */
+/** Sizes and colours that all pictures share. */
 object Theme:
   val smallSize = 9.0
   val tickSize  = 10.0
@@ -87,13 +86,12 @@ object Theme:
   val gridLine: Stroke    = Stroke(Colour(0xe9e9e9), 0.8)
   val axisLine: Stroke    = Stroke(Colour(0x888888), 0.9)
 
-/** Which part of a text stands at its point. */
+/** The part of a text that lies at its point. */
 enum Anchor:
   case Start, Middle, End
 
-/** What a drawing consists of. */
+/** A shape or text of a drawing. */
 enum Mark:
-  /** Straight lines from point to point. */
   case Path(
       points: Vector[Point],
       stroke: Option[Stroke],
@@ -106,7 +104,7 @@ enum Mark:
   /** One line of text.
     *
     * @param at on the baseline, at the text's anchor
-    * @param upwards turned by a quarter, to be read from below
+    * @param upwards turned by a quarter, reading upwards
     */
   case Text(
       at: Point,
@@ -118,7 +116,7 @@ enum Mark:
       upwards: Boolean = false
   )
 
-  /** A picture of pixels, stretched to this size.
+  /** A bitmap, stretched to this size.
     *
     * @param at its top left corner
     * @param png the file

@@ -1,6 +1,6 @@
 package skein.plot
 
-/** Values on a grid of points, each shown as a rectangle that reaches half-way to its neighbours.
+/** Values on a grid of points, each shown as a rectangle that extends halfway to its neighbours.
   *
   * @param xs ascending, at least two
   * @param ys ascending, at least two
@@ -12,7 +12,7 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     s"a map needs two values on each axis, got ${xs.size} and ${ys.size}"
   )
 
-  /** Cut to the panel. */
+  /** The rectangles, cut to the panel. */
   def cells(panel: Panel, scale: ColourScale): Vector[Mark] =
     for
       (row, i) <- values.zipWithIndex
@@ -32,8 +32,8 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     else if index == values.size then values.last + (values.last - values(values.size - 2)) / 2
     else (values(index - 1) + values(index)) / 2
 
-  /** Where the values pass a level: straight pieces between points of the grid (marching squares); none
-    * beside a missing value.
+  /** The contour of a level: straight pieces between points of the grid (marching squares); none beside a
+    * missing value.
     */
   def contour(level: Double): Vector[((Double, Double), (Double, Double))] =
     for
@@ -45,7 +45,7 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
 
   private type Corner = (Double, Double, Double)
 
-  /** The square's corners in a circle, if all have values. */
+  /** A square's corners in cyclic order, if all have values. */
   private def corners(i: Int, j: Int): Option[Vector[Corner]] =
     val found = Vector((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)).flatMap: (row, column) =>
       values(row)(column).map(value => (xs(column), ys(row), value))

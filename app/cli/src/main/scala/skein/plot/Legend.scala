@@ -1,6 +1,6 @@
 package skein.plot
 
-/** One line that says what marks stand for. */
+/** One line that explains the marks of a drawing. */
 object Legend:
   private val gap         = 18.0
   private val letterWidth = 6.3
@@ -9,11 +9,11 @@ object Legend:
   private val height      = 24.0
 
   /** @param width of the mark
-    * @param mark its shapes, when its left end's middle is at the point
+    * @param mark its shapes, given the middle of its left end
     */
   final case class Item(label: String, width: Double, mark: Point => Vector[Mark])
 
-  /** Dashed lines are as long as it takes to tell them apart. */
+  /** An item for a line; dashed lines are long enough to be distinguished. */
   def line(label: String, stroke: Stroke): Item =
     val long = if stroke.dash.isEmpty then 20.0 else stroke.dash.sum.max(30)
     Item(label, long, at => Vector(Mark.line(at, at.moved(long, 0), stroke)))
@@ -21,7 +21,7 @@ object Legend:
   def box(label: String, fill: Colour): Item =
     Item(label, 12, at => Vector(Mark.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))
 
-  /** Items from left to right; texts may be a little narrower or wider than the room they get. */
+  /** Items from left to right; texts may be slightly narrower or wider than their estimated width. */
   def apply(left: Double, items: Item*): Drawing =
     val starts = items.scanLeft(left)(_ + room(_))
     val shapes = items.zip(starts).flatMap: (item, start) =>
@@ -31,8 +31,8 @@ object Legend:
 
   private def room(item: Item) = item.width + 6 + item.label.length * letterWidth + gap
 
-  /** What is drawn of a panel, with a title above it and the legend beside that, up to the panel's right
-    * edge; one that is too long stands below in rows.
+  /** A panel's drawing with a title above it and the legend beside that, up to the panel's right edge; a
+    * longer legend is set in rows below.
     */
   def titled(panel: Panel, title: String, drawn: Drawing, items: Item*): Drawing =
     val shapes = panel.title(title) +: drawn.shapes
@@ -42,7 +42,7 @@ object Legend:
       drawn.copy(shapes = shapes ++ beside)
     else Drawing.stacked(drawn.copy(shapes = shapes), rows(panel.left, panel.width, items*))
 
-  /** Items in rows that are no longer than `width`, unless one item is. */
+  /** Items in rows no longer than `width`, unless one item is. */
   def rows(left: Double, width: Double, items: Item*): Drawing =
     val filled = items.foldLeft(Vector.empty[Vector[Item]]):
       case (before :+ row, item) if (row :+ item).map(room).sum <= width => before :+ (row :+ item)

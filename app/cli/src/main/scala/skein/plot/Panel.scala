@@ -1,6 +1,6 @@
 package skein.plot
 
-/** A rectangle of a drawing with an axis below and one at its left; turns values into points. */
+/** A rectangle of a drawing with an axis below and one at its left; converts values to points. */
 final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, width: Double, height: Double):
   import Theme.*
 
@@ -19,7 +19,7 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       else kept :+ point
     Mark.Path(kept, Some(stroke))
 
-  /** Likewise, cut where it leaves the axis at the left. */
+  /** A line through values, cut where it leaves the vertical axis. */
   def cut(values: Vector[(Double, Double)], stroke: Stroke): Vector[Mark] =
     def isIn(value: (Double, Double))                        = value._2 >= y.from && value._2 <= y.to
     def edge(one: (Double, Double), other: (Double, Double)) =
@@ -38,18 +38,18 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
           case _             => done
     pieces.map(curve(_, stroke))
 
-  /** A line from the left edge to the right one. */
+  /** A horizontal line from the left edge to the right one. */
   def level(value: Double, stroke: Stroke): Mark =
     Mark.line(Point(left, atY(value)), Point(right, atY(value)), stroke)
 
-  /** Grid lines, and lines, numbers and names of both axes; to be painted below the values. */
+  /** Grid, lines, numbers and names of both axes; to be painted below the values. */
   def axes: Vector[Mark] = grid ++ xAxis ++ yAxis
 
   private def grid: Vector[Mark] =
     x.ticks.map(tick => Mark.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++
       rules(left, right)
 
-  /** Horizontal lines at the ticks of the axis at the left. */
+  /** Horizontal lines at the ticks of the vertical axis. */
   def rules(from: Double, to: Double): Vector[Mark] =
     y.ticks.map(tick => Mark.line(Point(from, atY(tick)), Point(to, atY(tick)), gridLine))
 

@@ -2,14 +2,14 @@ package skein.plot
 
 import skein.units.Decimals.fixed
 
-/** One axis: what it shows, from where to where, and where its marks stand. */
+/** One axis: its label, its range, and its ticks. */
 final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector[Double]):
   require(from < to, s"axis '$label' runs from $from to $to")
 
-  /** Where a value lies: 0 at the axis' begin, 1 at its end. */
+  /** A value's position: 0 at the axis' begin, 1 at its end. */
   def share(value: Double): Double = (value - from) / (to - from)
 
-  /** A tick's text, with as many decimals as the ticks' distance needs. */
+  /** A tick's label, with as many decimals as the ticks' distance needs. */
   def text(tick: Double): String =
     val step     = if ticks.sizeIs > 1 then ticks(1) - ticks(0) else 1
     val decimals = math.ceil(-math.log10(step) - 1e-9).toInt.max(0)
@@ -18,7 +18,7 @@ final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector
 
 object PlotAxis:
 
-  /** Ends at ticks, so that all values lie between. */
+  /** An axis that ends at ticks and contains all values. */
   def around(label: String, least: Double, most: Double, ticks: Int = 5): PlotAxis =
     val upper = if most > least then most else least + 1
     val step  = niceStep((upper - least) / ticks)
@@ -26,11 +26,11 @@ object PlotAxis:
     val to    = math.ceil(upper / step - 1e-9) * step
     PlotAxis(label, from, to, ticksBetween(from, to, step))
 
-  /** Ends exactly where told. */
+  /** An axis with exactly these ends. */
   def exactly(label: String, from: Double, to: Double, ticks: Int = 5): PlotAxis =
     PlotAxis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
 
-  /** As long as told, around the middle of values. */
+  /** An axis of this length, around the middle of the values. */
   def centred(label: String, values: Vector[Double], length: Double): PlotAxis =
     val middle = (values.min + values.max) / 2
     exactly(label, middle - length / 2, middle + length / 2)

@@ -6,11 +6,11 @@ import scalatags.Text.svgAttrs.*
 import scalatags.Text.svgTags.{circle, image, path, svg, text}
 import scalatags.Text.{Attr, Modifier, TypedTag}
 
-/** Renders drawings as SVG with text as text. */
+/** Renders drawings as SVG; text stays text. */
 object Svg:
   private val fonts = "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif"
 
-  /** An element of the drawing's own size, for a style sheet to shrink where there is less room. */
+  /** An SVG element in the drawing's own size, which a style sheet may shrink. */
   def element(drawing: Drawing, description: String): TypedTag[String] =
     svg(
       xmlns              := "http://www.w3.org/2000/svg",
@@ -23,7 +23,6 @@ object Svg:
       drawing.shapes.map(render)
     )
 
-  /** A file of its own. */
   def file(drawing: Drawing, description: String): String =
     s"""<?xml version="1.0" encoding="UTF-8"?>\n${element(drawing, description).render}\n"""
 
@@ -72,7 +71,7 @@ object Svg:
   ): Seq[Modifier] =
     Seq(name := f"#${colour.rgb}%06x", Option.when(colour.opacity < 1)(opacity := number(colour.opacity)))
 
-  /** A hundredth of a pixel is finer than any eye or printer. */
+  /** Rounds to a hundredth of a pixel, finer than any eye or printer. */
   private def number(value: Double): String =
     val text = String.format(Locale.ROOT, "%.2f", value)
     text.reverse.dropWhile(_ == '0').dropWhile(_ == '.').reverse match

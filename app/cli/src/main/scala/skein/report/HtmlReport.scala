@@ -10,10 +10,10 @@ import skein.record.FlightRow
 import skein.units.Decimals
 import skein.units.Decimals.brief
 
-/** The report as one page that needs nothing beside itself: no script, no font, no link to anywhere. */
+/** The report as one self-contained page: no script, no font, no external link. */
 object HtmlReport:
 
-  /** @param sections as [[ReportSections.of]] gives them */
+  /** @param sections as [[ReportSections.of]] returns them */
   def render(set: FlightSet, sections: Seq[Section]): String =
     val page = html(
       lang := "en",
@@ -45,7 +45,7 @@ object HtmlReport:
       s"${named(flight => flight.period.toMillis.brief)} ms; simulator ${named(_.simulator)}; " +
       s"${named(_.clock)} clock."
 
-  /** What many flights of each loop over each link come to, as a page. */
+  /** A page on the spread of many flights of each loop over each link. */
   def spread(flights: Int, sections: Seq[Section]): String =
     val title = s"Skein: spread over $flights flights"
     val page  = html(

@@ -9,15 +9,15 @@ import skein.measure.FlightSet
 import skein.policy.Fleet
 import skein.scenario.Scenarios
 
-/** The graphs of the loops that flew, each as it runs for the vehicles of its flight. */
+/** Graphs of the loops of a set of flights, each for its number of vehicles. */
 object LoopPictures:
 
   type Loop = (kind: AnyLoop, fleet: Fleet)
 
-  /** Beyond it nobody could read the picture. */
+  /** Most vehicles of a picture that is readable. */
   private val MostVehicles = 8
 
-  /** Blocks: it starts each loop for a moment. */
+  /** Pictures of the loops; blocks, since it starts each loop for a moment. */
   def of(set: FlightSet)(using Scenarios): Vector[Figure] =
     val flown =
       for
@@ -29,7 +29,7 @@ object LoopPictures:
       (loop.kind, loop.fleet.agents.map(_.name))
     ))
 
-  /** Those of the loops that are graphs. Blocks. */
+  /** Pictures of those loops that are graphs. Blocks. */
   def drawn(loops: Seq[Loop]): Vector[Figure] =
     for (loop, graph) <- graphs(loops)
     yield Figure(

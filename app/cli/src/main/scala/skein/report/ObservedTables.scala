@@ -4,17 +4,17 @@ import skein.measure.Distribution
 import skein.observe.{Diagnosis, LoopAccount, Observed, Progress}
 import skein.units.Decimals.{brief, fixed}
 
-/** What was observed, as tables and sentences. */
+/** The observer's measurements, as tables and sentences. */
 object ObservedTables:
 
-  /** For people: the findings are said in sentences ([[findings]]). */
+  /** Tables for people; the findings are sentences ([[findings]]). */
   def tables(observed: Observed): Vector[Section] =
     Vector(vehicles(observed), period(observed), methods(observed)).flatten
 
-  /** For scripts. */
+  /** Tables for scripts, with the findings. */
   def data(observed: Observed): Vector[Section] = tables(observed) ++ found(observed)
 
-  /** None without rows. */
+  /** A section with a table; None without rows. */
   private def section(
       title: String,
       header: Vector[String],
@@ -79,7 +79,7 @@ object ObservedTables:
     Diagnosis.of(observed).map(finding => Vector(finding.name, finding.what, finding.remedy))
   )
 
-  /** A paragraph for each finding, and one for what the observer does not know. */
+  /** A paragraph for each finding, and one for what the observer cannot know. */
   def findings(observed: Observed): Vector[String] =
     val found    = Diagnosis.of(observed)
     val sentence =
@@ -95,7 +95,7 @@ object ObservedTables:
     )
     sentence ++ paused ++ lost ++ more
 
-  /** Progress in one line; absent before the first command. */
+  /** Progress in one line; None before the first command. */
   def line(progress: Progress): Option[String] =
     Option.when(progress.commands > 0):
       val age = progress.ageMs.fold("never read")(ms => s"data ${ms.brief} ms old")

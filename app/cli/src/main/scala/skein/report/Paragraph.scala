@@ -1,11 +1,11 @@
 package skein.report
 
-/** Text in lines. */
+/** Breaks a text into lines of limited width. */
 object Paragraph:
 
-  /** Broken between words. A word that is longer has a line of its own.
+  /** Breaks a text between words. A word that is longer has a line of its own.
     *
-    * @param width of the longest line, in letters
+    * @param width of the longest line, in characters
     */
   def lines(text: String, width: Int): Vector[String] =
     text.split(' ').filter(_.nonEmpty).foldLeft(Vector.empty[String]): (lines, word) =>

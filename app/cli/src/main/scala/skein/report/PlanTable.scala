@@ -3,13 +3,13 @@ package skein.report
 import skein.measure.{DistanceCurve, FlightSet}
 import skein.units.Decimals.{brief, fixed}
 
-/** How plans were made, and what came of them. */
+/** How plans were made, and their results, as a table. */
 object PlanTable:
 
-  /** Below this distance an evader is captured, m. */
+  /** Distance below which an evader is captured, m. */
   val CaptureM = 1.5
 
-  /** A row per flight that planned; in what a pursuer caught, where duels were flown. */
+  /** A row per flight with planning; with the pursuer's captures, in duels. */
   def of(set: FlightSet): TextTable =
     val duels = hasDuels(set)
     TextTable(
@@ -45,7 +45,6 @@ object PlanTable:
 
   val title = "Plans"
 
-  /** How to read it. */
   def note(set: FlightSet): String =
     "Candidates: manoeuvres simulated per vehicle and tick, in all searches together. Slices: steps in " +
       "which searches improved the plans of all vehicles together. ms: from the tick to the decision. " +

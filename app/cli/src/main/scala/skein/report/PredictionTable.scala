@@ -3,7 +3,7 @@ package skein.report
 import skein.measure.{Distribution, PredictionGroup}
 import skein.units.Decimals.{brief, fixed}
 
-/** How far predictions were off, as a table. */
+/** Errors of predictions, as a table. */
 object PredictionTable:
 
   def of(groups: Vector[PredictionGroup]): TextTable =

@@ -13,16 +13,15 @@ import skein.scenario.Scenarios
 import skein.settings.FlightPlan
 import skein.units.Expect
 
-/** Turns recordings into tables and pictures; needs nothing but the recordings. */
+/** Turns recordings into tables and pictures; needs only the recordings. */
 object Report:
 
-  /** Summarises recordings, each flight once. All are tried; every one that cannot be read is named. Blocks.
-    */
+  /** Summarises recordings, each flight once. Tries all, and names every unreadable one. Blocks. */
   def read(files: Seq[Path])(using Scenarios): Either[Seq[RecordError], FlightSet] =
     readOnce(files).map(_.flights)
 
-  /** The same, and which files count once with another: named twice, or copies of it. A flight that counted
-    * twice would make spreads too narrow.
+  /** Summarises recordings like `read`, and lists duplicate files: named twice, or copies. A flight that
+    * counted twice would make spreads too narrow.
     */
   def readOnce(files: Seq[Path])(using
       Scenarios
@@ -40,10 +39,10 @@ object Report:
 
   def of(recordings: Seq[Recording])(using Scenarios): FlightSet = FlightSet(recordings.map(FlightSummary.of))
 
-  /** What was written.
+  /** The files that were written.
     *
-    * @param withoutPng why there are no PNG files, where there are none
-    * @param isReplaced whether there was such a page before
+    * @param withoutPng why there are no PNG files, if so
+    * @param isReplaced whether it replaced an older page
     * @param others recordings in the folder that it does not show
     * @param failures what is missing on the page, since a scenario's code threw
     */
@@ -54,10 +53,10 @@ object Report:
       others: Vector[String],
       failures: Vector[String]
   ):
-    /** Nothing, or what is missing, a line each. */
+    /** Right if the page is complete; Left lists what is missing, a line each. */
     def whole: Either[String, Unit] = Expect.that(failures.isEmpty)(failures.mkString("\n"))
 
-    /** Where it is, in lines for the user. */
+    /** The page's path and remarks, in lines for the user. */
     def told: Vector[String] =
       val shown = if others.size <= MostNamed then others else others.take(MostNamed) :+ "…"
       s"Report: $page${if isReplaced then ", which replaces the one before" else ""}" +:
@@ -69,16 +68,16 @@ object Report:
   private val MostNamed = 4
 
   /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which
-    * is made if need be; files of these names are replaced.
+    * is created if necessary; files of these names are replaced.
     *
-    * @return or why it could not be written
+    * @return Left states why it could not be written
     */
   def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
     val figures  = ReportFigures.of(set)
     val sections = ReportSections.of(set, figures)
     write(directory.resolve("report.html"), HtmlReport.render(set, sections), sections, figures.all, set.all)
 
-  /** Writes `spread.html` and its figures likewise. */
+  /** Writes `spread.html` and its figures in the manner of `write`. */
   def writeSpread(flights: Seq[FlightSummary], directory: Path)(using Scenarios): Either[String, Output] =
     val figures  = ReportFigures.spread(flights)
     val sections = ReportSections.spread(flights, figures)
@@ -127,6 +126,6 @@ object Report:
 
   private val DuckDb = ".duckdb"
 
-  /** What `f` makes of each, in their order. */
+  /** Maps items on all cores, keeping their order. */
   private def onAllCores[A, B](items: Seq[A])(f: A => B): Vector[B] =
     InParallel.map(items, Runtime.getRuntime.availableProcessors)(f)

@@ -4,7 +4,7 @@ import skein.figures.Figure
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionGroup}
 import skein.scenario.Scenarios
 
-/** The pictures of a report, in its order; those without anything to show are left out.
+/** The pictures of a report, in order; empty ones are left out.
   *
   * @param failures of scenarios whose pictures are missing, since their code threw
   */
@@ -12,7 +12,7 @@ final case class ReportFigures(all: Vector[Figure] = Vector.empty, failures: Vec
 
 object ReportFigures:
 
-  /** Blocks for those of the loops. */
+  /** All figures; blocks while it starts the loops. */
   def of(set: FlightSet)(using Scenarios): ReportFigures =
     val (failures, own) =
       ScenarioReport.each(set)((report, flights) => report.figures(flights)).partitionMap(identity)
@@ -22,7 +22,7 @@ object ReportFigures:
       failures
     )
 
-  /** Of flights that were flown many times. */
+  /** Figures on the spread of repeated flights. */
   def spread(flights: Seq[FlightSummary]): ReportFigures =
     ReportFigures(
       Figure.ofDeviations(Deviation.of(flights)) ++ Figure.ofPredictions(PredictionGroup.of(flights))

@@ -4,11 +4,10 @@ import skein.figures.{DeviationFigure, Figure, PredictionFigure, TwinFigure}
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionGroup}
 import skein.scenario.Scenarios
 
-/** What a report consists of, in its order. Sections without anything to show are left out. */
+/** The sections of a report, in order; empty ones are left out. */
 object ReportSections:
 
-  /** @param figures as [[ReportFigures.of]] gives them; none, where only tables are shown
-    */
+  /** @param figures as [[ReportFigures.of]] returns them; empty for tables alone */
   def of(set: FlightSet, figures: ReportFigures = ReportFigures())(using Scenarios): Vector[Section] =
     val results  = orFailures(ScenarioReport.each(set)((report, flights) => report.results(flights)))
     val pictures = figures.all.filterNot(figure => withTables(figure.name)).map(figure =>
@@ -34,8 +33,8 @@ object ReportSections:
       )
     )
 
-  /** All of a report, for the terminal: the tables, how far each loop was off the truth, what is to be known
-    * of single flights, and whether the timing was good enough.
+  /** A whole report for the terminal: the tables, each loop's deviation from the truth, remarks on single
+    * flights, and whether the timing was good enough.
     */
   def text(set: FlightSet)(using Scenarios): String =
     val said = Vector(
@@ -45,7 +44,7 @@ object ReportSections:
     ).filter(_.nonEmpty).map(_.mkString("\n"))
     (Section.text(of(set)) +: said).mkString("\n\n")
 
-  /** What many flights of each loop over each link come to. */
+  /** Sections on the spread of many flights of each loop over each link. */
   def spread(flights: Seq[FlightSummary], figures: ReportFigures = ReportFigures())(using
       Scenarios
   ): Vector[Section] =
@@ -83,7 +82,7 @@ object ReportSections:
       section.table.exists(_.rows.nonEmpty) || section.figures.nonEmpty || section.failure.nonEmpty
     )
 
-  /** Figures that stand beside a table of their own. */
+  /** Figures that are shown beside a table of their own. */
   private val withTables = Set(TwinFigure.name, DeviationFigure.name, PredictionFigure.name)
 
   private def named(name: String, figures: ReportFigures): Vector[Figure] = figures.all.filter(_.name == name)

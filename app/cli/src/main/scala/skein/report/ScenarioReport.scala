@@ -5,8 +5,8 @@ import skein.measure.{FlightSet, FlightSummary, ScenarioFlights}
 import skein.scenario.{ScenarioKind, Scenarios}
 import skein.units.OwnFailure
 
-/** What a report has of one kind of scenario: its results as tables, and its pictures. A kind that has some
-  * of its own extends it and gives these in the place of the general ones:
+/** A report's tables and pictures of one kind of scenario. A kind with its own extends this trait and
+  * overrides the general ones:
   *
   * {{{
   * object PatrolKind extends ScenarioKind(Patrol()), ScenarioReport:
@@ -15,8 +15,7 @@ import skein.units.OwnFailure
   */
 trait ScenarioReport:
 
-  /** @param set the flights of this kind, with any settings
-    */
+  /** @param set the flights of this kind, with any settings */
   def results(set: FlightSet): Vector[Section] = set.scenarios.flatMap: flown =>
     Vector(
       Section(
@@ -31,7 +30,7 @@ trait ScenarioReport:
       )
     )
 
-  /** What many flights of each loop over each link come to. */
+  /** Sections on the spread of many flights of each loop over each link. */
   def spread(flights: Vector[FlightSummary]): Vector[Section] = ScenarioFlights.of(flights).map(flown =>
     Section(s"Spread: ${flown.scenario.name}", table = Some(ScenarioTables.spread(flown)))
   )
@@ -41,10 +40,9 @@ trait ScenarioReport:
 
 object ScenarioReport:
 
-  /** For each kind that there are flights of, in the registry's order; then for those that are not known
-    * here.
+  /** Calls `show` for each kind that has flights, in the registry's order; then for unknown kinds.
     *
-    * @return or the mistake of one that throws
+    * @return the results, and the mistakes of kinds that threw
     */
   private[report] def each[A](set: FlightSet)(show: (ScenarioReport, FlightSet) => Vector[A])(using
       Scenarios
@@ -67,6 +65,6 @@ object ScenarioReport:
 
   private object General extends ScenarioReport
 
-  /** Where the vehicles flew is known of every flight. */
+  /** The report of an unknown kind: trajectories need no scenario. */
   private object Unknown extends ScenarioReport:
     override def figures(set: FlightSet): Vector[Figure] = Figure.trajectories(set).toVector

@@ -6,11 +6,11 @@ import skein.scenario.{Measured, Scenario}
 import skein.settings.NamedScene
 import skein.units.Decimals.fixed
 
-/** Tables of a scenario's flights. */
+/** Tables of a scenario's measures, limits and spreads. */
 object ScenarioTables:
 
-  /** A row per flight: its measures, the first against the paused truth's, and how far the vehicles were from
-    * where they are in the paused truth at the same time.
+  /** A row per flight: its measures, the first against the paused truth's, and the distance of the vehicles
+    * from their positions in the paused truth at equal times.
     */
   def flights(flown: ScenarioFlights): TextTable =
     val names  = flown.scenario.measures.map(_.title)
@@ -29,20 +29,19 @@ object ScenarioTables:
       flown.withoutResult.map(one => Vector(one.name, one.flight.link).padTo(header.size, ""))
     TextTable(header, flights ++ without)
 
-  /** Where there is something to touch. */
+  /** The contacts column's title, if the scenario has objects or vehicles to touch. */
   private def contactsTitle(flown: ScenarioFlights): Option[String] =
     Option.when(
       NamedScene.shipped(flown.scenario.scene).exists(!_.isEmpty) || flown.flights.exists(contacts(_) > 0)
     )("contacts")
 
-  /** Each time that a vehicle touched something. */
   private def contacts(flight: ScenarioFlights.Flown): Int = flight.summary.count(EventKind.Contact)
 
-  /** Behind the first measure, if there is any. */
+  /** Inserts a cell after the first measure, if there is any. */
   private def withPaused(cells: Vector[String], against: String): Vector[String] =
     cells.take(1) ++ cells.headOption.map(_ => against) ++ cells.drop(1)
 
-  /** A row per flight and limit that was broken in it, the first and the worst time named. */
+  /** A row per flight and limit that was broken in it, with the first and the worst violation. */
   def violations(flown: ScenarioFlights): TextTable = TextTable(
     Vector("<loop", "<link", "<limit", "times", "<vehicles", "from s", "to s", "worst", "at s"),
     for
@@ -71,7 +70,6 @@ object ScenarioTables:
       )
   )
 
-  /** How to read [[violations]]. */
   def limits(scenario: Scenario): String =
     s"Limits: ${scenario.limits.map(_.text).mkString("; ")}. A row is a stretch of time in which a " +
       s"vehicle or a pair broke one; the first $MostListed of each flight and limit are listed."
@@ -116,10 +114,10 @@ object ScenarioTables:
       else s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
     )
 
-  /** What happened in no part of the flight. */
+  /** The text for an event that did not occur in the flight. */
   private val Never = "never"
 
-  /** Of a flight that ended before there was what is measured, such as its last 10 s. */
+  /** The text for a flight that ended before the measured part, such as its last 10 s. */
   private val TooShort = "too short"
 
   private def text(measured: Measured): String = measured.value match
@@ -128,6 +126,5 @@ object ScenarioTables:
     case Some(value) if measured.measure.isCount => value.fixed(0)
     case Some(value)                             => value.fixed(2)
 
-  /** What a table's columns mean. */
   def note(scenario: Scenario): String =
     s"${scenario.note} Off truth: root mean square distance of the vehicles from where they are in the paused truth at the same time.".trim

@@ -6,9 +6,9 @@ import ujson.{Arr, Null, Num, Obj, Str, Value}
 /** A part of a report: rendered as text for the terminal, as part of a page, and as data for scripts.
   *
   * @param note how to read it; may be empty
-  * @param table absent where there are pictures alone
-  * @param figures on the page alone
-  * @param failure why there is nothing to show: what the scenario's code threw; on the page alone
+  * @param table None for sections of pictures
+  * @param figures on the page only
+  * @param failure why it is empty: the scenario's code threw; on the page only
   */
 final case class Section(
     title: String,
@@ -20,7 +20,7 @@ final case class Section(
 
 object Section:
 
-  /** Those that have a table, one after the other. */
+  /** All sections with a table, one after the other. */
   def text(sections: Seq[Section]): String =
     sections.flatMap(section => section.table.map(textOf(section, _))).mkString("\n\n")
 
@@ -28,7 +28,7 @@ object Section:
     (Vector(section.title, table.render) ++ Paragraph.lines(section.note, 100)).mkString("\n")
 
   /** All tables: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as the
-    * columns; a cell is a number where it is one, null where it is empty, and else text.
+    * columns; a cell is a number if it reads as one, null if it is empty, and else text.
     */
   def json(sections: Seq[Section]): String =
     val tables = sections.flatMap(section => section.table.map(jsonOf(section, _)))
@@ -41,7 +41,7 @@ object Section:
     "rows"    -> Arr.from(table.rows.map(row => Arr.from(row.zip(table.header).map(cell))))
   )
 
-  /** Columns on the left hold names, also where these are numbers. */
+  /** A cell's value; the left columns are names, even if these look like numbers. */
   private def cell(text: String, column: String): Value =
     if text.isEmpty then Null
     else if column.startsWith("<") || !text.matches("[-+]?[0-9]+(\\.[0-9]+)?") then Str(text)

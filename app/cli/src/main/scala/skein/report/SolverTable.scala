@@ -3,12 +3,11 @@ package skein.report
 import skein.measure.{Distribution, FlightSet, FlightSummary}
 import skein.units.Decimals.{brief, fixed, signed}
 
-/** What decisions in another process cost, beside the same loop that decides in its own. */
+/** The cost of decisions in another process, compared with the loop that decides in its own. */
 object SolverTable:
 
   val title = "Decided elsewhere"
 
-  /** A row for each flight with a solver. */
   def of(set: FlightSet): TextTable =
     TextTable(
       Vector("<loop", "<link", "<solver", "answers") ++
@@ -34,7 +33,7 @@ object SolverTable:
   private def spread(ms: Option[Distribution]): Vector[String] =
     ms.fold(Vector("", ""))(all => Vector(all.median.fixed(1), all.p99.fixed(1)))
 
-  /** The same loop over the same link by the same policy, decided in the flight's own process. */
+  /** The flight to compare with: its loop, link and policy are equal, and it decides in its own process. */
   private def beside(set: FlightSet, flight: FlightSummary): Option[FlightSummary] =
     set.flights.find: other =>
       other.solver.isEmpty &&

@@ -3,11 +3,11 @@ package skein.report
 import skein.measure.{DistanceCurve, Distribution, FlightSummary, Truth}
 import skein.units.Decimals.{fixed, signed}
 
-/** How much a loop's result varies from flight to flight. */
+/** The variation of a loop's result from flight to flight. */
 object SpreadTable:
 
   /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of
-    * the mean distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the
+    * the mean distance in the last 10 s, and of the standard deviation within a flight's last 10 s, the
     * closest approach, in how many flights it was a capture, and the mean deviation from the [[Truth]]. Where
     * a loop and link gave no distance, since a vehicle was never read, the flights are counted alone.
     */

@@ -9,7 +9,6 @@ import skein.units.Decimals.{brief, fixed, signed}
 /** The tables of a report, for the terminal and for the page alike. */
 object SummaryTables:
 
-  /** Distances, ours beside the paper's. */
   def distances(set: FlightSet): TextTable =
     TextTable(
       Vector("<loop", "<link", "flown s", "closest m", "at s") ++
@@ -43,12 +42,12 @@ object SummaryTables:
         Vector(summary.name, summary.flight.link) ++ ours ++ paper
     )
 
-  /** How a flight compares with the truth, or that it does not. */
+  /** Compares a flight with the truth, or states that it cannot be compared. */
   private[report] def againstTruth(flight: FlightSummary, share: Option[Double]): String =
     if flight.starved.isDefined then "starved" else share.fold("")(share => s"${(share * 100).signed(1)} %")
 
   /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true
-    * ages; by the role that was decided for. Without a flight of the paper's there is nothing beside them.
+    * ages; by the role that the decision was for. Without one of the paper's flights there is no comparison.
     */
   def observations(set: FlightSet): TextTable =
     val paper = Option.when(set.flights.exists(_.published.nonEmpty))("paper").toVector
@@ -79,7 +78,7 @@ object SummaryTables:
     case TimingObservation.SinceOwnMove      => "own move"
     case TimingObservation.SinceOpponentMove => "opp.'s move"
 
-  /** How much was done, and what did not go as wished; of the rarer kinds of events those that occurred. */
+  /** Counts of work and of problems; of the rarer kinds of events those that occurred. */
   def counts(set: FlightSet): TextTable =
     val always = Set(EventKind.Dropped, EventKind.Skipped, EventKind.TimedOut)
     val kinds  =
@@ -92,8 +91,8 @@ object SummaryTables:
           kinds.map(summary.count(_).toString)
     )
 
-  /** What cameras saw: how much, how long recognition took, how old it was when it was decided upon, and how
-    * far what was believed at the exposure was from the truth.
+  /** Image recognition: number of images, how long recognition took, age at the decision, and the error of
+    * the estimate at the exposure.
     */
   def seen(flights: Seq[FlightSummary]): TextTable =
     def spread(values: Option[Distribution], digits: Int) =
@@ -115,14 +114,13 @@ object SummaryTables:
         spread(seen.errorsM, 2)
     )
 
-  /** How to read [[seen]]. */
   val seenNote: String =
     "Images: searched until the last detection, if there was one. Found: detections that were used. " +
       "Took: duration of recognition. Age: from the exposure to each decision made from the detection. " +
       "Off: distance of the estimate for the moment of the exposure from the truth."
 
-  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made
-    * on, by role, and how far apart they converged.
+  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of the decisions' observations, by
+    * role, and the difference of the converged distances.
     */
   def twins(set: FlightSet): TextTable =
     val columns = Twin.columns(set.twins)
@@ -145,26 +143,26 @@ object SummaryTables:
           )
     )
 
-  /** What is to be known of single flights, a line each. */
+  /** Remarks on single flights, a line each. */
   def remarks(set: FlightSet): Vector[String] =
     withoutResult(set) ++ cutShort(set) ++ starved(set) ++ paused(set) ++ imageless(set) ++
       unknown(set) ++ waiting(set)
 
-  /** A line for each flight that has none. */
+  /** A line for each flight that has no result. */
   private def withoutResult(set: FlightSet): Vector[String] =
     for
       summary <- set.all
       none    <- summary.noResult
     yield s"${summary.flight.id} has no result: ${none.why}"
 
-  /** A line for each flight that a busy machine flew badly. */
+  /** A line for each flight whose timing suffered from a busy machine. */
   private def starved(set: FlightSet): Vector[String] =
     for
       summary <- set.all
       why     <- summary.starved
     yield s"${summary.flight.id} was starved, and is not compared with other flights: $why"
 
-  /** A line for each flight that ended before its time. */
+  /** A line for each flight that ended early. */
   private def cutShort(set: FlightSet): Vector[String] =
     for
       summary <- set.all if summary.noResult.isEmpty
@@ -173,20 +171,20 @@ object SummaryTables:
       val flown = s"${summary.flownS.fixed(1)} of ${summary.flight.duration.toSeconds.brief} s"
       s"${summary.flight.id} was cut short, after $flown: $reason"
 
-  /** A line for each camera of which no image came. */
+  /** A line for each camera that delivered no image. */
   private def imageless(set: FlightSet): Vector[String] =
     for
       summary <- set.all
       camera  <- summary.imageless
     yield s"${summary.flight.id}: $camera"
 
-  /** A line for each scenario that is not known here. */
+  /** A line for each unknown scenario. */
   private def unknown(set: FlightSet): Vector[String] =
     set.all.filter(_.scenario.isEmpty).groupBy(_.scenarioName).toVector.sortBy(_._1).map: (name, flights) =>
       s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
         "its measures, limits and pictures are left out; the program that flew it has them"
 
-  /** A line for each flight that somebody paused. */
+  /** A line for each flight that was paused by a user. */
   private def paused(set: FlightSet): Vector[String] =
     for
       summary <- set.all
@@ -194,7 +192,8 @@ object SummaryTables:
     yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
       "nothing was decided; its times and distances include this, so it is not compared with other flights"
 
-  /** A line for each flight whose moves waited for answers: loops that predict gain by sending more of them.
+  /** A line for each flight whose moves waited for answers: there, predicting loops gain by sending more of
+    * them.
     */
   private def waiting(set: FlightSet): Vector[String] =
     for
@@ -210,15 +209,14 @@ object SummaryTables:
 
   private val Predicting = Set(LoopKind.Predictive.label, LoopKind.Plan.label)
 
-  /** In periods: some moves are always late. */
+  /** Mean interval between moves, in periods, from which a remark is made: some moves are always late. */
   private val WaitingFrom = 1.25
 
-  /** How to read [[twins]]. */
   val twinsNote: String =
     "Kolmogorov-Smirnov distances between live and virtual decisions, by role: of the age of the " +
       "vehicle's own data, and of the time since its last move. 0: distributed alike; 1: no overlap. " +
       s"Times within ${Compared.WithinMs} ms count as equal. Then the scenario's first measure of both flights"
 
-  /** `TimedOut` as `timed out`. */
+  /** An event kind in words: `TimedOut` as `timed out`. */
   def label(kind: EventKind): String =
     kind.toString.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)

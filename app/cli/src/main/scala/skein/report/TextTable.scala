@@ -22,8 +22,8 @@ final case class TextTable(header: Vector[String], rows: Vector[Vector[String]])
 
 object TextTable:
 
-  /** Names come from files and from other machines: what would move a terminal's cursor or colour it is shown
-    * as `�`.
+  /** Replaces control characters by `�`: names are from files and other machines, and could move a terminal's
+    * cursor or colour it.
     */
   def printable(text: String): String = text.map: letter =>
     if letter.isControl && letter != '\n' && letter != '\t' then '\ufffd' else letter

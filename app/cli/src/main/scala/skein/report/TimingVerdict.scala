@@ -3,18 +3,18 @@ package skein.report
 import skein.measure.{DistanceCurve, Distribution, FlightSet, FlightSummary}
 import skein.units.Decimals.fixed
 
-/** Whether the timing of flights is good enough, in one sentence: the answer of the guide to AirSim.
+/** Whether the timing of flights is good enough, in one sentence, by the criterion of the AirSim guide.
   *
-  * With a `paused` flight it is measured: a loop may be [[Limit]] off the truth, the margin of
-  * [[skein.optimise.LatencyBudget]]. Without one it is estimated. A vehicle flies on from where it was read
-  * until a command that answers to it arrives: that way may be [[Limit]] of the distance between vehicles. A
-  * loop that predicts knows of that way; of its predictions the median error takes its place.
+  * With a `paused` flight it is measured: a loop may deviate by [[Limit]] from the truth, the margin of
+  * [[skein.optimise.LatencyBudget]]. Without one it is estimated: a vehicle moves from where it was read
+  * until the command based on that reading arrives, and this distance may be [[Limit]] of the distance
+  * between vehicles. For a loop that predicts, the predictions' median error is taken instead.
   */
 object TimingVerdict:
-  /** A share: of the truth, or of the distance between vehicles. */
+  /** A fraction of the truth, or of the distance between vehicles. */
   val Limit = 0.05
 
-  /** Absent where only `paused` flew. */
+  /** The sentence; None where only `paused` was run. */
   def sentence(set: FlightSet): Option[String] =
     val flights = set.flights.filterNot(_.flight.isPaused)
     val said    = flights.groupBy(one => (one.name, one.flight.link)).toVector.sortBy((_, same) =>
@@ -25,8 +25,7 @@ object TimingVerdict:
       s"Timing, with ${(100 * Limit).fixed(0)} % as the limit: ${said.mkString("; ")}."
     )
 
-  /** @param same flights of one loop over one link
-    */
+  /** @param same flights of one loop over one link */
   private def of(set: FlightSet, same: Vector[FlightSummary]): String =
     val measured = Distribution.of(same.flatMap(set.deviation)).map(_.mean)
     same.head match
@@ -75,7 +74,7 @@ object TimingVerdict:
       yield metres.median
     apart.minOption
 
-  /** Of a large team, some tell enough. */
+  /** Most vehicles of a large team that are compared. */
   private val MostCompared = 8
 
   private def word(share: Double)    = if share > Limit then "bad" else "good"

@@ -2,17 +2,15 @@ package skein.report
 
 import java.nio.file.Path
 
-/** What a person is to type into a shell, which would take a name with spaces or quotation marks for
-  * something else.
-  */
+/** Quotes what a person is to type into a shell, which would misread names with spaces or quotation marks. */
 private[skein] object Typed:
 
-  /** As one word, and no option. */
+  /** A path as one shell word that is no option. */
   def path(path: Path): String =
     val text = if path.toString.startsWith("-") then s"./$path" else path.toString
     if text.matches("[\\p{L}\\p{N}._/+@%-]+") then text else s"'${text.replace("'", "'\\''")}'"
 
-  /** All recordings of a folder: the star has to stay outside the quotation marks. */
+  /** The pattern of all recordings of a folder: the star must stay outside the quotation marks. */
   def recordings(folder: Path): String =
     val all = "*.duckdb"
     if folder.toString.isEmpty then all else s"${path(folder)}/$all"

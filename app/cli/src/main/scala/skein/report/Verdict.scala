@@ -4,12 +4,12 @@ import skein.measure.Deviation
 import skein.record.{ClockKind, LoopKind}
 import skein.units.Decimals.fixed
 
-/** What the flights come to, in a sentence for each link: how far each loop was off the paused truth. */
+/** The result of the flights, in a sentence for each link: each loop's deviation from the paused truth. */
 object Verdict:
 
-  /** One sentence per link and clock over which several loops flew with the paper's policies, live flights
-    * last, and the link with the largest deviation last among them; empty without a paused flight. Without
-    * the loop `plan`, which decides otherwise and may well do better.
+  /** One sentence per link and clock with several loops that used the paper's policies, live flights last,
+    * and the link with the largest deviation last among them; empty without a paused flight. The loop `plan`
+    * is left out, since it decides otherwise and may do better.
     */
   def sentences(deviations: Seq[Deviation]): Vector[String] =
     val groups = deviations.toVector

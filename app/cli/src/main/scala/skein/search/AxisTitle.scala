@@ -3,14 +3,14 @@ package skein.search
 import java.util.Locale
 import skein.units.Decimals.significant
 
-/** What a searched parameter is called in pictures, by the name that it has in files: of `turnRateRadPerS`
-  * and of `turn-rate-rad-per-s` the turn rate in rad/s.
+/** A searched parameter's title in pictures, derived from its name in files: `turnRateRadPerS` and
+  * `turn-rate-rad-per-s` become the turn rate in rad/s.
   *
-  * @param unit empty where the name ends in none
+  * @param unit empty if the name ends in none
   */
 final case class AxisTitle(quantity: String, unit: String):
 
-  /** For an axis. */
+  /** The label of an axis, with the unit if there is one. */
   def text: String = if unit.isEmpty then quantity else s"$quantity, $unit"
 
   def at(value: Double): String = s"$quantity = ${value.significant(3)} $unit".trim
@@ -27,7 +27,7 @@ object AxisTitle:
       .getOrElse((Vector.empty, ""))
     AxisTitle(words.dropRight(ending.size).mkString(" "), unit)
 
-  /** How names end; the longer ending of two first. */
+  /** Endings of names with their units; the longer of two endings first. */
   private val units = Vector(
     "rad-per-s2" -> "rad/s²",
     "rad-per-s"  -> "rad/s",

@@ -2,9 +2,9 @@ package skein.search
 
 import skein.settings.PolicyFile
 
-/** What a search's result is held against, on the same episodes.
+/** The baseline with which a search's result is compared, on equal episodes.
   *
-  * @param word for the line that tells of it
+  * @param word for its line in the output
   * @param name for tables
   * @param parameters one per axis of a space of its own, by their names
   * @param label name and parameters, for people
@@ -13,7 +13,7 @@ final case class Baseline(word: String, name: String, parameters: Vector[(String
   def candidate: Vector[Double] = parameters.map(_._2)
 
 object Baseline:
-  /** The paper's policy of a role. */
+  /** The paper's policy of a role, as a baseline. */
   def of(paper: PolicyFile): Baseline =
     Baseline(
       "paper",

@@ -5,10 +5,10 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
 
-/** Computes blocks in other processes. */
+/** Computes blocks of work in other processes. */
 trait BlockExecutor:
-  /** @param onAnswer told each as it comes, in any order, on any thread
-    * @return the answers in the order of the works; none if it was cancelled; or why there are none
+  /** @param onAnswer called with each answer as it arrives, in any order, on any thread
+    * @return the answers in the order of the works; None if it was cancelled; Left states why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
@@ -16,11 +16,11 @@ trait BlockExecutor:
   ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]]
   def cancel(): Unit
 
-  /** Has works computed, and blocks the calling thread meanwhile.
+  /** Has works computed; blocks the calling thread.
     *
-    * @param isCancelled asked a few times a second; what is under way is given up then
-    * @param onAnswer told each as it comes, in any order, by the calling thread
-    * @param onWait called a few times a second by the calling thread
+    * @param isCancelled checked several times a second; true ends the computation
+    * @param onAnswer called with each answer as it arrives, in any order, on the calling thread
+    * @param onWait called several times a second on the calling thread
     */
   final def computed(
       works: Vector[ArraySeq[Byte]],
@@ -43,5 +43,5 @@ trait BlockExecutor:
     tellAll()
     Await.result(answered, 1.second)
 
-/** No more blocks are computed: for the reason told. */
+/** Thrown when no more blocks can be computed, with the reason. */
 final class BlocksFailed(reason: String) extends RuntimeException(reason)

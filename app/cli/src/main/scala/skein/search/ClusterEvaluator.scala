@@ -2,24 +2,23 @@ package skein.search
 
 import skein.optimise.{Evaluator, RunningStats}
 
-/** Has candidates judged elsewhere, in blocks: to the same bits as [[skein.optimise.ValueEvaluator]] judges
-  * them here. Blocks the calling thread meanwhile.
+/** Evaluates candidates in other processes, in blocks, with the bits of [[skein.optimise.ValueEvaluator]] in
+  * this one. Blocks the calling thread.
   *
   * @param atMost episodes of a block
-  * @param onWait called a few times a second by the thread that waits, with the call's episodes over all
+  * @param onWait called several times a second on the waiting thread, with the call's episodes over all
   *   candidates
   */
 final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int, onWait: Long => Unit)
     extends Evaluator:
 
-  /** A round at once: there are always enough workers. */
+  /** A whole round in one call: there are always enough workers. */
   override def sideBySide: Int = 1 << 30
 
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
     talliesUnless(() => false)(candidates, episodes).get
 
-  /** @throws BlocksFailed where there can be no answer
-    */
+  /** @throws BlocksFailed if there can be no answer */
   override def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range

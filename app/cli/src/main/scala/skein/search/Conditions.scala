@@ -11,11 +11,11 @@ import skein.units.{Decimals, Expect, Span}
 import upickle.default.ReadWriter
 import upickle.implicits.key
 
-/** Under what candidates are judged by forward simulation, as users name it.
+/** Conditions of forward simulation for evaluating candidates, in the user's terms.
   *
   * @param plant see [[VehicleChoice.parse]]
-  * @param eye a file of [[SensorFile]]: the pursuer knows of the evader by that alone
-  * @param movesInFlight of one vehicle, that may be unanswered
+  * @param eye a file of [[SensorFile]]: the pursuer observes the evader only through this sensor
+  * @param movesInFlight most unanswered moves of one vehicle
   */
 final case class Conditions(
     loop: String,
@@ -27,12 +27,11 @@ final case class Conditions(
     movesInFlight: Int = Moves.MostOutstanding
 ) derives ReadWriter:
 
-  /** The loop, for a person. */
   def loopText: String =
     if movesInFlight == Moves.MostOutstanding || loop == LoopKind.Paused.label then loop
     else s"$loop with ${Decimals.counted(movesInFlight, "move")} in flight"
 
-  /** @return the loop, or what was expected and came */
+  /** @return the loop, or Left with what was expected and what was given */
   def checked: Either[String, LoopKind] =
     for
       kind <- LoopKind.parse(loop).left.map("--loop: " + _)
@@ -46,7 +45,7 @@ final case class Conditions(
         s"--moves-in-flight: expected 1 to ${Steering.MostOutstanding}, came $movesInFlight"
     yield kind
 
-  /** @return or what was expected and came */
+  /** @return Left states what was expected and what was given */
   def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
       kind    <- checked
@@ -64,14 +63,14 @@ object Conditions:
     def batch(threads: Int, accelerator: Option[Accelerator] = None): DuelBatch =
       DuelBatch(duel, timing, vehicle.response, threads, accelerator)
 
-    /** The scalar reference, on one thread. */
+    /** The scalar reference engine, on one thread. */
     def reference: DuelBatch = DuelBatch(duel, timing, vehicle.response, threads = 1, isReference = true)
 
-    /** Whether the pursuer knows of the evader by a sensor alone. */
+    /** Whether the pursuer observes the evader only through a sensor. */
     def sees: Boolean = duel.pursuer.eye.isDefined
 
-    /** The ground truth with the same vehicles: the same period, a world that waits, and a pursuer that is
-      * told.
+    /** The ground truth with these vehicles and this period: a world that waits, and a pursuer that knows the
+      * evader's state.
       */
     def paused: Resolved =
       copy(
@@ -79,7 +78,7 @@ object Conditions:
         duel = duel.copy(pursuer = duel.pursuer.copy(eye = None))
       )
 
-  /** As `./skein fly` flies the loop, by the best model of the vehicles where it predicts. */
+  /** The loop's timing as `./skein fly` runs it; where it predicts, by the best model of the vehicles. */
   private def timing(
       loop: LoopKind,
       period: Span,

@@ -3,9 +3,9 @@ package skein.search
 import skein.lanes.Engine
 import skein.settings.VehicleChoice
 
-/** How many episodes are flown unless told otherwise: fewer where one costs more.
+/** Default numbers of episodes: fewer where one costs more.
   *
-  * @param freshEpisodes that a search's winner is measured on
+  * @param freshEpisodes for evaluating a search's winner
   * @param landscapeEpisodes for each point of the objective's landscape
   * @param onMap points on each side of a landscape of two parameters
   * @param cellEpisodes for each cell of a budget's map
@@ -18,7 +18,7 @@ final case class Effort(
     cellEpisodes: Int,
     onCurve: Int = Landscape.OnCurve
 ):
-  /** With no more episodes for a point of the landscape than the winner is measured on. */
+  /** This effort with at most `fresh` episodes for a point of the landscape. */
   def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
 
 object Effort:
@@ -35,7 +35,7 @@ object Effort:
   private val Dear   = Effort(512, 16, 21, 30)
   private val Dearer = Effort(64, 4, 13, 4)
 
-  /** Of duels.
+  /** The effort of duels.
     *
     * @param together of candidates that share their episodes
     * @param alone of worlds with delays of their own
@@ -53,10 +53,10 @@ object Effort:
     val worlds = level(alone, vehicle.fliesInSteps || sees)
     Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
 
-  /** Fresh episodes of a team: so few that the scalar engine, too, flies them in seconds. */
+  /** Fresh episodes of a team: few enough for the scalar engine to simulate in seconds. */
   val TeamsFresh = 256
 
-  /** Of flights in virtual time, some a second. */
+  /** The effort of flights in virtual time, which run at some a second. */
   val OfFlights: Effort = Effort(16, 1, 5, 2, onCurve = 9)
 
   def ofTeam(engine: Engine): Effort =

@@ -1,12 +1,12 @@
 package skein.search
 
-/** What judges candidates in the course of a search. */
+/** What an evaluator evaluates in the course of a search. */
 enum Judge:
-  /** Many candidates on the same episodes. */
+  /** Many candidates, all on equal episodes. */
   case Candidates
 
-  /** What was found, alone on episodes that are fresh. */
+  /** The best candidate, alone on fresh episodes. */
   case Winner
 
-  /** What it is held against, alone. */
+  /** The baseline, alone on these fresh episodes. */
   case Baseline

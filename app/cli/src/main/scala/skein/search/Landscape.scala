@@ -4,11 +4,12 @@ import skein.measure.Distribution
 import skein.optimise.{Evaluator, RunningStats}
 import skein.policy.SearchSpace
 
-/** The objective around a candidate, along one or two axes of the space with the others at the candidate.
+/** The objective around a candidate, along one or two axes of the space, with the other parameters at the
+  * candidate's values.
   *
   * @param x number of the axis
-  * @param y of the second, if there is one
-  * @param cells by y, then by x; one row without y. Rows are missing at the end of a map that is not done
+  * @param y number of the second axis, if there is one
+  * @param cells by y, then by x; one row without y. An unfinished map lacks rows at the end
   */
 final case class Landscape(
     space: SearchSpace,
@@ -20,14 +21,14 @@ final case class Landscape(
     cells: Vector[Vector[RunningStats]]
 ):
 
-  /** The median of the cells' standard errors: so much do means differ by chance alone, or less where their
-    * episodes' chances move them alike.
+  /** The median of the cells' standard errors: a bound on how much means differ by chance alone; less where
+    * their episodes share random numbers.
     */
   def standardError: Double =
     Distribution.of(cells.flatten.map(tally => tally.sd / math.sqrt(tally.count)).filter(_.isFinite))
       .fold(0.0)(_.median)
 
-  /** One row per cell; a header with the axes' names. */
+  /** The CSV table: a header with the axes' names, and a row per cell. */
   def csv: String =
     val header = (Vector(space.axes(x).name) ++ y.map(space.axes(_).name) ++ Vector(
       "mean",
@@ -42,17 +43,17 @@ final case class Landscape(
     (header +: rows).mkString("", "\n", "\n")
 
 object Landscape:
-  /** Points along the axis of a curve, and along each of a map. */
+  /** Points along the axis of a curve, and along each axis of a map. */
   val OnCurve = 61
   val OnMap   = 41
 
   private val Probes = 9
 
   /** @param episodes of every cell
-    * @param isStopped asked now and then, from any thread
+    * @param isStopped checked from time to time, from any thread
     * @param onMap points along each axis of a map
-    * @param onRow told of the map after each of its rows
-    * @return none if it was stopped
+    * @param onRow called with the map after each of its rows
+    * @return None if it was stopped
     */
   def of(
       space: SearchSpace,

@@ -5,9 +5,9 @@ import skein.plot.*
 import skein.units.Decimals.significant
 
 /** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found
-  * candidate marked, and the defaults. The axis, or the scale of colours, fits the better nine tenths where
-  * the rest would take most of it. A map's legend tells the standard error of a cell, since pure noise has
-  * all the colours too.
+  * candidate and the defaults are marked. The axis, or the scale of colours, fits the better nine tenths
+  * where the rest would take most of it. A map's legend states the standard error of a cell, since pure noise
+  * shows all the colours, too.
   */
 object LandscapeFigure:
   private val width  = 560.0
@@ -16,8 +16,8 @@ object LandscapeFigure:
   private val found  = Colour(0xd55e00)
   private val plain  = Colour(0x111111)
 
-  /** @param value what the objective is, with its unit, for the axis or the scale
-    * @param direction where the objective is to go
+  /** @param value the objective with its unit, for the axis or the scale
+    * @param direction in which the objective improves
     */
   def apply(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
     if landscape.y.isEmpty then curve(landscape, title, value, direction)
@@ -25,7 +25,7 @@ object LandscapeFigure:
 
   private val MostNamed = 3
 
-  /** At which values the parameters are that are not drawn, if there are any: a few by their names. */
+  /** Values of the parameters that are not drawn, if there are any: a few by name. */
   private[search] def fixed(landscape: Landscape): Option[String] =
     val drawn  = landscape.x +: landscape.y.toVector
     val others = landscape.space.axes.indices.toVector.filterNot(drawn.contains)
@@ -36,13 +36,14 @@ object LandscapeFigure:
           .map(axis => AxisTitle.of(landscape.space.axes(axis).name).at(landscape.best(axis)))
           .mkString("at the best: ", ", ", "")
 
-  /** Of values that are no number, as of vehicles that fly off without end, nothing is drawn. */
+  /** Draws a curve; NaN values, as of vehicles that fly away, are left out. */
   private def curve(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
     val axis   = landscape.space.axes(landscape.x)
     val points = landscape.xs.zip(landscape.cells.head).filter((_, tally) =>
       (tally.mean + tally.sd).isFinite && (tally.mean - tally.sd).isFinite
     )
-    // What flies off shall not make the rest flat: the scale of a map's colours fits here, too.
+    // Values of vehicles that fly away must not make the rest flat: the scale of a map's colours is used
+    // here, too.
     val fitting     = LandscapeScale.of(points.map(_._2.mean), direction)
     val near        = points.filter((_, tally) => tally.mean >= fitting.from && tally.mean <= fitting.to)
     val (low, high) = ends(near.map((_, tally) => (mean = tally.mean, sd = tally.sd)))
@@ -77,11 +78,11 @@ object LandscapeFigure:
       )
     )
 
-  /** Broad and pale below the thin default, so that both are seen where they are the same. */
+  /** Broad and pale below the thin line of the default, so that both are visible where they coincide. */
   private val foundLine   = Stroke(found.tinted(0.6), 5)
   private val defaultLine = Stroke(plain, 1.4, Vector(5, 3))
 
-  /** Of an axis for means and most of their standard deviations. */
+  /** Ends of an axis that contain the means and most standard deviations. */
   private[search] def ends(near: Vector[(mean: Double, sd: Double)]): (Double, Double) =
     if near.isEmpty then (0.0, 1.0)
     else
@@ -127,7 +128,7 @@ object LandscapeFigure:
         panel.xAxis ++ panel.yAxis ++ (best :+ paper)
     )
 
-  /** Wide enough to be seen around the default. */
+  /** A ring large enough to be visible around the default's mark. */
   private def ring(centre: Point): Vector[Mark] = Vector(
     Mark.Disc(centre, 7.5, Some(Stroke(Colour(0xffffff), 4.2))),
     Mark.Disc(centre, 7.5, Some(Stroke(found, 2.2)))

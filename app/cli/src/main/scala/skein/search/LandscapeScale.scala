@@ -4,16 +4,16 @@ import skein.measure.Distribution
 import skein.optimise.Direction
 import skein.plot.ColourScale
 
-/** Which colours a map of an objective has. */
+/** Chooses the range of colours for a map of an objective. */
 object LandscapeScale:
-  /** This share of the cells, the better ones, is told apart in any case. */
+  /** The fraction of cells, the better ones, that are always distinguishable. */
   private val Told = 0.9
 
-  /** Of the scale, so much may belong to the rest without the scale being cut. */
+  /** The greatest fraction of the scale that the other cells may take before it is cut. */
   private val MostOfRest = 0.25
 
-  /** From the least to the most; where the worst tenth of the cells would take more than a quarter of that,
-    * the scale ends before it, so that what is near the best does not all have one colour.
+  /** A scale from the least to the greatest mean; where the worst tenth of the cells would take more than a
+    * quarter of it, the scale ends before them, so that cells near the best do not all have one colour.
     */
   def of(means: Vector[Double], direction: Direction): ColourScale =
     Distribution.of(means.filter(_.isFinite).map(direction.sign * _)) match

@@ -5,11 +5,9 @@ import java.security.MessageDigest
 import java.util.HexFormat
 import skein.units.Expect
 
-/** Files that a question names: what they held when it was asked. */
+/** Digests of the files that a question names, to detect later changes. */
 object NamedFiles:
-  /** SHA-256 of those of the names that are files, with or without a word and a colon before (`file:`,
-    * `mujoco:`).
-    */
+  /** SHA-256 of those names that are files, with or without a prefix such as `file:` or `mujoco:`. */
   def digests(names: Seq[String]): Map[String, String] =
     (for
       name <- names
@@ -23,16 +21,16 @@ object NamedFiles:
     try name.nonEmpty && Files.isRegularFile(Path.of(name))
     catch case _: InvalidPathException => false
 
-  /** Which of the files hold something else now, or are gone.
+  /** Files that have changed since, or no longer exist.
     *
-    * @param before of [[digests]]
+    * @param before result of [[digests]]
     */
   def changed(before: Map[String, String]): Vector[String] =
     before.filter((path, digest) => !digests(Seq(path)).get(path).contains(digest)).keys.toVector.sorted
 
-  /** @param before of [[digests]]
+  /** @param before result of [[digests]]
     * @param began for example `the search`
-    * @return or which of the files do not let it be gone on with
+    * @return Left names the files whose change forbids continuing
     */
   def unchanged(before: Map[String, String], began: String): Either[String, Unit] =
     val (others, gone) = changed(before).partition(isFile)

@@ -3,8 +3,8 @@ package skein.search
 import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats}
 
-/** Judges as another does, and notes what flies the candidates: their policies may be of several forms. One
-  * call at a time.
+/** Delegates to another evaluator, and records which engine evaluates each candidate: their policies may be
+  * of several forms. One call at a time.
   *
   * @param engine of a candidate
   */
@@ -24,7 +24,7 @@ final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => Engine) exte
     note(of, episodes)
     by.talliesUnless(isCancelled)(of, episodes)
 
-  /** A candidate that is judged in several rounds flies the first episode in one of them. */
+  /** Records the engines; of a candidate's several rounds, only the one with the first episode counts. */
   private def note(of: Vector[Vector[Double]], episodes: Range): Unit =
     if episodes.start == 0 then of.foreach(each => candidates(engine(each)) += 1)
 

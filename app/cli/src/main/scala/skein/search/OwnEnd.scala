@@ -7,20 +7,20 @@ import scala.jdk.OptionConverters.*
 import scala.util.Using
 import skein.scenario.{Known, Scenario}
 
-/** Whether a scenario may be over before the duration: forward simulation flies all of it. */
+/** Whether a scenario may end before its duration: forward simulation always simulates all of it. */
 private object OwnEnd:
   def has(scenario: Scenario): Boolean =
     val declaring = scenario.getClass.getMethod("isOver", classOf[Known]).getDeclaringClass
     declaring != classOf[Scenario] && !forwards(declaring)
 
-  /** Whether the method was not written in this class: the compiler puts one there that calls the trait's. */
+  /** Whether the class only inherits the method: the compiler generates one that calls the trait's. */
   private def forwards(declaring: Class[?]): Boolean =
     val file = s"/${declaring.getName.replace('.', '/')}.class"
     Using.resource(declaring.getResourceAsStream(file)): stream =>
       val methods = ClassFile.of().parse(stream.readAllBytes()).methods.asScala
       methods.filter(_.methodName.equalsString("isOver")).flatMap(_.code.toScala).forall: code =>
         val instructions = code.elementList.asScala.collect { case each: Instruction => each }
-        // This, what is known, the call and the return.
+        // Loads this and the argument, calls, and returns.
         instructions.size == 4 && instructions.exists:
           case call: InvokeInstruction => call.name.equalsString("isOver$")
           case _                       => false

@@ -4,42 +4,43 @@ import skein.lanes.{Accelerator, Engine}
 import skein.optimise.{Evaluator, RunningStats, Search, SearchMethod, ValueEvaluator, WeightedSum}
 import skein.policy.SearchSpace
 
-/** A search whose question was read: whoever reads the same question judges with the same bits. */
+/** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.
+  */
 trait ReadySearch:
   def search: Search
   def space: SearchSpace
   def durationS: Double
   def periodMs: Double
 
-  /** What flies, for people, and in a word. */
+  /** The vehicle model: in a line for people, and in a word. */
   def vehicles: String
   def model: String
 
-  /** The objective as users write it, with its direction, and without. */
+  /** The objective as users write it: with its direction, and without. */
   def text: String
   def formula: String
 
-  /** Of the value; empty where its terms differ. */
+  /** The objective's unit; empty where its terms differ. */
   def unit: String
 
-  /** Of what is searched: a policy family, a scenario. */
+  /** Name of the policy family or scenario that is searched. */
   def name: String
 
-  /** Who is searched, and against whom.
+  /** The subject of the search and its opponent, in a line.
     *
-    * @param axes what is searched of it
+    * @param axes the searched parameters
     */
   def subject(axes: String): String
 
-  /** A candidate for people. */
+  /** Describes a candidate's parameters for people. */
   def label(candidate: Vector[Double]): String
 
   def baseline: Baseline
 
-  /** What judges in this process, one call at a time. */
+  /** Evaluators in this process, for one call at a time. */
   def judges(threads: Int): Judge => ValueEvaluator
 
-  /** Of a candidate and of the baseline; or none if it was cancelled. */
+  /** Statistics of a candidate and of the baseline; None if it was cancelled. */
   def measured(
       by: Judge => Evaluator,
       candidate: Vector[Double],
@@ -47,15 +48,16 @@ trait ReadySearch:
       isCancelled: () => Boolean
   ): Option[(RunningStats, RunningStats)]
 
-  /** What a candidate comes to by the scalar reference; none where that flies it anyhow, or nothing forward.
+  /** A candidate's statistics by the scalar reference; None where that is the engine anyhow, or forward
+    * simulation cannot be used.
     */
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats]
 
   /** What flies a candidate, or the baseline, where it is judged. */
   def engine(candidate: Vector[Double], judge: Judge): Engine
 
-  /** What flies the candidates, and where it is something else, what flies the winner's fresh episodes and
-    * the baseline's.
+  /** Describes the engine of the candidates, and if they differ, those of the winner's fresh episodes and of
+    * the baseline.
     */
   final def engines: String =
     val together = engine(space.defaults, Judge.Candidates)
@@ -76,21 +78,21 @@ trait ReadySearch:
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
   def rate(threads: Int): Option[String] = None
 
-  /** Whether forward simulation flies it, and not flights in virtual time. */
+  /** Whether it uses forward simulation, and not flights in virtual time. */
   def fliesForward: Boolean = true
 
   def effort: Effort
 
-  /** Episodes of a block of work for others: about half a second of one core's. */
+  /** Episodes of a block of work for other processes: about half a second of one core. */
   def blockEpisodes: Int
 
-  /** Fresh episodes on which the winner is measured, where the user chose. */
+  /** Fresh episodes for the winner, if the user chose. */
   def fresh: Option[Int]
 
-  /** What was found, as a file that `./skein fly` takes: its name and its text. */
+  /** The result as a file that `./skein fly` accepts: its name and its text. */
   def file(found: Found): (String, String)
 
-  /** The method, the loop and the link, by their names. */
+  /** Names of the method, the loop and the link. */
   def method: String
   def loop: String
   def link: String
@@ -99,7 +101,7 @@ trait ReadySearch:
 
   def title: String = s"$name, $under"
 
-  /** For an axis of a picture. */
+  /** The objective with its unit, for the axis of a picture. */
   def measure: String = WeightedSum.withUnit(formula, unit)
 
 object ReadySearch:

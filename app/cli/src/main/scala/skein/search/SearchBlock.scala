@@ -6,11 +6,11 @@ import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.search.BlockBytes.given
 import skein.units.Expect
 
-/** A part of a call of an evaluator, which any process with the same question answers with the same bits: so
-  * many candidates on so many episodes.
+/** A part of an evaluator's call, which any process with an equal question answers with identical bits: some
+  * candidates on some episodes.
   *
-  * @param isWhole whether the episodes are all of the call, so that tallies can be told; else each episode's
-  *   value is
+  * @param isWhole whether the episodes are all of the call, so that statistics suffice; else every episode's
+  *   value is needed
   */
 final case class SearchBlock(
     judge: Judge,
@@ -22,14 +22,13 @@ final case class SearchBlock(
 
   def bytes: ArraySeq[Byte] = BlockBytes.of(this)
 
-  /** Of each candidate its tally, or of one candidate each episode's value. */
+  /** Encodes each candidate's statistics, or, for one candidate, every episode's value. */
   def answer(by: Judge => ValueEvaluator): ArraySeq[Byte] = BlockBytes.of:
     if isWhole then Answer.Tallies(by(judge).tallies(candidates, episodes))
     else
       val values = by(judge).valuesUnless(() => false)(candidates, episodes).get
       Answer.Values(values.flatMap(_.toVector))
 
-  /** What an answer says. */
   private def read(answer: ArraySeq[Byte]): Either[String, Answer] =
     BlockBytes
       .read[Answer](answer, "an answer to a block of a search")
@@ -51,20 +50,21 @@ object SearchBlock:
   private given Codec[Answer] = Codec.derived
   private given Codec[SearchBlock] = Codec.derived
 
-  /** Bytes of a tally. */
+  /** Bytes of one candidate's encoded statistics. */
   private val OfTally = 20
 
-  /** Of what a block asks, and of its answer. */
+  /** Most bytes of a block's question, and of its answer. */
   private val MostBytes = 512 << 10
 
-  /** Candidates fly side by side by lanes: so many of them, or twice. */
+  /** Candidates in a block with SIMD: this many, or twice. */
   private val Lanes = 16
 
-  /** Episodes of a block at most. */
+  /** Most episodes that one block may contain. */
   val MostEpisodes: Int = MostBytes / 8
 
-  /** Cuts a call into blocks of at most so many episodes, over all their candidates; into sixteen or more,
-    * where they do not become too small. Candidates that would not fit are parted by episodes.
+  /** Divides a call into blocks of at most `atMost` episodes, over all their candidates; into at least
+    * sixteen, unless they would become too small. A candidate that does not fit into a block is divided by
+    * episodes.
     */
   def cut(
       judge: Judge,
@@ -83,11 +83,11 @@ object SearchBlock:
       val group   = if several > Lanes then several / Lanes * Lanes else several
       candidates.grouped(group).map(SearchBlock(judge, _, episodes, isWhole = true)).toVector
 
-  /** Puts the answers of a call's blocks together.
+  /** Combines the answers of a call's blocks.
     *
     * @param episodes of the call
-    * @return a tally for each candidate in their order, equal to an undivided call's to the bit; or what was
-    *   wrong
+    * @return statistics for each candidate in order, bit-identical to those of an undivided call; Left states
+    *   what was wrong
     */
   def together(
       blocks: Vector[SearchBlock],
@@ -107,7 +107,7 @@ object SearchBlock:
             parts = Vector.empty
       tallies.result()
 
-  /** @return or what was expected, and what came */
+  /** @return Left states what was expected and what was received */
   def read(bytes: ArraySeq[Byte]): Either[String, SearchBlock] =
     BlockBytes
       .read[SearchBlock](bytes, "a block of a search")

@@ -3,9 +3,9 @@ package skein.search
 import skein.optimise.{CmaEs, MethodState, Scored, SearchState, RunningStats}
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
 
-/** A search as it stands on disk: the question, and the state it has come to.
+/** A search on disk: its question, and its current state.
   *
-  * @param files [[NamedFiles.digests]] of what the question names
+  * @param files [[NamedFiles.digests]] of the names in the question
   */
 final case class SearchFile(
     version: Int,
@@ -22,7 +22,7 @@ object SearchFile:
 
   type Question = SearchQuestion | TeamQuestion
 
-  /** What a question names, some of which may be files. */
+  /** Names in a question, some of which may be files. */
   def named(question: Question): Seq[String] =
     val (link, conditions) = question match
       case duel: SearchQuestion => (duel.link, duel.conditions)

@@ -18,13 +18,13 @@ import skein.settings.PolicyFile
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** What a search is asked, in the words of the user; enough to go on with it, or to ask again.
+/** A search's question in the user's words: enough to continue it, or to repeat it.
   *
   * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role
-  * @param candidates to be tried in all, about
-  * @param episodes that each flies; when racing, in the first round
-  * @param population of a generation, for the methods that have them
-  * @param fresh episodes on which the winner is measured; without it, as many as the engine flies quickly
+  * @param candidates approximate number to evaluate
+  * @param episodes of each candidate; when racing, in the first round
+  * @param population of a generation, for methods that have them
+  * @param fresh episodes for the winner; without it, as many as the engine simulates quickly
   */
 final case class SearchQuestion(
     family: String,
@@ -41,7 +41,7 @@ final case class SearchQuestion(
     fresh: Option[Int] = None
 ) derives ReadWriter:
 
-  /** @return or what was expected, what came, and in which option */
+  /** @return Left states what was expected, what was given, and in which option */
   def setup(using scenarios: Scenarios): Either[String, SearchSetup] =
     for
       family    <- scenarios.family(family).left.map("--family: " + _)
@@ -63,7 +63,7 @@ object SearchQuestion:
   private val MostRacing  = 100_000
   private val MostEpisode = 1_000_000
 
-  /** @return or what was expected, what came, and in which option */
+  /** @return Left states what was expected, what was given, and in which option */
   def method(
       name: String,
       candidates: Int,
@@ -105,7 +105,7 @@ object SearchQuestion:
 
 /** A search for a duel's policy, ready to run.
   *
-  * @param accelerator on which candidates fly, if that is asked for
+  * @param accelerator that simulates the candidates, if requested
   */
 final case class SearchSetup(
     question: SearchQuestion,
@@ -145,8 +145,7 @@ final case class SearchSetup(
 
   def batch(threads: Int): DuelBatch = conditions.batch(threads, accelerator)
 
-  /** @param many whether many candidates will meet the same episodes
-    */
+  /** @param many whether many candidates will have equal episodes */
   def evaluator(
       batch: DuelBatch,
       of: PolicyFamily = family,
@@ -202,13 +201,13 @@ final case class SearchSetup(
 
   private lazy val sharing = shares(by, accelerator, engine(family.defaultPolicy, share = false))
 
-  /** Is asked what flies, and flies nothing. */
+  /** Only queried for the engine's name. */
   private lazy val asked = batch(1)
 
   private def pair(of: HeadingPolicy): (HeadingPolicy, HeadingPolicy) =
     if role == Role.Pursuer then (of, opponent.policy) else (opponent.policy, of)
 
-  /** As a policy file. */
+  /** The found policy as a policy file: its name and its text. */
   def file(found: Found): (String, String) =
     val eye     = question.conditions.eye.fold("")(file => s"  eye = ${quoteString(file)}\n")
     val remarks =

@@ -8,14 +8,13 @@ import skein.report.{Section, TextTable}
 import skein.units.Decimals.significant
 import skein.units.Interval
 
-/** What a search came to, for the terminal and as a table. */
+/** A search's result, for the terminal and as a table. */
 final case class SearchResult(ready: ReadySearch, found: Found):
   import SearchResult.*
   import found.{baseline, fresh}
 
   private val parameters = ready.space.axes.map(_.name).zip(found.best)
 
-  /** For the terminal. */
   def summary: String =
     val shown = parameters.take(MostShown).map((name, value) => s"$name = ${value.significant(4)}")
     val more  = parameters.size - shown.size
@@ -26,7 +25,6 @@ final case class SearchResult(ready: ReadySearch, found: Found):
 
   private def interval(tally: RunningStats) = SearchResult.interval(tally, ready.unit)
 
-  /** As a table: what was found, and the baseline beside it. */
   def section: Section =
     def row(name: String, parameters: Seq[(String, Double)], tally: RunningStats, engine: Engine) = Vector(
       name,
@@ -54,20 +52,20 @@ final case class SearchResult(ready: ReadySearch, found: Found):
     )
 
 object SearchResult:
-  /** Fresh episodes count from here: above the search's own and the play-off's. */
+  /** Fresh episodes have numbers from here on: above those of the search and the play-off. */
   val FreshFrom: Int = 1 << 25
 
   private val MostShown = 12
 
-  /** Of the winner's fresh episodes, on which it is held to the scalar reference: these first. */
+  /** Number of the winner's fresh episodes, from the first, that are compared with the scalar reference. */
   val Checked = 8
 
-  /** What is to be known where the scalar reference comes to something else on the same episodes than what
-    * flew them. Flights differ where rounding decides at a threshold; means over some hardly do.
+  /** A warning if the scalar reference differs on equal episodes. Single flights differ where rounding
+    * decides at a threshold; means over several hardly do.
     */
   def disagreement(flown: RunningStats, reference: RunningStats, unit: String): Option[String] =
     val allowed = Allowed * reference.mean.abs + flown.halfWidth95 + reference.halfWidth95
-    // What is no number agrees with nothing.
+    // NaN agrees with nothing.
     Option.unless((flown.mean - reference.mean).abs <= allowed)(
       s"the scalar engine comes to ${interval(reference, unit)} on the same ${reference.count} episodes, and " +
         s"this search to ${interval(flown, unit)}: the policy computes what floats do not hold; fly it before " +
@@ -76,7 +74,7 @@ object SearchResult:
 
   private val Allowed = 0.02
 
-  /** What is to be known where a candidate lies at limits of what was searched: farther on may be better. */
+  /** A warning if a candidate lies at limits of the searched space: beyond them may be better. */
   def atLimits(space: SearchSpace, candidate: Vector[Double]): Option[String] =
     val found = space.axes.zip(candidate).collect:
       case (axis, value) if axis.margin(value) <= NearLimit =>
@@ -87,12 +85,12 @@ object SearchResult:
       s"the best lies at a limit of what was searched: ${found.mkString(" and ")}; farther on may be better"
     )
 
-  /** Of an axis' width. */
+  /** Distance from a limit that counts as at it, as a fraction of the axis. */
   private val NearLimit = 0.01
 
   /** @param state with a best candidate
-    * @param isCancelled asked now and then, from any thread
-    * @return or none if it was cancelled
+    * @param isCancelled checked from time to time, from any thread
+    * @return None if it was cancelled
     */
   def measured(
       ready: ReadySearch,
@@ -106,11 +104,11 @@ object SearchResult:
       Found(state, best, fresh, baseline)
     )
 
-  /** A mean with the half width of its interval of 95 %. */
+  /** A mean with the half width of its 95 % interval. */
   def interval(tally: RunningStats, unit: String): String =
     s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
 
-  /** The head of a policy file's remarks: what its policy came to, and the paper's beside it. */
+  /** The first remarks of a policy file: its policy's result, and the paper's. */
   def objective(
       text: String,
       unit: String,

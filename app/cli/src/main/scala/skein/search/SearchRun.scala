@@ -3,8 +3,8 @@ package skein.search
 import java.nio.file.Path
 import skein.optimise.{Evaluator, Search, SearchState}
 
-/** Steps a search to its end, or until it is stopped, and keeps its state on disk: a kill loses a few
-  * seconds.
+/** Runs a search to its end, or until it is stopped, and keeps its state on disk: killing the process loses a
+  * few seconds.
   */
 final class SearchRun(
     search: Search,
@@ -17,9 +17,9 @@ final class SearchRun(
 
   private val files = NamedFiles.digests(SearchFile.named(question))
 
-  /** @param isStopped asked now and then, from any thread; the step under way is given up then
-    * @param onStep told of every state
-    * @return the last state, or why it could not be kept
+  /** @param isStopped checked from time to time, from any thread; true abandons the current step
+    * @param onStep called with every state
+    * @return the last state; Left states why it could not be stored
     */
   def run(
       from: SearchState,

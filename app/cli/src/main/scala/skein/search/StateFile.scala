@@ -10,23 +10,22 @@ import skein.record.FileReason
 import upickle.default.{ReadWriter, write as writeJson}
 
 /** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it:
-  * numbers that were damaged or edited would still be numbers, and what goes on from them would end as no
-  * unbroken run does.
+  * damaged or edited numbers would otherwise be read as valid, and the continued run would end differently
+  * from an uninterrupted one.
   *
   * @param name of the file, in its folder
-  * @param version of the object, which its first field is
-  * @param what it is the state of, in words, for example "a search"
+  * @param version of the object, its first field
+  * @param what the state belongs to, in words, for example "a search"
   */
 private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, what: String):
   import StateFile.*
 
-  /** With its checksum. */
+  /** The object's text with its checksum. */
   def json(state: A): String =
     val text = writeJson(state).stripSuffix("}")
     s"$text$Seal${sumOf(text)}}"
 
-  /** @return what [[json]] was made of, or what was expected and came
-    */
+  /** Parses what [[json]] wrote; Left states what was expected and what was found. */
   def parse(text: String): Either[String, A] =
     val at = text.lastIndexOf(Seal)
     text match
@@ -43,7 +42,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
 
   /** Reads the file of a folder.
     *
-    * @return or why it cannot be gone on with
+    * @return Left states why the run cannot be continued
     */
   def read(folder: Path): Either[String, A] =
     val file = folder.resolve(name)
@@ -60,9 +59,9 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
         Left(s"$file: expected the state of $what, came no text")
       case failed: IOException => Left(s"cannot read $file, the state of $what: ${FileReason.of(failed)}")
 
-  /** Replaces the file, so that whatever happens there is the old one or the new one.
+  /** Replaces the file atomically: a crash leaves the old or the new content.
     *
-    * @return or why not
+    * @return Left states why not
     */
   def write(folder: Path, state: A): Either[String, Unit] =
     replace(folder.resolve(name), folder.resolve(s"$name.new"))(_.write(json(state).getBytes(UTF_8)))
@@ -76,10 +75,10 @@ private[skein] object StateFile:
     sum.update(text.getBytes("UTF-8"))
     sum.getValue.toString
 
-  /** Replaces a file, so that whatever happens there is the old one or the new one.
+  /** Replaces a file atomically: a crash leaves the old or the new content.
     *
-    * @param part where it is written before; nothing is left there but by a process that was killed
-    * @return or why not
+    * @param part path of the temporary file; only a killed process leaves it behind
+    * @return Left states why not
     */
   def replace(target: Path, part: Path)(write: OutputStream => Unit): Either[String, Unit] =
     try
@@ -92,5 +91,5 @@ private[skein] object StateFile:
         part.toFile.delete(): Unit
         Left(s"cannot write $target: ${FileReason.of(failed)}")
 
-  /** Bytes read or written at once. */
+  /** Size of the buffer for reading and writing, bytes. */
   val Buffer: Int = 1 << 20

@@ -20,15 +20,15 @@ import skein.units.Decimals.significant
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** What a search over a scenario's settings is asked, in the words of the user; enough to go on with it, or
-  * to ask again.
+/** The question of a search over a scenario's settings, in the user's words: enough to continue it, or to
+  * repeat it.
   *
   * @param set settings that have one value, by their keys
   * @param objective a sum of the scenario's measures
-  * @param candidates to be tried in all, about
-  * @param episodes that each flies; when racing, in the first round
-  * @param population of a generation, for the methods that have them
-  * @param fresh episodes on which the winner is measured
+  * @param candidates approximate number to evaluate
+  * @param episodes of each candidate; when racing, in the first round
+  * @param population of a generation, for methods that have them
+  * @param fresh episodes for the winner
   */
 final case class TeamQuestion(
     scenario: String,
@@ -46,7 +46,7 @@ final case class TeamQuestion(
 ) derives ReadWriter:
   import TeamQuestion.*
 
-  /** @return or what was expected, what came, and in which option */
+  /** @return Left states what was expected, what was given, and in which option */
   def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
       ready <- read(plantIsTold = conditions.plant != Plant)
@@ -55,9 +55,9 @@ final case class TeamQuestion(
           s"flights in virtual time, came some ${ready.search.expected}"
     yield ready
 
-  /** The same, however many flights it asks for.
+  /** Resolves the question like `setup`, but with any number of flights.
     *
-    * @param plantIsTold whether a user chose it
+    * @param plantIsTold whether a user chose the plant
     */
   def read(plantIsTold: Boolean)(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
@@ -70,23 +70,23 @@ final case class TeamQuestion(
       _ <- Expect.that(axes.map(_.name).distinct.size == axes.size):
         s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
       space = SearchSpace(axes)
-      // A setting's bounds may be wrong together with another's.
+      // A setting's bounds may be invalid only in combination with another's.
       corners <-
         Expect.each(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
       _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
       by <- TeamObjective.ofAll(objective, plain).left.map("--objective: " + _)
-      // A measure's name may have a setting in it.
+      // A measure's name may contain a setting's value.
       _      <- Expect.each(corners)(TeamObjective.ofAll(objective, _)).left.map("--objective, --vary: " + _)
       engine <- engine(by, plain +: corners, plantIsTold)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield TeamSetup(this, kind, space, by, engine, method)
 
-  /** By lanes, where forward simulation knows the policies and the measures; world by world, where it knows
-    * the policies; else in flights in virtual time.
+  /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
+    * world, where it supports only the policies; else flights in virtual time.
     *
-    * @param all the scenario as it is, first, and with the bounds of what is searched
+    * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */
   private def engine(by: TeamObjective, all: Vector[Scenario], plantIsTold: Boolean)(using
       Scenarios
@@ -111,14 +111,14 @@ final case class TeamQuestion(
           else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain))
 
 object TeamQuestion:
-  /** What flies where nothing is told: teams fly low, where the model of three parameters does not hold. */
+  /** The default plant: teams fly low, where the model of three parameters is not valid. */
   val Plant = "drag"
 
   private def altitudesM(scenario: Scenario) = scenario.agents.map(-_.startPositionNed.z)
 
   private val MostFresh = 1_000_000
 
-  /** Settings by key, with those of a candidate. */
+  /** The settings by key, with those of a candidate. */
   def settings(set: Map[String, String], space: SearchSpace, candidate: Vector[Double]): Map[String, String] =
     set ++ space.axes.zip(candidate).map((axis, value) => axis.name -> value.toString)
 
@@ -138,12 +138,12 @@ object TeamQuestion:
             s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** What flies a team's candidates.
+/** The engine that evaluates a team's candidates.
   *
-  * @param isVirtual whether candidates fly some a second
+  * @param isVirtual whether only some candidates are evaluated a second
   */
 enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
-  /** By measures of quantities. */
+  /** Forward simulation with measures of quantities. */
   case Reduced(conditions: Conditions.Resolved, delays: Delays)
       extends TeamEngine(false, conditions.vehicle.description, conditions.vehicle.name)
 
@@ -153,8 +153,8 @@ enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String)
 
 /** A search over a scenario's settings, ready to run.
   *
-  * @param objective of the scenario as it is unless told otherwise
-  * @param accelerator on which candidates fly, if that is asked for
+  * @param objective of the scenario with its default settings
+  * @param accelerator that simulates the candidates, if requested
   */
 final case class TeamSetup(
     question: TeamQuestion,
@@ -182,7 +182,7 @@ final case class TeamSetup(
   def label(candidate: Vector[Double]): String = told(candidate, " ")(_.significant(4))
   def subject(axes: String): String = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
 
-  /** The scenario as it is unless told otherwise. */
+  /** The scenario with its default settings. */
   val baseline: Baseline =
     Baseline(
       "plain",
@@ -242,7 +242,7 @@ final case class TeamSetup(
       Some(evaluator(scalar, delays, share = false).tallies(Vector(candidate), episodes).head)
     case _ => None
 
-  /** The scenario as a candidate has it; its settings were seen to be right. */
+  /** The scenario with a candidate's settings, which have been validated. */
   def scenario(candidate: Vector[Double]): Scenario =
     ScenarioSettings
       .candidate(kind, TeamQuestion.settings(question.set, space, candidate))
@@ -260,8 +260,7 @@ final case class TeamSetup(
 
   private def flown = engine(space.defaults, Judge.Candidates)
 
-  /** Is asked what flies, of every candidate, and flies nothing; where teams fly by measures of quantities.
-    */
+  /** A batch that is only queried for the engine of a candidate; for teams with measures of quantities. */
   private lazy val asked: TeamBatch = flownBy match
     case TeamEngine.Reduced(conditions, _) => batch(conditions, 1)
     case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
@@ -286,7 +285,7 @@ final case class TeamSetup(
   def text: String    = objective.text
   def unit: String    = objective.unit
 
-  /** As a configuration that `./skein fly --config` flies. */
+  /** The result as a configuration that `./skein fly --config` accepts: its name and its text. */
   def file(found: Found): (String, String) =
     def interval(tally: RunningStats) = SearchResult.interval(tally, unit)
     val settings                      = TeamQuestion.settings(question.set, space, found.best).toVector.sorted
@@ -307,5 +306,5 @@ final case class TeamSetup(
          |""".stripMargin
 
 object TeamSetup:
-  /** Of leaders in flights of some a second. */
+  /** Fewest candidates in the play-off when flights are slow. */
   private val LeastPlayOff = 2

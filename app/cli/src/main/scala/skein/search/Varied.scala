@@ -3,19 +3,19 @@ package skein.search
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** A setting that is searched between two bounds, by its key. */
+/** A setting that is searched between two bounds, given by its key. */
 final case class Varied(key: String, least: Double, most: Double) derives ReadWriter
 
 object Varied:
   private val Number = """(-?[\d.]+(?:[eE][+-]?\d+)?)"""
   private val Form   = s"([a-z][a-z0-9-]*)=$Number\\.\\.$Number".r
 
-  /** Beyond it, what is between two bounds is told apart no longer. */
+  /** Greatest bound; beyond it, values between two bounds lose their precision. */
   private val MostBound = 1e9
 
-  /** Reads `ring-m=4..12`.
+  /** Parses a setting such as `ring-m=4..12`.
     *
-    * @return or what was expected, and what came
+    * @return Left states what was expected and what was given
     */
   def parse(text: String): Either[String, Varied] = text match
     case Form(key, NumberOf(least), NumberOf(most)) if least < most =>

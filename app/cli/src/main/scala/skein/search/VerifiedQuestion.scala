@@ -7,10 +7,10 @@ import skein.scenario.Scenarios
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** A search's question as workers get it.
+/** A search's question as workers receive it.
   *
-  * @param probe what the defaults came to at the coordinator on the first episodes: a worker that comes to
-  *   anything else, by a file of another content for example, does not answer the question
+  * @param probe the defaults' result at the coordinator on the first episodes: a worker with another result,
+  *   for example because a file has other content, does not answer the question
   */
 final case class VerifiedQuestion(question: SearchFile.Question, probe: Vector[RunningStats])
 
@@ -26,7 +26,7 @@ object VerifiedQuestion:
   def bytes(question: SearchFile.Question, ready: ReadySearch): ArraySeq[Byte] =
     JsonText.bytes(VerifiedQuestion(question, probe(ready, ready.judges(1))))
 
-  /** Answers the questions of searches whose scenarios are known here. */
+  /** Answers search questions about the scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[VerifiedQuestion](asked, "a search's question")

@@ -12,7 +12,7 @@ import skein.simd.WorldRandom
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** Episodes of a scenario that are flown whole, one by one, whatever its policies and measures are.
+/** Episodes of a scenario that are simulated whole, one by one, for any policies and measures.
   *
   * @param vehicles what flies, for people
   * @param model the same in a word
@@ -26,9 +26,9 @@ final class WholeFlights private (
     val blockEpisodes: Int,
     fly: (Scenario, Int) => Either[String, Tracks]
 ):
-  /** What an episode comes to.
+  /** An episode's objective value.
     *
-    * @return or why it could not be flown to its end
+    * @return Left states why the episode could not be completed
     */
   def value(scenario: Scenario, objective: TeamObjective, episode: Int): Either[String, Double] =
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
@@ -50,23 +50,22 @@ final class WholeFlights private (
     )
 
 object WholeFlights:
-  /** What an episode counts for that never comes to one of its measures, in the objective's unit: worse, and
+  /** The value of an episode that never reaches one of its measures, in the objective's unit: worse, and
     * further off the truth, than all that do.
     */
   val Never = 1e6
 
-  /** @return what a flight comes to, by weights and measures; none where it never comes to one of them
-    */
+  /** @return the weighted sum of a flight's measures; None where it never reaches one of them */
   def sum(terms: Vector[(Double, Measure)], flown: Tracks): Option[Double] =
     val values = terms.flatMap((weight, measure) => measure.of(flown).map(weight * _))
     Option.when(values.size == terms.size)(values.sum)
 
-  /** Flights in virtual time that a search may take: a day of them, at one a second. */
+  /** Most flights in virtual time that a search may take: a day of them, at one a second. */
   val MostVirtual = 100_000
 
-  /** A scenario as forward simulation flies it.
+  /** A scenario for forward simulation.
     *
-    * @return or why it cannot
+    * @return Left states why it cannot be simulated
     */
   def plane(scenario: Scenario, durationS: Double): Either[String, Engagement] =
     try
@@ -80,7 +79,7 @@ object WholeFlights:
 
   /** One episode by forward simulation.
     *
-    * @return or why it cannot be flown so, or that its vehicles were not all seen
+    * @return Left states why it cannot be simulated, or that not all vehicles were observed
     */
   def forward(timing: LoopTiming, link: Delays, response: VelocityResponse, durationS: Double, seed: Long)(
       scenario: Scenario,
@@ -103,9 +102,9 @@ object WholeFlights:
       ))
       .toRight("its vehicles were not all seen")
 
-  /** One episode in virtual time: simulator, link, client and loop as they are.
+  /** One episode in virtual time, with the actual simulator, link, client and loop.
     *
-    * @return or why it could not be flown to its end
+    * @return Left states why it could not be completed
     */
   def virtual(conditions: Conditions, loop: LoopKind, link: LatencyProfile, seed: Long)(
       scenario: Scenario,
@@ -125,7 +124,7 @@ object WholeFlights:
       ))
       .map(_.tracks)
 
-  /** By forward simulation, world by world.
+  /** Episodes by forward simulation, world by world.
     *
     * @param plain measures that are not of a quantity
     */
@@ -150,7 +149,7 @@ object WholeFlights:
     */
   def inVirtualTime(why: String): Engine = Engine(Engine.Kind.Flights, s"flights in virtual time: $why")
 
-  /** By flights in virtual time. */
+  /** Episodes as flights in virtual time. */
   def virtual(
       conditions: Conditions,
       loop: LoopKind,
@@ -166,17 +165,17 @@ object WholeFlights:
     virtual(conditions, loop, link, seed)
   )
 
-  /** Why no plant is to be told where flights are virtual.
+  /** The message that virtual flights take no plant.
     *
-    * @param reason why nothing else flies them
+    * @param reason why no other engine can be used
     */
   def noPlant(reason: String): String =
     s"--plant: expected none, since this scenario flies in virtual time by $SimulatorsQuadrotor: $reason"
 
-  /** What flies in virtual time, for people. */
+  /** The vehicle model of virtual flights, for people. */
   val SimulatorsQuadrotor = "the simulator's quadrotor"
 
-/** Judges candidates by whole flights.
+/** Evaluates candidates by whole flights.
   *
   * @param scenario of a candidate
   */
@@ -187,8 +186,7 @@ final class WholeFlightEvaluator(
     threads: Int
 ) extends ValueEvaluator:
 
-  /** @throws BlocksFailed if a flight could not be flown to its end
-    */
+  /** @throws BlocksFailed if a flight could not be completed */
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range

@@ -5,21 +5,21 @@ import skein.optimise.{Direction, Objective, TeamObjective}
 import skein.scenario.Scenario
 import skein.settings.PolicyFile
 
-/** In what is learned, and by what it is judged. */
+/** The environment of learning, with its objective. */
 enum LearnGame:
   /** The paper's duel.
     *
     * @param against the other side
-    * @param scenario as flights fly it
+    * @param scenario in which flights take place
     */
   case OfDuel(objective: Objective, against: PolicyFile, scenario: Scenario)
 
-  /** A scenario whose others fly their own policies. */
+  /** A scenario whose other vehicles use its own policies. */
   case OfTeam(objective: TeamObjective, scenario: Scenario)
 
   def scenario: Scenario
 
-  /** Who is told to play against those who learn. */
+  /** The opponent's policy, if one is configured. */
   def opponent: Option[PolicyFile] = this match
     case duel: OfDuel => Some(duel.against)
     case _: OfTeam    => None
@@ -33,7 +33,8 @@ enum LearnGame:
     case OfDuel(objective, _, _) => duel(objective)
     case OfTeam(objective, _)    => team(objective)
 
-  /** What a flight comes to: the distance over the last 10 s of a duel, m, or the scenario's objective. */
+  /** The result of a flight: the mean distance over the last 10 s of a duel, m, or the scenario's objective.
+    */
   def came(flight: FlightSummary): Option[Double] = this match
     case _: OfDuel            => flight.distance.flatMap(_.lastTenSeconds).map(_.mean)
     case OfTeam(objective, _) =>
@@ -41,7 +42,7 @@ enum LearnGame:
         val values = objective.terms.flatMap((weight, measure) => result.value(measure.name).map(weight * _))
         Option.when(values.sizeIs == objective.terms.size)(values.sum)
 
-  /** Of [[came]], for tables. */
+  /** Name and unit of the values of [[came]], for tables. */
   def cameTo: (what: String, unit: String) = this match
     case _: OfDuel => ("last 10 s", "m")
     case _: OfTeam => (formula, unit)

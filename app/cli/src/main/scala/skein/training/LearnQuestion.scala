@@ -13,19 +13,19 @@ import skein.units.Decimals.significant
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** What is to be learned, in the words of the user; enough to go on with it, or to learn it again.
+/** A learning task in the user's words: enough to continue it, or to repeat it.
   *
-  * @param conditions under which is learned and judged
+  * @param conditions of learning and evaluation
   * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role; in the duel
-  * @param objective by which the policy is judged now and then; what is learned is a small, or a great,
-  *   distance
+  * @param objective by which the policy is evaluated from time to time; the reward of learning is a small, or
+  *   a great, distance
   * @param steps of all environments together
-  * @param environments side by side
-  * @param lessonS how long an episode of learning lasts
-  * @param startLeastM it begins with the evader so far away
-  * @param turnRateRadPerS the most that it turns
-  * @param episodes on which the policy is judged now and then
-  * @param fresh on which it is judged at the end
+  * @param environments that run side by side
+  * @param lessonS duration of a learning episode, s
+  * @param startLeastM least initial distance of the evader, m
+  * @param turnRateRadPerS greatest turn rate of the policy
+  * @param episodes of an evaluation during learning
+  * @param fresh episodes of the final evaluation
   */
 final case class LearnQuestion(
     algorithm: String,
@@ -49,7 +49,7 @@ final case class LearnQuestion(
 ) derives ReadWriter:
   import LearnQuestion.*
 
-  /** @return or what was expected, what came, and in which option */
+  /** @return Left states what was expected, what was given, and in which option */
   def setup(using scenarios: Scenarios): Either[String, LearnSetup] =
     for
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
@@ -109,12 +109,12 @@ object LearnQuestion:
   private def whole(option: String, value: Long, least: Long, most: Long): Either[String, Unit] =
     Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, came $value")
 
-  /** `learning rate: …` as `--learning-rate: …`. */
+  /** Renames a mistake's subject to its option: `learning rate: …` becomes `--learning-rate: …`. */
   private def asOption(mistake: String) =
     val (name, why) = mistake.splitAt(mistake.indexOf(':'))
     s"--${name.replace(' ', '-')}$why"
 
-/** Ready to learn. */
+/** A learning task that is resolved and ready to run. */
 final case class LearnSetup(
     question: LearnQuestion,
     algorithm: Algorithm,
@@ -129,23 +129,24 @@ final case class LearnSetup(
     case _: LearnGame.OfTeam => true
     case _: LearnGame.OfDuel => false
 
-  /** What every result is held against: the paper's policy of the role, or what the scenario's own come to.
+  /** The baseline of every result: the paper's policy of the role, or the result of the scenario's own
+    * policies.
     */
   val baseline: Baseline = game match
     case _: LearnGame.OfDuel    => Baseline.of(PolicyFile.paperOf(role))
     case team: LearnGame.OfTeam =>
       Baseline("own", s"${team.scenario.name}'s own", Vector.empty, "its own policies")
 
-  /** Steps of one environment between two times at which everything may be saved. */
+  /** Steps of each environment between two points at which everything may be saved. */
   val stepsPerRound: Int = (question.lessonS * 1000 / question.conditions.periodMs).round.toInt.max(1)
 
   val stepsOfRound: Long = stepsPerRound.toLong * question.environments
   val rounds: Int        = ((question.steps + stepsOfRound - 1) / stepsOfRound).max(1).toInt
 
-  /** The policy is judged after so many rounds each. */
+  /** Number of rounds from one evaluation of the policy to the next. */
   val roundsPerScore: Int = (rounds / LearnSetup.Scores).max(1)
 
-  /** Who judges policies of [[family]], and the baseline. */
+  /** Evaluators of policies of [[family]], and of the baseline. */
   def judges(threads: Int): Judge => ValueEvaluator = game match
     case duel: LearnGame.OfDuel =>
       val batch                       = conditions.batch(threads)
@@ -189,7 +190,7 @@ final case class LearnSetup(
     case _: LearnGame.OfTeam => EnvironmentBatch.engineOf(question.scenario)
     case _                   => EnvironmentBatch.EngineOfGame
 
-  /** @return or what was expected and came */
+  /** @return Left states what was expected and what was given */
   def task(using Scenarios): Either[String, SideTask] =
     SideTask.of(environment, game.opponent, question.environments, question.seed)
 
@@ -214,19 +215,18 @@ final case class LearnSetup(
     val where = if isOfTeam then s" of ${question.scenario}" else ""
     s"${question.algorithm}, ${question.role}$where, ${question.conditions.loop} over ${question.link}"
 
-  /** For an axis of a picture. */
+  /** The objective with its unit, for the axis of a picture. */
   def measure: String = WeightedSum.withUnit(game.formula, game.unit)
 
-  /** Whether flights of the scenario, with its own policies of all others, are what was learned in. */
+  /** Whether learning used the scenario's own policies for all others, as its flights do. */
   def isFlownAsTaught: Boolean = game.opponent.forall(other => other == PolicyFile.paperOf(other.role))
 
-  /** What an actor's weights make. */
   def policy(weights: Vector[Double]): PolicyFile =
     PolicyFile(role, family, weights ++ bounds)
 
-  /** The most that it turns, as a [[LearnedPolicy]]'s last parameters. */
+  /** The greatest turn rate, as a [[LearnedPolicy]]'s last parameters. */
   def bounds: Vector[Double] = Vector(question.turnRateRadPerS, 0.0)
 
 object LearnSetup:
-  /** In all, about. */
+  /** Approximate number of evaluations in all. */
   private val Scores = 60

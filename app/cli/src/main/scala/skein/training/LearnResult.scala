@@ -8,10 +8,10 @@ import skein.search.{Judge, SearchResult}
 import skein.settings.PolicyFile
 import skein.units.Interval
 
-/** What was learned, measured on episodes that learning never met.
+/** A learned policy, evaluated on episodes that learning did not use.
   *
-  * @param paper the baseline on the same episodes
-  * @param flights what flights in virtual time came to, where such were flown: [[LearnGame.came]]
+  * @param paper the baseline on equal episodes
+  * @param flights results of flights in virtual time, if there were any: [[LearnGame.came]]
   */
 final case class LearnResult(
     setup: LearnSetup,
@@ -23,7 +23,7 @@ final case class LearnResult(
 ):
   import setup.{baseline, game, question}
 
-  /** As a table. */
+  /** The results as a table, with the baseline's. */
   def section: Section =
     def row(policy: String, where: String, tally: RunningStats, unit: String) =
       val interval = Interval.of(tally.mean, tally.halfWidth95)
@@ -62,7 +62,7 @@ final case class LearnResult(
       "\n"
     )
 
-  /** As a policy file. */
+  /** The learned policy as a policy file, with its results. */
   def file: String = LearnResult.file(
     setup,
     state,
@@ -71,7 +71,7 @@ final case class LearnResult(
   )
 
 object LearnResult:
-  /** @param by judges what was learned, and the paper's policy as the baseline
+  /** @param by evaluates the learned policy, and the paper's policy as the baseline
     * @param state with a best policy
     */
   def measured(setup: LearnSetup, by: Judge => Evaluator, state: LearnState, episodes: Int): LearnResult =
@@ -86,7 +86,7 @@ object LearnResult:
       None
     )
 
-  /** The best policy so far as a file, without a measurement of it. */
+  /** The best policy so far as a file, without an evaluation. */
   def unmeasured(setup: LearnSetup, state: LearnState): Option[String] =
     state.best.map(best => file(setup, state, setup.policy(best.weights), ""))
 

@@ -11,18 +11,18 @@ import skein.units.OwnFailure
 
 /** How learning ended.
   *
-  * @param failure why it came no further, where it neither came to its end nor was stopped
+  * @param failure why it ended early, unless it was stopped
   */
 final case class Learned(state: LearnState, failure: Option[String]):
 
-  /** The state, if nothing failed. */
   def unfailing: Either[String, LearnState] = failure.toLeft(state)
 
-/** Learns round by round, judges the policy now and then, and keeps its state on disk.
+/** Learns round by round, evaluates the policy from time to time, and keeps its state on disk.
   *
   * @param judge of policies, by their parameters
   * @param folder without one, nothing is kept
-  * @param isElsewhere whether others judge: then learning goes on meanwhile, and comes to the same
+  * @param isElsewhere whether other processes evaluate: then learning continues meanwhile, with an identical
+  *   result
   */
 final class LearnRun(
     setup: LearnSetup,
@@ -36,9 +36,9 @@ final class LearnRun(
 
   private val files = LearnFile.files(question)
 
-  /** @param isStopped asked at every step; the round under way is given up then
-    * @param onRound told of every state
-    * @return how far it came, or why it could not begin
+  /** @param isStopped checked at every step; true abandons the current round
+    * @param onRound called with every state
+    * @return the progress; Left states why it could not begin
     */
   def run(from: LearnState, threads: Int, isStopped: () => Boolean)(
       onRound: LearnState => Unit
@@ -81,7 +81,7 @@ final class LearnRun(
     val training = Training(task, learner, setup.stepsPerRound)
     var state    = from
     var judging  = Option.empty[Judging]
-    // What is on disk or returned waits for nothing.
+    // A stored or returned state has no evaluation pending.
     def judged(): Unit =
       judging.foreach(policy => state = scored(state, policy))
       judging = None
@@ -107,11 +107,12 @@ final class LearnRun(
 
     var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())
     while mistake.isRight && state.rounds < setup.rounds && !isStopped() do mistake = told(round())
-    // A round that was given up is in the learner already, and so is not saved: it is learned again.
+    // The learner has already changed in an abandoned round, so its state is not saved: the round is
+    // repeated.
     val ended = mistake.flatMap(_ => told(Right(judged())))
     Learned(state, ended.left.toOption)
 
-  /** What code of the user's own throws ends learning, and leaves what was learned. */
+  /** Runs a step; an exception of user code ends learning, and keeps the state. */
   private def told(step: => Either[String, Unit]): Either[String, Unit] =
     try step
     catch case failure: OwnFailure => Left(failure.getMessage)
@@ -137,7 +138,7 @@ final class LearnRun(
     )
 
 object LearnRun:
-  /** A policy as it was after these steps, and how good it turns out to be. */
+  /** A policy of an earlier step count, and its pending evaluation. */
   private final case class Judging(steps: Long, weights: Vector[Double], came: Future[RunningStats])
 
   private val SaveNanos = 10_000_000_000L

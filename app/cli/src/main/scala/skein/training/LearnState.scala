@@ -16,10 +16,10 @@ import skein.search.{NamedFiles, StateFile}
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** How far learning has come.
+/** The progress of learning.
   *
   * @param rounds that are done
-  * @param scores of the policy, as it grew
+  * @param scores of the policy, as it improved
   */
 final case class LearnState(
     rounds: Int = 0,
@@ -28,7 +28,7 @@ final case class LearnState(
 ) derives ReadWriter
 
 /** @param steps of all environments before it
-  * @param mean of the objective over the episodes of judging
+  * @param mean of the objective over the evaluation's episodes
   */
 final case class LearnScore(steps: Long, mean: Double, sd: Double) derives ReadWriter
 
@@ -38,10 +38,9 @@ final case class LearnScore(steps: Long, mean: Double, sd: Double) derives ReadW
   */
 final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) derives ReadWriter
 
-/** Learning as it stands on disk: `learn.json` with question and state, and beside it all numbers of the
-  * learner.
+/** A learning task on disk: `learn.json` with question and state, and beside it all numbers of the learner.
   *
-  * @param files [[NamedFiles.digests]] of what the question names
+  * @param files [[NamedFiles.digests]] of the names in the question
   */
 final case class LearnFile(
     version: Int,
@@ -56,13 +55,13 @@ object LearnFile:
   private val onDisk = StateFile[LearnFile](Name, Version, "learning, of ./skein learn")
   export onDisk.read
 
-  /** What the files that a question names hold now. */
+  /** Digests of the current content of the files that a question names. */
   def files(question: LearnQuestion): Map[String, String] =
     NamedFiles.digests(Seq(question.link, question.conditions.plant))
 
   private def numbers(folder: Path, rounds: Int) = folder.resolve(s"learner-$rounds.bin")
 
-  /** Fills a learner with the numbers that it had after these rounds. */
+  /** Restores a learner to its state after these rounds. */
   def load(folder: Path, state: LearnState, learner: Learner): Either[String, Unit] =
     if state.rounds == 0 then Right(())
     else
@@ -82,7 +81,7 @@ object LearnFile:
         case failed: IOException =>
           Left(s"$file: expected the numbers of such a learner: ${failed.getMessage}")
 
-  /** Whatever happens meanwhile, the folder has what was written before, or all of this. */
+  /** Writes all files atomically: after a crash the folder has either the old or the new state. */
   def write(
       folder: Path,
       question: LearnQuestion,

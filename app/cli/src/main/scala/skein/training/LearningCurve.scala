@@ -2,12 +2,12 @@ package skein.training
 
 import skein.plot.*
 
-/** How good policies became with the steps they were learned in: means over the episodes of judging, and a
-  * standard deviation to either side.
+/** The policies' quality against the steps of learning: means over the evaluation's episodes, with a standard
+  * deviation to either side.
   */
 object LearningCurve:
 
-  /** @param scores with what tells them from others in the legend, and their colour
+  /** @param scores each with its label in the legend and its colour
     * @param levels values to compare with, by name
     */
   def apply(

@@ -54,7 +54,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assert(flying.map(count => done = count, () => false).isRight)
     assertEquals(done, flying.expected)
 
-  test("a cancelled map has the rows that were flown until then; without any it is none"):
+  test("a cancelled map has the rows simulated until then, and without any there is no map"):
     assertEquals(sweep("stream", 5).map(_ => (), () => true), Left(BudgetSubject.Stopped))
     val whole       = map(sweep("stream", 5))
     var isCancelled = false
@@ -82,7 +82,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     legs
   )
 
-  test("one sentence says up to which latency it holds"):
+  test("one sentence states the greatest tolerated latency"):
     val leaves = shown(Vector(8, 8.2, 8.6))
     leaves.budget.holdsUpTo(1, 0.05) match
       case Bound.At(meanMs) => assertEqualsDouble(meanMs, 75, 1e-9)
@@ -110,7 +110,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)
 
-  test("a marked link that lies outside of the map is told, since it is not drawn"):
+  test("a marked link outside of the map is reported, since it is not drawn"):
     def texts(link: LatencyDistribution) =
       val map =
         shown(Vector(8, 8.2, 8.6)).copy(marks = Vector(BudgetMark("one", link, RunningStats(2, 8, 0))))

@@ -40,7 +40,7 @@ class ClusterSubjectSimulation extends munit.FunSuite, Optimised:
 
   private def tallies(of: BudgetSubject) = of.tallies(BudgetCells(links, 4))
 
-  test("cells flown elsewhere, one by one and in any order, come to what they come to here, to the bit"):
+  test("cells computed by workers, one by one and in any order, have the bits of a local run"):
     val solver    = ClusterSubject.solvers.of(question).fold(fail(_), identity)()
     val elsewhere = new BlockExecutor:
       def cancel(): Unit                                                           = ()
@@ -50,7 +50,7 @@ class ClusterSubjectSimulation extends munit.FunSuite, Optimised:
     for (one, number) <- here.zipWithIndex do
       assertEquals(tallies(ClusterSubject(one, number, elsewhere, () => 1, Some(4))), tallies(one), one.label)
 
-  test("a worker to whom the question comes to something else refuses"):
+  test("a worker with another result for the question's probe refuses it"):
     val other = String(question.toArray, "UTF-8").replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
     val told  = ClusterSubject.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes("UTF-8")))
     assert(clue(told).left.exists(_.startsWith("one episode does not come to the same")))

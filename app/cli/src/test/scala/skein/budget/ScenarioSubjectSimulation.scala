@@ -27,9 +27,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     .tallies(BudgetCells(Vector(LatencyDistribution.Constant(Span.ofMillis(roundTripMs))), 2))
     .fold(fail(_), _.head.mean)
 
-  test(
-    "a measure of a quantity comes to the same as with the whole flight's tracks"
-  ):
+  test("a measure of a quantity equals that computed from the whole flight's tracks"):
     val plain = subject(surround)
     assert(plain.engine(Vector(LatencyDistribution.Vpn)).text.startsWith("SIMD, "))
     assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
@@ -40,25 +38,25 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       // Tracks are judged every 20 ms, on lines between the places of each period; a quantity once a period.
       assertEqualsDouble(at(plain, latencyMs), at(both, latencyMs), 0.1 * at(plain, latencyMs))
 
-  test("without latency the truth is met, and more latency is further off it"):
+  test("without latency the result equals the truth, and more latency deviates further"):
     val plain = subject(surround)
     val truth = plain.truth.fold(fail(_), identity)
     val off   = Seq(0.0, 200.0, 400.0).map(at(plain, _) - truth).map(_.abs)
     assert(off(0) < 0.02 * truth && off(1) > off(0) && off(2) > off(1), s"$off off $truth")
 
-  test("any measure is judged: vehicles that cross come to their goals later over a slow link"):
+  test("any measure can be used: crossing vehicles reach their goals later over a slow link"):
     val crossing = subject(Crossing(vehicles = 4), Some("to-goal"))
     val truth    = crossing.truth.fold(fail(_), identity)
     assertEqualsDouble(at(crossing, 0), truth, 0.1)
     assert(at(crossing, 400) > truth + 0.1, s"$truth")
 
-  test("policies in three dimensions are flown in virtual time, with what ends the flight"):
+  test("policies in three dimensions run in virtual time, and the scenario's own end applies"):
     val drifting = subject(Drift(), conditions = Conditions("stream", "drag", 100, 10))
     assert(drifting.engine(Vector.empty).text.startsWith("flights in virtual time: vehicle Lone"))
     val truth = drifting.truth.fold(fail(_), identity)
     assert(at(drifting, 400) > truth, s"$truth")
 
-  test("a measure that a flight never comes to is further off than anything"):
+  test("a measure that a flight never reaches deviates more than any other"):
     val never = subject(Drift(toM = 1000), Some("arrives"), Conditions("stream", "drag", 100, 10))
     assertEquals(at(never, 0), WholeFlights.Never)
     val swept = BudgetSweep(never, BudgetAxes(Vector(0), Vector(0)), Tolerance.Within(1), Some(1))
@@ -67,12 +65,12 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       () => false
     )).left.exists(_.contains("has no value in the paused truth")))
 
-  test("a truth of 0 has no shares, but distances"):
+  test("for a truth of 0 deviations are distances, not fractions"):
     assert(Tolerance.Share(0.05).per(0).left.exists(_.contains("--within")))
     assertEquals(Tolerance.Within(2).per(0), Right(1.0))
     assertEquals((Tolerance.Within(2).text("m"), Tolerance.Share(0.05).text("m")), ("2 m", "5 %"))
 
-  test("what cannot be swept is told in a line"):
+  test("a scenario that cannot be swept is refused in one line"):
     assertEquals(
       question(surround, Some("speed"), Conditions("stream", "drag", 100, 20), 1).map(_.objective.formula),
       Left(

@@ -8,14 +8,14 @@ class ArgumentsSuite extends munit.FunSuite:
     "--resume here --steps 7 --turn-rate 2 --plant drag --workers 2 --json".split(' ').toSeq
   )
 
-  test("what was told is known by its flags, in groups of options too"):
+  test("given options are recognised by their flags, also in groups of options"):
     assertEquals(
       Arguments.told(options),
       Set("--resume", "--steps", "--turn-rate", "--plant", "--workers", "--json")
     )
     assertEquals(Arguments.told(ParserForClass[LearnOptions].constructOrThrow(Nil)), Set.empty)
 
-  test("where a folder is gone on with, what else was told is named"):
+  test("when a folder is continued, other given options are named"):
     val may = Arguments.told(options.cluster) + "--json"
     assertEquals(
       Arguments.resumed(options, may, "--threads"),

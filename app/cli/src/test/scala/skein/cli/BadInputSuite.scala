@@ -7,7 +7,7 @@ import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** What is wrong is told in a line, before anything long is begun. */
+/** Mistakes are reported in one line each, before any long work begins. */
 class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
@@ -19,7 +19,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(clue(ran.said).contains(expected), s"expected: $expected")
     assert(ran.said.linesIterator.size <= 2)
 
-  folder.test("a folder that cannot be made is told before the flight"): path =>
+  folder.test("a folder that cannot be created is reported before the flight"): path =>
     val file     = Files.writeString(path.resolve("file"), "").toString
     val commands = Seq(
       FlyCommand(),
@@ -33,7 +33,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 
-  folder.test("what a scenario's own code throws is told in a line, and leaves no folder"): path =>
+  folder.test("an exception of a scenario's own code is reported in a line, and leaves no folder"): path =>
     final case class Broken(where: String = "") extends Scenario:
       def agents: Vector[Agent] =
         if where == "agents" then throw IllegalStateException("nobody") else PaperDuel().agents
@@ -84,7 +84,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       s"--first: expected up to ${Long.MaxValue - 1}, since the other seeds follow it"
     )
 
-  folder.test("a view that could not be looked at is told before the flight"): path =>
+  folder.test("a view that could not be shown is reported before the flight"): path =>
     val out                                           = path.resolve("out")
     def refused(expected: String)(arguments: String*) =
       assertRefused(FlyCommand(), arguments ++ Seq("--out", out.toString), expected)
@@ -97,7 +97,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "--view-port: expected with --view"
     )
 
-  test("a value that is none of a setting's is told by its option"):
+  test("an invalid value of a setting is reported with its option"):
     assertRefused(FlyCommand(), Seq("--link", "vnp"), "skein fly: --link: unknown latency profile \"vnp\"")
     assertRefused(FlyCommand(), Seq("--loop", "streem"), "skein fly: --loop: no loop 'streem'")
     assertRefused(FlyCommand(), Seq("--loop", "paused,plan"), "; several as --loop ONE --loop OTHER")
@@ -125,19 +125,19 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
     assertRefused(FlyCommand(), Seq("--scenario", "convoi"), "skein fly: --scenario: expected duel, ")
 
-  test("import and export tell that a folder is not there"):
+  test("import and export report a missing folder"):
     val told = "expected a file in a folder that is there, came no/such/file"
     assertRefused(ExportCommand, Seq("x", "--mcap", "no/such/file"), s"skein export: --mcap: $told")
     assertRefused(ImportCommand, Seq("x", "--recording", "no/such/file"), s"skein import: --recording: $told")
 
-  test("a file that cannot be written is told with the reason in words"):
+  test("a file that cannot be written is reported with the reason in words"):
     val nowhere = Path.of("no", "such", "folder")
     assertEquals(
       OutFolder.write(nowhere, Seq(OutFolder.text("map.csv", ""))),
       Left(s"cannot write into $nowhere: no such file (${nowhere.resolve("map.csv")})")
     )
 
-  test("what follows multirotors alone refuses a scenario with cars, and says so"):
+  test("a function for multirotors only refuses a scenario with cars, with the reason"):
     val cars = Seq("--scenario", "convoy")
     assertRefused(
       TortureCommand("skein.cli.Main"),
@@ -155,7 +155,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "--mavlink: expected loops other than paused"
     )
 
-  test("what is for MAVLink alone is refused without it"):
+  test("options that only MAVLink uses are refused without it"):
     assertRefused(FlyCommand(), Seq("--simulator", "tcp://127.0.0.1:5760"), "tcp:// is for --mavlink alone")
     assertRefused(
       FlyCommand(),
@@ -169,7 +169,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "--mavlink-instance: expected 0 to 249, came 250"
     )
 
-  test("a tolerance without end holds for everything, and is refused"):
+  test("an infinite tolerance is refused"):
     for value <- Seq("Infinity", "NaN", "0", "-1") do
       assertRefused(
         BudgetCommand("skein.cli.Main"),
@@ -187,7 +187,9 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(FlyCommand(), Seq("--config", config("skein.fly.seedd = 1")), "the nearest is 'seed'")
     assertRefused(FlyCommand(), Seq("--config", config("duration = 5 s")), "no setting 'duration'")
 
-  folder.test("what stands in a configuration is told once, with its line, and long values are cut"): path =>
+  folder.test(
+    "a mistake in a configuration is reported once, with its line, and long values are cut"
+  ): path =>
     def told(text: String) =
       val file = Files.writeString(path.resolve("fly.conf"), text).toString
       val ran  = Ran.of(FlyCommand().run(Seq("--config", file, "--out", path.resolve("out").toString)))
@@ -220,7 +222,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(Complaint.text("a short line\nand another"), "a short line\nand another")
     assertEquals(Complaint.text("y " * 2000).length, Complaint.MostOfALine + "… 3000 letters more …".length)
 
-  folder.test("a folder that no recording could be in is refused in a line, and is not made"): path =>
+  folder.test("a folder that cannot contain recordings is refused in a line, and is not created"): path =>
     for name <- Seq("a\\b", "a?b", "a;b"); clock <- Seq("real", "virtual") do
       val out = path.resolve(name)
       val ran = Ran.of(FlyCommand().run(Seq("--out", out.toString, "--clock", clock)))
@@ -240,7 +242,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     for speed <- Seq("Infinity", "NaN", "0", "1e9") do
       assertRefused(ServeCommand, Seq("--speed", speed), "--speed: expected more than 0 and up to 1000, came")
 
-  folder.test("a recording that cannot be read, or would not be made, is told in a line"): path =>
+  folder.test("a recording that cannot be read, or would not be made, is reported in a line"): path =>
     val unreadable = Path.of("/proc/self/mem")
     if Files.isRegularFile(unreadable) then
       assertRefused(ReportCommand(), Seq(unreadable.toString), s"cannot open recording $unreadable")
@@ -266,7 +268,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(recorder.writeTo(file).isRight)
     assertRefused(ReplayCommand(), Seq(file.toString), "no vehicles")
 
-  test("a solver that cannot be is told before the flight, and what was expected"):
+  test("an impossible solver is reported before the flight, with what was expected"):
     val virtual = Seq("--clock", "virtual")
     for
       (command, words, expected) <- Seq(

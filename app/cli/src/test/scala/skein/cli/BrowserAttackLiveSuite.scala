@@ -23,7 +23,7 @@ import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 import skein.units.*
 import skein.view.*
 
-/** A page of another site, in a real browser, against every port that this program opens. */
+/** A page of another site, in a real browser, attacks every port that this program opens. */
 class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("BrowserAttackLiveSuite")
   private given Scenarios           = DuelReport.scenarios
@@ -36,7 +36,7 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
 
   private val free = Address("127.0.0.1", 0)
 
-  /** Calls of MessagePack-RPC that would be noticed. */
+  /** Calls of MessagePack-RPC whose effect would be noticed. */
   private val calls: Array[Byte] =
     def text(said: String) = (0xa0 | said.length).toByte +: said.getBytes("US-ASCII")
     Array[Byte](0x94.toByte, 0, 1) ++ text("enableApiControl") ++ Array[Byte](
@@ -45,7 +45,7 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     ) ++ text("") ++
       Array[Byte](0x94.toByte, 0, 2) ++ text("simPause") ++ Array[Byte](0x91.toByte, 0xc3.toByte)
 
-  folder.test("a page of another site reads nothing from any port, and nothing that it says is obeyed"):
+  folder.test("a page of another site reads nothing from any port, and none of its data are obeyed"):
     out =>
       val (packages, browser) = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
       val transport           = TcpTransport()

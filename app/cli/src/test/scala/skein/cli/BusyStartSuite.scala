@@ -3,10 +3,10 @@ package skein.cli
 import com.typesafe.config.ConfigFactory
 import java.util.concurrent.TimeoutException
 
-/** Commands on a machine that has much else to do. */
+/** Start of commands on a busy machine. */
 class BusyStartSuite extends munit.FunSuite:
 
-  test("what a start waits for may take ten minutes, and an accepted connection a minute"):
+  test("a start waits up to ten minutes, and an accepted connection up to a minute"):
     val config = ConfigFactory.load().getConfig("pekko")
     for (path, seconds) <- Seq(
         "logger-startup-timeout"               -> 600,
@@ -16,7 +16,7 @@ class BusyStartSuite extends munit.FunSuite:
       )
     do assertEquals(config.getDuration(path).toSeconds, seconds.toLong, path)
 
-  test("a start that is given up is told in one line"):
+  test("a start that times out is reported in one line"):
     val late = TimeoutException("Future timed out after [600 seconds]")
     val ran  = Ran.of(Main.unexpected("serve", late))
     assertEquals(ran.status, 1)

@@ -21,13 +21,13 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       .split(' ')
       .toSeq
 
-  /** Half a second's blocks would be too few to be interrupted in. */
+  /** Options for blocks large enough that a search can be interrupted between them. */
   private def elsewhere(workers: Int) = Seq("--workers", workers.toString, "--block", "256")
 
   private lazy val parent          = temporaryFolder()
   private def folder(name: String) = parent.resolve(name)
 
-  /** By this process alone. */
+  /** The result of a search in this process alone. */
   private lazy val alone: Path =
     searched(question ++ Seq("--out", folder("alone").toString))
     folder("alone")
@@ -48,7 +48,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     val file = folder.resolve(s"worker-$worker.log")
     if Files.exists(file) then Files.readString(file) else ""
 
-  /** Asks again and again, since other processes tell when they have come so far. */
+  /** Polls a condition that other processes bring about. */
   private def until(isSo: => Boolean)(unless: => Boolean): Boolean =
     val deadline = 4.minutes.fromNow
     while !isSo && !unless && deadline.hasTimeLeft() do Thread.sleep(20)
@@ -65,7 +65,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       .redirectErrorStream(true)
       .redirectOutput(Files.createTempFile(parent, "coordinator", ".log").toFile)
       .start()
-    // Meanwhile, since other processes take their time to start.
+    // In parallel, since other processes are slow to start.
     val expected = Future(blocking(alone))
     def blocks   =
       if Files.exists(out.resolve(Ledger.Name)) then Ledger.audit(out.resolve(Ledger.Name)).blocks else 0
@@ -84,7 +84,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     val said = Await.result(searching, 8.minutes)
     assert(clue(said).contains(s"-$pid is gone"))
     val had = """(\d+) more were in the ledger""".r.findFirstMatchIn(said).get.group(1).toInt
-    // Of the round under way; those before it stand in the search's own state.
+    // Blocks of the current round; those before it are in the search's own state.
     assert(clue(had) > 0)
     Await.result(expected, 8.minutes): Unit
     assertSame(out)
@@ -117,7 +117,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       assertSame(out)
     finally workers.foreach(_._1.destroyForcibly(): Unit)
 
-  test("who cannot compute is told: options that need workers, and workers that cannot start"):
+  test("options that need workers, and workers that cannot start, are reported"):
     def refused(words: String*): String =
       val ran = Ran.of(Main.run(question ++ words ++ Seq("--out", folder("refused").toString)))
       assertEquals(ran.status, 1)

@@ -12,11 +12,11 @@ import skein.search.*
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
-/** What others cost: candidates judged by two processes of one thread each, against this process with two
-  * threads, in turns: `./sbtw "cli/Test/runMain skein.cli.clusterOverhead 9 250 DIR"`. Both must come to the
-  * same bits.
+/** The overhead of workers: candidates evaluated by two processes of one thread each, against this process
+  * with two threads, in turns: `./sbtw "cli/Test/runMain skein.cli.clusterOverhead 9 250 DIR"`. Both results
+  * must have equal bits.
   *
-  * @param blockMs that a block takes one core, about
+  * @param blockMs approximate time of a block on one core
   */
 @main def clusterOverhead(pairs: Int, blockMs: Int, out: String): Unit =
   given Scenarios = Scenarios.ours
@@ -38,7 +38,7 @@ import skein.signal.SplitMix64
   val episodes = 0 until 16
   var seed     = 0L
 
-  /** Others each time, since what the ledger has is not computed again. */
+  /** New candidates for each call, since those in the ledger are not computed again. */
   def candidates(count: Int): Vector[Vector[Double]] =
     seed += 1
     val random = SplitMix64(seed)
@@ -46,7 +46,7 @@ import skein.signal.SplitMix64
       ready.space.axes.map(axis => axis.least + random.nextDouble() * (axis.most - axis.least)).toVector
     )
 
-  /** Of the processor's time, this process and its workers took so much. */
+  /** Processor time of this process and its workers so far, s. */
   def cpuS =
     val workers = ProcessHandle.current().children().toList.asScala
     val theirs  = workers.flatMap(_.info().totalCpuDuration().toScala).map(_.toNanos).sum
@@ -64,10 +64,10 @@ import skein.signal.SplitMix64
   val two   = ready.judges(2)(Judge.Candidates)
   val group = 2048
   for _ <- 1 to 3 do timed(two, candidates(group)): Unit
-  // The best of a few: whoever else is at work makes it less.
+  // The best of a few: other load on the machine lowers the rate.
   val rate  = Vector.fill(5)(group * episodes.size / timed(one, candidates(group)).s).max
   val block = (rate * blockMs * 1e-3).round.toInt.max(episodes.size)
-  // Forty blocks of each worker, so that the last ones weigh little.
+  // Forty blocks of each worker, so that the last ones matter little.
   val count  = (80.0 * block / episodes.size).round.toInt
   val folder = Files.createDirectories(Path.of(out))
   Files.deleteIfExists(folder.resolve(Ledger.Name)): Unit

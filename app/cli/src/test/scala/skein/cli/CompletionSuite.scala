@@ -2,7 +2,7 @@ package skein.cli
 
 import scala.sys.process.{Process, ProcessLogger}
 
-/** What shells are told; bash is asked itself. */
+/** Completion scripts, tested with bash itself. */
 class CompletionSuite extends munit.FunSuite:
 
   private def printed(words: String*): (Int, String) =
@@ -38,7 +38,7 @@ class CompletionSuite extends munit.FunSuite:
     assertEquals(offered("skein", "fly", "--loop", "p"), Set("paused", "predictive", "plan"))
     assertEquals(offered("skein", "report", "build.s"), offered("skein", "fly", "--out", "build.s"))
 
-  test("zsh is told every command and option, with what it does"):
+  test("zsh completes every command and option, with a description"):
     val (status, script) = printed("completion", "zsh")
     assertEquals(status, 0)
     assert(script.startsWith("#compdef skein"))
@@ -49,7 +49,7 @@ class CompletionSuite extends munit.FunSuite:
     for line <- script.linesIterator do
       assertEquals(line.replace("'\\''", "").count(_ == '\'') % 2, 0, line)
 
-  test("another shell is refused with those that there are"):
+  test("an unknown shell is refused with a list of known ones"):
     assertEquals(
       printed("completion", "fish"),
       (1, "skein completion: expected one of bash, zsh, came fish\n")

@@ -77,7 +77,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
       .find(_.toString.endsWith("scenario.conf"))
       .get
 
-  /** Of a pursuer that sees; as long as a model needs to be identified. */
+  /** A recording with camera images, long enough to identify a sensor model. */
   private lazy val seeing: Path =
     made("fly", "--scenario", "blind-pursuit", "--clock", "virtual", "--loop", "stream", "--link", "none")(
       "--duration",
@@ -122,7 +122,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
         out.toString
       )).toSeq.flatten
 
-  /** The words but for options that others state, and their values. */
+  /** The words without the options that `others` set, and their values. */
   private def without(words: Seq[String], others: Seq[String]): Seq[String] =
     words.indices
       .filterNot(i =>
@@ -132,7 +132,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
       )
       .map(words)
 
-  /** As many as are flown, where a command says so. */
+  /** Reduces the number of flights, where a command states one. */
   private def few(words: Seq[String]): Seq[String] = words.indexOf("--seeds") match
     case -1 if words.head == "spread"           => words ++ Seq("--seeds", "2")
     case at if at > 0 && words.head == "spread" => words.updated(at + 1, "2")
@@ -144,12 +144,12 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
     assertEquals(status, 0, told)
     out
 
-  /** Exit status, and everything that was said. */
+  /** Exit status and all output of a command. */
   private def run(words: Seq[String]): (Int, String) =
     val ran = Ran.of(Main.run(words))
     (ran.status, ran.said)
 
-  /** A flight by the clock that a busy machine may have spoilt flies once more, and longer. */
+  /** Runs a flight in real time; repeats it once, longer, if a busy machine may have disturbed it. */
   private def flown(words: Seq[String]): (Int, String) =
     def out                    = Files.createTempDirectory(folder, "out").resolve("flown")
     def isSilent(said: String) =
@@ -167,19 +167,19 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
         assume(false, "inconclusive")
       second
 
-  /** Until it says that it listens; then it is told to end. */
+  /** Runs a command until it prints that it listens, then stops it. */
   private def runUntilItListens(words: Seq[String]): (Int, String) =
     val said  = ByteArrayOutputStream()
     val ended = Future(blocking(Console.withOut(said)(Console.withErr(said)(Main.run(words)))))
     while !said.toString.contains("127.0.0.1:") && !ended.isCompleted do Thread.sleep(20)
     val deadline = 30.seconds.fromNow
-    // It says so before it waits.
+    // The command prints this before it waits.
     while !ended.isCompleted && deadline.hasTimeLeft() do
       Edge.interrupt()
       Thread.sleep(20)
     (Await.result(ended, 1.second), said.toString)
 
-  /** The same in a process of its own, which is ended as by Ctrl-C. */
+  /** Runs such a command in a process of its own, and stops it as Ctrl-C would. */
   private def runAProcessUntilItListens(words: Seq[String]): (Int, String) =
     val jvm     = ProcessHandle.current.info.command.get
     val agents  = java.lang.management.ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
@@ -227,20 +227,20 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
         case model if model.startsWith("mujoco:examples/")                    =>
           model.replace("examples/", s"${Documentation.root}/examples/")
         case word => word
-      // The usual port may be taken here.
+      // The default port may be in use here.
       val words          = asked ++ (if asked.contains("--view") then Seq("--view-port", "0") else Nil)
       val (status, told) = words.head match
         case _ if words.exists(_.startsWith("mujoco:")) && MujocoLibrary.find.isLeft =>
-          // MuJoCo is installed by whoever wants it: that is told in a line.
+          // Users install MuJoCo themselves: without it, one line states that.
           val (status, told) = run(words)
           (if told.contains("MuJoCo's library was not found") then 0 else status, told)
         case _ if words.contains("--gpu") && CudaGpu.find().isLeft =>
-          // A machine without a GPU says so in a line.
+          // Without a GPU, one line states that.
           val (status, told) = run(words)
           (if told.contains("--gpu: ") then 0 else status, told)
         case "cluster" => run(words.updated(2, folder.resolve("certificates").toString))
         case "worker"  =>
-          // Nobody is there to be joined: that is told in a line.
+          // There is no coordinator to join: one line states that.
           val (status, told) = run(words ++ Seq("--patience", "1ms"))
           (if told.contains("no coordinator at") then 0 else status, told)
         case "search" if words.contains("--cluster") =>
@@ -252,22 +252,22 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
         case "serve" => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
         case "replay" if words.contains("--view") => runUntilItListens(words)
         case "link"                               =>
-          // The ports of the guide may be taken here.
+          // The guide's ports may be in use here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
           runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))
         case "observe" =>
-          // Without the guide's program, which is the user's.
+          // Without the guide's program, which belongs to the user.
           val own = without(words.takeWhile(_ != "--"), Seq("--simulator"))
           runUntilItListens(own ++ Seq("--listen", "127.0.0.1:0", "--simulator", server.address.toString))
         case _ if words.contains("recogniser=detector") =>
-          // Its runtime is added by whoever wants it: that is told in a line.
+          // Users add its runtime themselves: without it, one line states that.
           val (status, told) = run(words)
           (
             if told.contains("onnxruntime, which runs models, is not on the class path") then 0 else status,
             told
           )
         case _ if words.exists(_.startsWith("unix:")) =>
-          // Nobody answers at the guide's socket: that is told in a line.
+          // Nothing answers at the guide's socket: one line states that.
           val (status, told) = run(words)
           (if told.contains("expected a policy behind the socket") then 0 else status, told)
         case _ => flown(words)
@@ -345,16 +345,16 @@ object DocumentedCommands:
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
 
-  /** Not run: what stands for many commands, and `identify` where it names no recording. Examples show
-    * `./sbtw …` and `python …` besides. The tests of those projects run the same programs (`./sbtw
-    * NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other Python programs want frameworks that
-    * are not installed here.
+  /** Commands that are not run: placeholders for many commands, and `identify` without the name of a
+    * recording. Examples also show `./sbtw …` and `python …`. The tests of those projects run these programs
+    * (`./sbtw NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other Python programs need
+    * frameworks that are not installed here.
     */
   private def leftOut(command: String): Boolean =
     val standsForMany = Seq("--algorithm …", "--scenario NAME", "--loop …").exists(command.contains)
     standsForMany || command == "identify"
 
-  /** Commands that suites of their own run, with options that make them short. */
+  /** Commands that other suites run, with options that make them short. */
   private val runElsewhere: Map[String, Class[?]] = Map(
     "search --family lead-pursuit --workers 2" -> classOf[ClusterCommandsLiveSuite],
     "torture --workers 2"                      -> classOf[ElsewhereLiveSuite],

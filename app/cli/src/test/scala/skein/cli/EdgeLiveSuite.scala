@@ -2,13 +2,11 @@ package skein.cli
 
 import java.nio.file.Path
 
-/** Programs that end while they run: in other processes. */
+/** Programs that are ended while they run, each in a process of its own. */
 class EdgeLiveSuite extends munit.FunSuite:
 
   for place <- Seq("main", "virtual") do
-    test(
-      s"where code of the user's own ends the program, that is said, and how far it was: on a $place thread"
-    ):
+    test(s"when user code ends the program on a $place thread, that and the progress are reported"):
       val java    = Path.of(sys.props("java.home"), "bin", "java").toString
       val words   = Seq(java, "-cp", sys.props("java.class.path"), "skein.cli.endsItself", place)
       val process = ProcessBuilder(words*).redirectErrorStream(true).start()

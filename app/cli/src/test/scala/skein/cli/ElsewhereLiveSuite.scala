@@ -6,8 +6,8 @@ import scala.util.Using
 import skein.blocks.Ledger
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Flights and lessons by processes of this machine, over loopback. Like this JVM they spare optimising,
-  * which takes more of the processor's time than so few flights.
+/** Flights and lessons by processes of this machine, over loopback. Like this JVM they skip optimising
+  * compilation, which takes more processor time than these few flights.
   */
 class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
@@ -17,8 +17,8 @@ class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     ran.said
 
   test(
-    "flights through faults are flown by two processes, each once, " +
-      "and not again by the same command, which starts nobody"
+    "two processes run flights with faults, each once; the command repeated runs none and starts no " +
+      "worker"
   ):
     val out = temporaryFolder()
     for found <- Seq("2 blocks counted, 0 more", "0 blocks counted, 2 more") do

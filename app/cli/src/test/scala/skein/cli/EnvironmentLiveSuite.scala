@@ -6,12 +6,11 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Commands as users start them, each in a process of its own, in environments that are not ours. */
+/** Commands as users start them, each in a process of its own, in unusual environments. */
 class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private case class Ended(status: Int, out: String, err: String)
 
-  /** @param before what the shell does first, for example a limit
-    */
+  /** @param before shell commands to run first, for example a limit */
   private def skein(in: Path, before: String, jvm: Seq[String], arguments: String*): Ended =
     val agent =
       ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.filter(_.startsWith("-javaagent"))
@@ -34,7 +33,7 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assert(lines.size == 1 && lines.head.contains(expected), clue(ended))
 
   folder.test(
-    "a flight in Turkish is the flight in English, and is said in ASCII where there is nothing else"
+    "a flight in a Turkish locale equals one in an English locale, and its output is ASCII where needed"
   ): path =>
     def fly(locale: String, language: String) =
       val words = s"fly --clock virtual --loop stream --link vpn --duration 2s --out $language".split(' ')
@@ -47,10 +46,10 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assert(turkish.out.getBytes(ISO_8859_1).forall(_ > 0), "not ASCII")
     assert(clue(turkish.out).contains("----") && turkish.out.contains(" ... "))
 
-  folder.test("a name that the locale cannot tell is told in a line"): path =>
+  folder.test("a name that the locale cannot encode is reported in a line"): path =>
     assertOneLine(skein(path, "export LC_ALL=C;", Nil, "report", "flüge.duckdb"), "LC_ALL=C.UTF-8")
 
-  folder.test("where files must stay small, a line says what could not be written"): path =>
+  folder.test("with a limit on file sizes, a line states which file could not be written"): path =>
     val ended = skein(
       path,
       "ulimit -f 20;",
@@ -60,11 +59,14 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assert(ended.status != 0 && !ended.err.contains("\tat "), clue(ended))
     assert(clue(ended.err).contains("too large"))
 
-  test("few open files are told before a flight, not as a simulator that does not answer"):
+  test("a low limit of open files is reported before a flight, not as a simulator that does not answer"):
     assertEquals(OpenFiles.enoughFor(7, Some(1024)), Right(()))
     assert(clue(OpenFiles.enoughFor(1, Some(64))).left.exists(_.contains("ulimit -n 126")))
 
-  test("what a terminal cannot show is printed by letters that it can, whole letters however the bytes come"):
+  test(
+    "characters that a terminal cannot show are replaced, whole ones even if their bytes arrive " +
+      "separately"
+  ):
     val shown = java.io.ByteArrayOutputStream()
     val plain = Terminal.Plain(shown, US_ASCII)
     for byte <- "8.2 … 8.3 ± 1 │ █ ö".getBytes(UTF_8) do plain.write(byte)

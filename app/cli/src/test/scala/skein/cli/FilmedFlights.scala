@@ -7,10 +7,10 @@ import skein.record.{EventKind, CameraImage, RecordingReader}
 import skein.report.DuelReport
 import skein.scenario.Scenarios
 
-/** The same flight of two vehicles, in turns: without images; with four cameras at 30 Hz in the recording;
-  * and with an MCAP file beside that: `cli/Test/runMain skein.cli.filmedFlights stream 20 3`. How late
-  * control's questions leave, and the processor time of this whole process, simulator and its drawing
-  * included.
+/** One flight of two vehicles, repeated in turns: without images; with four cameras at 30 Hz in the
+  * recording; and with an additional MCAP file: `cli/Test/runMain skein.cli.filmedFlights stream 20 3`.
+  * Prints the delay of control's requests, and the processor time of the whole process, including simulator
+  * and rendering.
   */
 @main def filmedFlights(loop: String, seconds: Int, rounds: Int): Unit =
   given Scenarios = DuelReport.scenarios

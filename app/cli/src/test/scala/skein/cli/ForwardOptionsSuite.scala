@@ -12,9 +12,9 @@ class ForwardOptionsSuite extends munit.FunSuite:
 
   private given Scenarios = Scenarios(ScenarioKind(Brief()) +: Scenarios.ours.kinds)
 
-  test("an episode is as long as the scenario's flights, unless an option tells"):
+  test("an episode is as long as the scenario's flights, unless an option sets it"):
     assertEquals(ForwardOptions.durationOf("brief", Map.empty), Span.ofSeconds(20))
     assertEquals(ForwardOptions.durationOf("brief", Map("lasts-s" -> "30")), Span.ofSeconds(30))
     assertEquals(ForwardOptions.durationOf("duel", Map.empty), Span.ofSeconds(60))
-    // The command tells of these when it reads the scenario.
+    // The command reports these when it reads the scenario.
     assertEquals(ForwardOptions.durationOf("brief", Map("lasts-s" -> "long")), Span.ofSeconds(60))

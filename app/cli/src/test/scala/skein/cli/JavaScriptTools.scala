@@ -5,7 +5,7 @@ import java.util.concurrent.TimeUnit
 import scala.util.Try
 import skein.docs.Documentation
 
-/** Node, its packages and a browser, where this machine has them. */
+/** Node, its packages and a browser, if this machine has them. */
 object JavaScriptTools:
   private val scripts = Documentation.root.resolve("app/cli/src/test/js")
 
@@ -25,7 +25,7 @@ object JavaScriptTools:
         "npm cannot install the packages of app/cli/src/test/js: " + _
       )
 
-  /** Debian's, or that of the environment's `CHROMIUM`. */
+  /** The path of Debian's browser, or that in the environment variable `CHROMIUM`. */
   lazy val browser: Either[String, String] =
     (sys.env.get("CHROMIUM").toSeq ++ Seq("/usr/bin/chromium", "/usr/bin/chromium-browser"))
       .find(path => Files.isExecutable(Path.of(path)))
@@ -33,7 +33,7 @@ object JavaScriptTools:
 
   def script(name: String): String = scripts.resolve(name).toString
 
-  /** What a program printed, or why it failed. Its standard input stays open as long as this runs. */
+  /** A program's output, or why it failed. Its standard input stays open while it runs. */
   def run(seconds: Int, command: String*): Either[String, String] =
     Try(start(command*)).toEither.left.map(_.getMessage).flatMap: process =>
       val output = String(process.getInputStream.readAllBytes())

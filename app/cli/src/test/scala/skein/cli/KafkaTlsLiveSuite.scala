@@ -15,7 +15,7 @@ import skein.settings.SolverChoice
 import skein.testing.{Lengthy, TemporaryFolders}
 import skein.units.*
 
-/** A Kafka broker that shows a certificate, and asks for one, on loopback. */
+/** A Kafka broker with a certificate that requires clients' certificates, on loopback. */
 class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private given system: ActorSystem = ActorSystem("KafkaTlsLiveSuite")
   private given Scenarios           = Scenarios.ours
@@ -24,7 +24,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     val folder = Certificates.make(temporaryFolder(), Seq("127.0.0.1")).fold(fail(_), _.head)
     securityOf(folder)
 
-  /** What `--tls` comes to. */
+  /** Kafka settings that `--tls` results in. */
   private def securityOf(folder: Path): Map[String, String] =
     SolverSecurity(Some(folder.toString), None)
       .checked(Some(SolverChoice.Kafka(loopback, "skein")))
@@ -45,7 +45,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private def solver(topics: KafkaTopics)(told: String => Unit) =
     KafkaSolver(topics, SolvedFlight.desk(), told)
 
-  /** A short flight, or why it was not flown. */
+  /** A short flight, or why it failed to start. */
   private def flown(
       prefix: String,
       security: Map[String, String],
@@ -66,7 +66,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     Await.result(serves.close(), 20.seconds)
     assert(recorder.recording.solved.sizeIs > 10, recorder.recording.solved.size)
 
-  /** Why a solver gives up. */
+  /** The reason that a solver reports when it gives up. */
   private def refused(at: Address, security: Map[String, String]): String =
     val serves = solver(KafkaTopics(at, "refused")(security))(_ => ())
     val why    = Await.result(serves.start().failed, 30.seconds).getMessage
@@ -75,21 +75,21 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   private def notTrusted(at: Address) = s"no trusted connection to the Kafka broker at $at: "
 
-  test("who shows no certificate, or one of another set, is refused at once, and told why"):
+  test("a client without a certificate, or with one of another set, is refused immediately, with the reason"):
     val silent = own.filterNot((key, _) => key.startsWith("ssl.key"))
     for shown <- Seq(silent, stranger) do
       assert(clue(refused(broker.address, shown)).startsWith(notTrusted(broker.address)))
 
-  test("a broker that is called by a name which its certificate does not have is told nothing"):
+  test("a broker under a name that its certificate does not contain receives no data"):
     val other = Address("localhost", broker.address.port)
     assert(clue(refused(other, own)).startsWith(notTrusted(other)))
 
-  test("a flight that the broker refuses is not flown, long before its patience ends, and says why"):
+  test("a flight that the broker refuses does not start, and reports that long before its patience ends"):
     val patience = Span.ofSeconds(600)
     val why      = flown("stranger", stranger, patience).swap.getOrElse(fail("it was flown"))
     assert(clue(why).contains(notTrusted(broker.address)))
 
-  test("who does not speak TLS hears nothing, and is told where it looked"):
+  test("a client without TLS receives nothing, and reports the address it tried"):
     val told   = Promise[String]()
     val serves = solver(KafkaTopics(broker.address, "plain")())(line => told.trySuccess(line): Unit)
     val never  = serves.start()

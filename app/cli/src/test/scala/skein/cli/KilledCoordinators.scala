@@ -9,14 +9,14 @@ import scala.util.Random
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
 
-/** A search by two workers, and the next by five, whose coordinator is killed twice, and of whom one is
-  * killed now and then; each time it goes on with `--resume`. Then its files are held to those of one
-  * process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Ends with an error where
-  * they differ, or where a block counts twice.
+/** A search with two workers, and one with five, whose coordinator is killed twice, and whose workers are
+  * killed from time to time; each time it continues with `--resume`. Then its files are compared with those
+  * of one process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Fails where they
+  * differ, or where a block counts twice.
   *
-  * @param candidates so many that the search lasts for all kills
-  * @param first number of a run, which is its seed; so is `last`
-  * @param everyS a worker is killed; on a busy machine workers take long to start
+  * @param candidates enough for the search to last for all kills
+  * @param first number of a run, which is its seed; likewise `last`
+  * @param everyS interval of killing a worker; on a busy machine workers take long to start
   */
 @main def killCoordinator(candidates: Int, first: Int, last: Int, everyS: Int, out: String): Unit =
   val question =
@@ -38,7 +38,7 @@ import skein.cluster.WorkerProcesses
     val elsewhere                  = Seq("--workers", s"$count", "--threads", s"$count", "--block", "1024")
     var (killed, workers, resumed) = (0, 0, 0)
 
-    /** From its start until it ends, or until the ledger has so many blocks more, when it is killed. */
+    /** Runs a coordinator until it ends, or until the ledger has `until` more blocks, when it is killed. */
     def life(number: Int, until: Option[Int]): Unit =
       val words = if number == 0 then question ++ Seq("--out", folder.toString)
       else Seq("search", "--resume", folder.toString)

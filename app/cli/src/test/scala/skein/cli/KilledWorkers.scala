@@ -7,11 +7,11 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Random
 import skein.blocks.Ledger
 
-/** One search by three workers, of whom one is killed every 5 s; then the same search by this process alone:
-  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Ends with an error where their files
-  * differ, or where a block counts twice.
+/** A search with three workers, one of which is killed every 5 s; then an equal search in this process alone:
+  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Fails where their files differ, or where a
+  * block counts twice.
   *
-  * @param candidates so many that the search lasts for all kills
+  * @param candidates enough for the search to last for all kills
   */
 @main def killWorkers(candidates: Int, kills: Int, out: String): Unit =
   given ExecutionContext = ExecutionContext.global

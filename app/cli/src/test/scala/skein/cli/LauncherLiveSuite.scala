@@ -6,7 +6,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.testing.TemporaryFolders
 
-/** `./skein` itself, in a checkout whose build is a script, so that each start takes a moment. */
+/** The script `./skein`, in a checkout with a fake build, so that each start takes a moment. */
 class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
@@ -38,7 +38,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     Files.writeString(file, s"#!/usr/bin/env bash\n$body\n")
     file.toFile.setExecutable(true): Unit
 
-  /** Exit status, and both outputs together. */
+  /** Exit status, and both outputs combined. */
   private def run(in: Path, environment: Map[String, String], command: String*): (Int, String) =
     val builder = ProcessBuilder(command*).directory(in.toFile).redirectErrorStream(true)
     builder.environment.keySet.asScala.toSeq
@@ -58,7 +58,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(status, 0, said)
     assert(clue(said).contains(s"$folder/app/cli/target/universal/stage/bin/skein: fly --seed 1"))
 
-  copy.test("a stage of which something was taken away is built again, and a whole one is not"): folder =>
+  copy.test("an incomplete stage is built again, and a complete one is not"): folder =>
     val stage = folder.resolve("app/cli/target/universal/stage")
     script(
       folder.resolve("sbtw"),
@@ -93,7 +93,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
     val (_, again) = run(cache, Map("XDG_CACHE_HOME" -> cache.toString), s"$folder/skein", "fly")
     assert(!clue(again).contains("building"))
 
-  test("an archive of classes that was not written to its end is removed, and a whole one is used"):
+  test("a truncated class archive is removed, and a complete one is used"):
     val folder = temporaryFolder()
     Files.createDirectories(folder.resolve("bin"))
     Files.copy(checkout.toPath.resolve("project/class-archive"), folder.resolve("class-archive"))
@@ -115,7 +115,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
       assert(!isKeptWith(Array.emptyByteArray))
 
-  test("an older Java, and none at all, is told in one line"):
+  test("an old Java, and a missing one, are reported in one line"):
     val folder = temporaryFolder()
     Files.copy(checkout.toPath.resolve("project/java-version"), folder.resolve("java-version"))
     script(
@@ -143,7 +143,7 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
       (1, "skein: Skein needs Java 25, and there is none as ./none; set JAVA_HOME\n")
     )
 
-  test("the last words to standard error are heard where all of a process group is ended"):
+  test("the last output on standard error is kept when a whole process group is ended"):
     val folder = temporaryFolder()
     Files.copy(checkout.toPath.resolve("project/quiet-vectors"), folder.resolve("quiet-vectors"))
     script(
@@ -166,5 +166,5 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
         |for _ in $(seq 200); do grep -q last said && break; sleep 0.01; done
         |cat said""".stripMargin
     )
-    // Behind what bash tells of a job that ended.
+    // Follows bash's message on a job that ended.
     assert(clue(said).endsWith("first\nlast\n"))

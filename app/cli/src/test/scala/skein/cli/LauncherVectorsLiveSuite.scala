@@ -3,9 +3,7 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import skein.testing.TemporaryFolders
 
-/** What our launcher and that of a project of a user's ask the JVM for: a JVM that says so, and nothing else,
-  * is in the place of a real one.
-  */
+/** The JVM options of our launcher and of a user project's: a fake JVM prints them. */
 class LauncherVectorsLiveSuite extends munit.FunSuite, TemporaryFolders:
   private lazy val scratch = temporaryFolder()
 
@@ -26,7 +24,7 @@ class LauncherVectorsLiveSuite extends munit.FunSuite, TemporaryFolders:
       file.toFile.setExecutable(true): Unit
     home
 
-  /** A project whose build has nothing to do. */
+  /** A user project whose build does nothing. */
   private lazy val project: Path =
     val folder = scratch.resolve("patrol")
     assertEquals(Ran.of(NewCommand.run(Seq("patrol", "--out", folder.toString))).status, 0)
@@ -37,7 +35,7 @@ class LauncherVectorsLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val commands = Main.commands.map(_.name)
 
   for (name, launcher) <- Seq("Skein's" -> (() => Launchers.staged), "a project's" -> (() => project)) do
-    test(s"$name launcher gives every command the JDK's vectors, and says nothing of them"):
+    test(s"$name launcher enables the JDK's vector module for every command, silently"):
       assume(Files.exists(launcher()), "./sbtw cli/stage makes the launcher")
       for command <- commands do
         val (status, said) = Launchers.run(launcher(), Seq(command, "--loop", "stream"), echoing.toString)

@@ -7,12 +7,12 @@ import scala.concurrent.ExecutionContext.Implicits.global
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 
-/** The programs' launchers, as they are started. */
+/** Starts programs through their launchers. */
 object Launchers:
   private val checkout: Path =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get.toPath
 
-  /** As `./sbtw cli/stage` makes it; it need not be there. */
+  /** The staged launcher, made by `./sbtw cli/stage`; it may not exist. */
   val staged: Path = checkout.resolve("app/cli/target/universal/stage/bin/skein")
 
   private def prepared(command: Seq[String], javaHome: String): ProcessBuilder =
@@ -20,20 +20,20 @@ object Launchers:
     builder.environment.put("JAVA_HOME", javaHome): Unit
     builder
 
-  /** Starts a launcher; what it says is written to `log`. */
+  /** Starts a launcher; its output is written to `log`. */
   def start(launcher: Path, log: Path, words: Seq[String]): Process =
     prepared(launcher.toString +: words, sys.props("java.home")).redirectOutput(log.toFile).start()
 
   /** Runs it to its end, within minutes.
     *
-    * @return its exit status, and what it said
+    * @return its exit status and output
     */
   def run(
       launcher: Path,
       words: Seq[String],
       javaHome: String = sys.props("java.home")
   ): (status: Int, said: String) =
-    // What filters its standard error may end after it; the pipe is read to its end.
+    // The filter of its standard error may end after it; the pipe is read to its end.
     val piped   = Seq("bash", "-c", "set -o pipefail; \"$@\" 2>&1 | cat", "run", launcher.toString)
     val process = prepared(piped ++ words, javaHome).start()
     val said    = Future(blocking(String(process.getInputStream.readAllBytes(), UTF_8)))

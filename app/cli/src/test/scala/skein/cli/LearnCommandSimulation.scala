@@ -49,11 +49,11 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val rows = ujson.read(out)("tables")(0)("rows").arr
     assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
     assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
-    // A policy of so few steps flies off, here as in flight.
+    // A policy after this few steps flies away, here as in flight.
     val Seq(learned, own, flown) = rows.map(_(2).num).toSeq: @unchecked
     assert(own < learned - 10 && math.abs(flown - learned) < 5, rows.toString)
 
-  test("what was learned learns on beside a flight, which is flown again to an equal digest"):
+  test("a learned policy continues to learn in flight, and a replay has an equal digest"):
     val folder           = temporaryFolder()
     val learned          = folder.resolve("learned").toString
     val (status, _, err) = run(Seq("--out", learned, "--batch", "32") ++ short)
@@ -92,13 +92,13 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(refused, 1, why)
     assert(why.contains("--learn-noise: expected 0.0 to 1, came 2.0"), why)
 
-  test("learning that is stopped and gone on with comes to the same policy, to the bit"):
+  test("learning that is stopped and continued has the same result, to the bit"):
     val question = LearnCommand
       .question(LearnOptionsOf(short))
       .fold(fail(_), identity)
     val setup = question.setup.fold(fail(_), identity)
     def learn(folder: Path, from: LearnState, rounds: Int) =
-      // So much time passes that every round is saved.
+      // Enough time passes that every round is saved.
       var (done, now) = (from.rounds, 0L)
       def later()     =
         now += 60_000_000_000L
@@ -116,7 +116,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(file.question, question)
     assertEquals(learn(folder, file.state, setup.rounds), whole)
 
-  test("who stops learning is told how to go on, and soon has the best measured"):
+  test("a user who stops learning is shown how to continue, and the best policy is measured soon"):
     val question = LearnCommand
       .question(LearnOptionsOf(short.updated(short.indexOf("--fresh") + 1, "150")))
       .fold(fail(_), identity)
@@ -143,7 +143,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assert(goOn >= 0 && row > goOn, out)
     assert(lines(row).contains(" 100  m"), out)
 
-  test("learning does not go on with a link that holds other delays than when it began"):
+  test("learning does not continue with a link whose file has changed"):
     val folder   = temporaryFolder()
     val link     = Files.writeString(folder.resolve("link.txt"), "20\n30\n")
     val question =
@@ -157,7 +157,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(status, 1, err)
     assert(clue(err).contains(s"--resume: $link no longer holds what it held when learning began"))
 
-  test("where a user's own code fails amid learning, that is told, and the best until then is kept"):
+  test("an exception of user code during learning is reported, and the best policy until then is kept"):
     object Own extends SkeinApp(ScenarioKind(LearnedUntilItFails()))
     val folder = temporaryFolder().resolve("learned")
     val words  = "learn --scenario learned-until-it-fails --objective off".split(' ').toSeq ++ short
@@ -169,7 +169,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assert(clue(ran.out).contains(s"the best policy until then: $folder/policy.conf"))
     assert(PolicyFile.read(folder.resolve("policy.conf").toString).isRight)
 
-  test("what cannot be learned is told in a line"):
+  test("an impossible learning task is refused in a line"):
     def refused(expected: String, words: String*) =
       val (status, _, err) =
         run(words ++ Seq("--out", temporaryFolder().resolve("no").toString))
@@ -209,7 +209,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
-  folder.test("where the disk is full, the learner's numbers before are kept and no part of others is"):
+  folder.test("on a full disk the learner's previous numbers are kept, and no part of new ones"):
     path =>
       final class Numbers(isFull: Boolean) extends Learner:
         def actor: Network                                                     = ???
@@ -233,7 +233,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assertEquals(written(3, isFull = false), Right(()))
       assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-3.bin"))
 
-  test("a folder of something else, or with a damaged state, is not gone on with"):
+  test("a folder with other content, or with a damaged state, is not continued"):
     val folder = temporaryFolder()
     assert(
       LearnFile.read(folder).left.exists(_.contains("expected the folder of learning, of ./skein learn"))
@@ -276,7 +276,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
 private def LearnOptionsOf(words: Seq[String]): LearnOptions =
   mainargs.ParserForClass[LearnOptions].constructOrThrow(words)
 
-/** Its quantity fails from some time on, after the policy has been judged for the first time. */
+/** A scenario whose quantity starts to fail after the policy was first evaluated. */
 final case class LearnedUntilItFails() extends Scenario:
   def agents: Vector[Agent] = Vector(
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Surrounding(1, 8, 4)),

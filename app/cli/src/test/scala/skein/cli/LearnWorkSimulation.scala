@@ -28,7 +28,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
     Vector.tabulate(setup.family.space.dimension)(number => math.sin(number.toDouble))
   )
 
-  /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
+  /** A worker that knows only the question's bytes; it answers the last block first. */
   private lazy val worker: BlockExecutor =
     val solver =
       QuestionKind.solvers.of(QuestionKind.Learn.of(LearnWork.question(setup))).fold(fail(_), identity)()
@@ -37,19 +37,19 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
         Future.successful(Right(Some(works.reverse.map(solver.solve).reverse)))
 
-  test("episodes measured elsewhere come to what they come to here, to the bit"):
+  test("episodes evaluated by workers have the bits of a local run"):
     for judge <- Seq(Judge.Winner, Judge.Baseline) do
       val elsewhere  = ClusterEvaluator(LearnWork.episodes(worker), judge, atMost = 16, _ => ())
       val candidates = Vector(if judge == Judge.Baseline then setup.baseline.candidate else policy.parameters)
       val here       = setup.judges(threads = 2)(judge).tallies(candidates, 0 until 24)
       assertEquals(elsewhere.tallies(candidates, 0 until 24), here)
 
-  test("so do flights in virtual time"):
+  test("flights in virtual time by workers have the results of a local run"):
     val here = LearnCommand.flown(setup, policy, 2).fold(fail(_), identity)
     assertEquals(LearnWork.distances(worker, policy, 2)(()).map(_.flatten), Right(here))
     assertEquals(here.size, 2)
 
-  test("learning goes on while a worker judges what was learned, and comes to the same, to the bit"):
+  test("learning continues while a worker evaluates the policy, with the bits of a local run"):
     val words =
       "--steps 2000 --environments 16 --lesson 5s --network 4 " +
         "--episodes 4 --duration 12s --updates-per-step 0.02"
@@ -69,7 +69,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
     assertEquals(beside, learned(here, isElsewhere = false)(_ => ()))
     assert(beside.exists(_.state.scores.sizeIs >= 3), beside.toString)
 
-  test("a worker to whom the question comes to something else refuses"):
+  test("a worker with another result for the question's probe refuses it"):
     val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
     val told  = LearnWork.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))
     assert(clue(told).left.exists(_.startsWith("the baseline comes to")))

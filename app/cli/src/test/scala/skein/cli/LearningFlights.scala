@@ -5,9 +5,8 @@ import skein.record.{EventKind, RecordingReader}
 import skein.report.DuelReport
 import skein.scenario.Scenarios
 
-/** The same flight with a policy that was learned, which learns on beside it or does not, in turns:
-  * `cli/Test/runMain skein.cli.learningFlights 60 3`. The network is the usual one, and so is what it learns
-  * from each decision.
+/** A flight with a learned policy, with and without learning in flight, in turns: `cli/Test/runMain
+  * skein.cli.learningFlights 60 3`. Network and lessons have their default sizes.
   */
 @main def learningFlights(seconds: Int, rounds: Int): Unit =
   given Scenarios = DuelReport.scenarios

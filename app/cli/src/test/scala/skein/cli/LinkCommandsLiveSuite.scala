@@ -56,7 +56,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
     assert(told.contains("the simulator has no vehicle '") && told.contains("; it has '"), told)
     assert(!told.contains("warmed up"), told)
 
-  test("where there is no simulator the error says what to look at"):
+  test("without a simulator the error states what to check"):
     val (status, _, told) = run(LatencyCommand, "--simulator", "127.0.0.1:1", "--samples", "1")
     assertEquals(status, 1)
     assert(told.contains("127.0.0.1:1"), told)
@@ -75,7 +75,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
       val told = run(LinkCommand, between ++ Seq(option, "dsl") ++ more*)._3
       assert(told.startsWith(s"skein link: $option: ") && told.contains("vpn-mixed"), told)
 
-  test("a port that is taken is called that"):
+  test("a port in use is reported as such"):
     val (status, _, told) = run(LinkCommand, "--listen", s"${server.address}", "--to", "127.0.0.1:1")
     assertEquals(status, 1)
     assert(told.contains(s"port ${server.address.port} of 127.0.0.1 is taken"), told)

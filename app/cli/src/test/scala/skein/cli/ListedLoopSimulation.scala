@@ -39,12 +39,12 @@ class ListedLoopSimulation extends munit.FunSuite, TemporaryFolders:
     assertEquals(replayed.status, 0, replayed.said)
     assert(replayed.said.contains("flown again"), replayed.said)
 
-    // A program that does not know it decides again, and does not fly again.
+    // A program without the loop can repeat its decisions, but not its flights.
     val elsewhere = run(Main, s"replay $recording")
     assertEquals(elsewhere.status, 0, elsewhere.said)
     assert(!elsewhere.said.contains("flown again"), elsewhere.said)
 
-  folder.test("many flights of it are spread; it is completed; who does not know it says which there are"):
+  folder.test("an own loop can be spread and completed, and a program without it lists the loops it has"):
     folder =>
       val spread =
         run(TakingTurns, s"spread --loop turns --link vpn --seeds 2 --duration 12s --out $folder/spread")
@@ -59,6 +59,6 @@ class ListedLoopSimulation extends munit.FunSuite, TemporaryFolders:
         unknown.said
       )
 
-  test("two loops of one name are refused"):
+  test("two loops with one name are refused"):
     val known = TakingTurns.scenarios
     intercept[IllegalArgumentException](known.copy(loops = known.loops ++ known.loops))

@@ -12,14 +12,16 @@ import skein.settings.FlySettings
 import skein.policy.Role
 import skein.optimise.Objective
 
-/** Skein does the same where i has no dot, where digits are Arabic, and where the point is a comma. */
+/** Skein's behaviour does not depend on locales in which i has no dot, digits are Arabic, or the decimal
+  * point is a comma.
+  */
 class LocaleSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
   private val locales = Seq("tr-TR", "az-AZ", "lt-LT", "de-DE", "ar-EG-u-nu-arab", "hi-IN-u-nu-deva")
 
   for tag <- locales do
-    test(s"settings, scenarios and objectives are read and told in $tag as anywhere"):
+    test(s"settings, scenarios and objectives are read and printed in $tag as in any locale"):
       val before = Locale.getDefault
       Locale.setDefault(Locale.forLanguageTag(tag))
       try
@@ -36,7 +38,7 @@ class LocaleSuite extends munit.FunSuite:
         assertEquals(Objective.parse("min", Role.Pursuer).map(_.text), Right("minimise min"))
       finally Locale.setDefault(before)
 
-  test("a wrong option is told in Turkish as anywhere"):
+  test("an unknown option is reported in a Turkish locale as in any other"):
     val before = Locale.getDefault
     Locale.setDefault(Locale.forLanguageTag("tr-TR"))
     try
@@ -53,8 +55,9 @@ class LocaleSuite extends munit.FunSuite:
     "format$extension(Ljava/lang/String;Lscala/collection/immutable/Seq;)Ljava/lang/String;"
   )
 
-  test("no class turns letters by the machine's locale; none of the libraries formats by it"):
-    // The commands set the locale before anything else, so what is the program's alone may format by it.
+  test("no class changes the case of letters, and no library formats numbers, by the machine's locale"):
+    // The commands set the locale before anything else, so code that belongs only to the program may format
+    // by it.
     val (program, library) = folders.partition(_.startsWith(folderOf(Main.getClass).getParent))
     val files              = library.flatMap(classFiles)
     assert(clue(library).sizeIs > 5 && files.sizeIs > 500)
@@ -62,7 +65,7 @@ class LocaleSuite extends munit.FunSuite:
       files.flatMap(calls).filter((_, called) => always(called) || libraries.contains(called))
     assertEquals(found.map((where, called) => s"$where calls $called"), Nil)
 
-  test("such calls are found"):
+  test("the check finds calls that depend on the locale"):
     val own = classFiles(folderOf(getClass)).filter(_.getFileName.toString.startsWith("LocaleSuite$Offender"))
     assertEquals(own.flatMap(calls).count((_, called) => always(called) || libraries.contains(called)), 3)
 
@@ -74,7 +77,7 @@ class LocaleSuite extends munit.FunSuite:
   private def folderOf(some: Class[?]): Path =
     Path.of(some.getProtectionDomain.getCodeSource.getLocation.toURI)
 
-  /** Of our modules' classes; what others wrote stands in jars. */
+  /** Folders with our own modules' classes; libraries are in jars. */
   private def folders: Seq[Path] =
     sys.props(
       "java.class.path"
@@ -86,7 +89,7 @@ class LocaleSuite extends munit.FunSuite:
     try found.iterator.asScala.filter(_.toString.endsWith(".class")).toVector
     finally found.close()
 
-  /** Every call: where, and the method's name with its type. */
+  /** Every call in a class: its place, and the method's name with its type. */
   private def calls(file: Path): Seq[(String, String)] =
     for
       method <- ClassFile.of().parse(file).methods.asScala.toSeq

@@ -6,12 +6,12 @@ import skein.scenario.Scenarios
 class MisuseSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  /** Exit status and what was said before the hint at `--help`. */
+  /** Exit status and the output before the hint at `--help`. */
   private def misused(command: Command, arguments: String*): (Int, Seq[String]) =
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.err.linesIterator.toSeq.dropRight(1))
 
-  test("a mistake is told in a line: which option, what was expected, what came"):
+  test("a mistake is reported in a line: which option, what was expected, what was given"):
     for
       (command, arguments, line) <- Seq(
         (

@@ -13,8 +13,8 @@ import skein.settings.*
 import skein.signal.SplitMix64
 import skein.view.RecordedShow
 
-/** Files that users name, each changed in a few places. Whatever reads one takes it, or says in a line for
-  * each value what is wrong and where.
+/** Files that users name, each changed in a few places. A reader must accept it, or report in a line for each
+  * value what is wrong and where.
   */
 enum MutatedFiles(val suffix: String, base: => Array[Byte]):
   case Configuration extends MutatedFiles(".conf", MutatedFiles.configuration.getBytes(UTF_8))
@@ -27,14 +27,13 @@ enum MutatedFiles(val suffix: String, base: => Array[Byte]):
   private lazy val whole  = base
   private lazy val pieces = if suffix == ".conf" then MutatedFiles.pieces else Vector.empty
 
-  /** Reads the file as it is, which is taken. */
+  /** Reads the unchanged file, which must be accepted. */
   def unchanged(folder: Path)(using Scenarios): Either[String, Any] =
     read(Files.write(folder.resolve(s"whole$suffix"), whole), folder)
 
   /** Reads one mutant.
     *
-    * @return what is wrong with what its reader does, if anything; whether it was taken; and its processor
-    *   time
+    * @return what its reader did wrong, if anything; whether the file was accepted; and the processor time
     */
   def attempt(seed: Long, folder: Path)(using
       Scenarios
@@ -86,13 +85,13 @@ enum MutatedFiles(val suffix: String, base: => Array[Byte]):
 object MutatedFiles:
   private val threads = ManagementFactory.getThreadMXBean
 
-  /** Of this thread, which does all the reading. */
+  /** Processor time of this thread, which reads everything. */
   private def cpuNanos: Long = threads.getCurrentThreadCpuTime
 
-  /** A configuration of three mutations has no more. */
+  /** Most lines of a report on three mutations. */
   private val MostLines = 12
 
-  /** How a message for a person is none. */
+  /** Why a message is not fit for a person, if so. */
   private def untold(reason: String, file: Path): Option[String] =
     val said  = Complaint.text(reason)
     val lines = said.linesIterator.toVector
@@ -108,7 +107,7 @@ object MutatedFiles:
         )
         .map(line => s"says: $line")
 
-  /** What stands in the place of a value. */
+  /** Texts that replace a value. */
   private val pieces: Vector[String] = Vector(
     "null",
     "{}",
@@ -143,7 +142,7 @@ object MutatedFiles:
     "include file(\"/etc/hostname\")"
   )
 
-  /** A value behind one of the signs `=`. */
+  /** Replaces the value after one of the signs `=`. */
   private def withValue(bytes: Array[Byte], number: Int, piece: String): Array[Byte] =
     val signs = bytes.indices.filter(bytes(_) == '=')
     if signs.isEmpty then bytes
@@ -203,7 +202,7 @@ object MutatedFiles:
     Using.resource(Files.walk(folder))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
     bytes
 
-/** Tries many mutants of each kind, and prints what is wrong. */
+/** Tries many mutants of each kind, and prints the failures. */
 @main def tryMutants(seed: Long, count: Int, kinds: String*): Unit =
   given Scenarios = DuelReport.scenarios
   val folder      = Files.createTempDirectory("mutants")

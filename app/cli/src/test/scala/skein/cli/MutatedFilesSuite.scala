@@ -4,12 +4,12 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** A few of what `tryMutants` tries by the thousand. */
+/** Tries a few of the mutants of `tryMutants`. */
 class MutatedFilesSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   for kind <- MutatedFiles.values do
-    folder.test(s"$kind: a file that was changed is read, or what is wrong with it is told in a line"):
+    folder.test(s"$kind: a mutated file is read, or its mistakes are reported, a line each"):
       folder =>
         assert(kind.unchanged(folder).isRight, kind.unchanged(folder))
         val count = if kind == MutatedFiles.Mcap then 10 else 100

@@ -2,7 +2,7 @@ package skein.cli
 
 class NarrowTerminalSuite extends munit.FunSuite:
 
-  test("a progress line leaves the last place of a terminal free, and says that it goes on"):
+  test("a progress line leaves the last column of a terminal free, and marks that it was cut"):
     val line = " 42 %  3 min left   best 8.31 m with pure-pursuit"
     for columns <- 1 to 80 do
       val shown = ProgressLine.cut(line, Some(columns))

@@ -14,7 +14,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     val ran = Ran.of(NewCommand.run(words))
     (ran.status, ran.said)
 
-  folder.test("a project is written whole, with its name in it, and nothing left open"): folder =>
+  folder.test("a project is written completely, with its name, and no placeholder is left"): folder =>
     val project = folder.resolve("somewhere")
     assertEquals(run("ridge-watch", "--out", project.toString)._1, 0)
     val files =
@@ -27,7 +27,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(Files.isExecutable(project.resolve("skein")))
     assert(Files.readString(project.resolve("build.sbt")).contains("ridge-watch"))
 
-  folder.test("what it says can be typed into a shell, whatever the folder is called"): folder =>
+  folder.test("the printed commands can be typed into a shell, whatever the folder is called"): folder =>
     for (name, typed) <- Seq("ridge" -> s"$folder/ridge", "my 'own' ü" -> s"'$folder/my '\\''own'\\'' ü'") do
       val (status, told) = run("ridge-watch", "--out", s"$folder/$name")
       assertEquals(status, 0, told)
@@ -38,7 +38,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
   ): folder =>
     val (first, moved) = (folder.resolve("ridge"), folder.resolve("moved here"))
     assertEquals(run("ridge-watch", "--out", first.toString)._1, 0)
-    // In sbt's place: counts, and names a library that no JVM takes, so that nothing flies.
+    // Replaces sbt: counts calls, and names a library that no JVM loads, so that nothing runs.
     val agent = Files.createFile(folder.resolve("agent.jar"))
     val _     = Files.writeString(
       first.resolve("sbtw"),
@@ -62,7 +62,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     val _ = Files.move(first, moved)
     assertEquals(builds(moved), 2)
     assertEquals(builds(moved), 2)
-    // It is known through links to links, too.
+    // It is also found through symbolic links.
     val links = Files.createDirectories(folder.resolve("links"))
     Files.createSymbolicLink(links.resolve("one"), Path.of("../moved here/skein"))
     Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))
@@ -74,17 +74,17 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     age(agent)
     assertEquals(builds(moved), 4)
 
-  folder.test("a folder may be told by way of one that is not there yet"): folder =>
+  folder.test("a folder may be named through one that does not exist yet"): folder =>
     val (status, told) = run("ridge-watch", "--out", s"$folder/missing/../x")
     assertEquals(status, 0, told)
     assert(Files.exists(folder.resolve("x/build.sbt")))
 
-  folder.test("a folder that is there is left alone"): folder =>
+  folder.test("an existing folder is left unchanged"): folder =>
     val (status, told) = run("ridge-watch", "--out", folder.toString)
     assertNotEquals(status, 0)
     assert(told.contains("expected a folder that is not there yet"), told)
 
-  folder.test("a folder that cannot be made is told, and nothing of it is left"): folder =>
+  folder.test("a folder that cannot be created is reported, and no part of it is left"): folder =>
     val file           = Files.createFile(folder.resolve("file"))
     val (status, told) = run("ridge-watch", "--out", s"$file/in/it")
     assertEquals(
@@ -98,7 +98,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(clue(why).startsWith("skein new: "))
     assertEquals(folder.toFile.list.toSeq, Seq("file"))
 
-  test("a name that would not compile is refused, and one is proposed that would"):
+  test("a name that would not compile is refused, and one that would is proposed"):
     for name <- Seq("object", "scenario", "agent", "scala", "skein", "vector3", "corners", "main", "type") do
       val (status, told) = run(name)
       assertNotEquals(status, 0, name)
@@ -106,7 +106,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     for name <- Seq("leader-flight", "leader", "patrol") do
       assertEquals(run(name, "--out", "/")._2.contains("-flight"), false, name)
 
-  test("a name that is none of a project is refused"):
+  test("an invalid project name is refused"):
     for name <- Seq("Ridge", "../ridge", "ridge watch", "-", "") do
       val (status, told) = run(name)
       assertNotEquals(status, 0, name)

@@ -1,6 +1,6 @@
 package skein.cli
 
-/** Walks all commands: one word means one thing in every one of them. */
+/** Compares the options of all commands: a word has one meaning in all of them. */
 class OptionsAgreeSuite extends munit.FunSuite:
   private val options: Seq[(Command, CommandOption)] =
     for command <- Main.commands; option <- command.options yield (command, option)
@@ -14,7 +14,7 @@ class OptionsAgreeSuite extends munit.FunSuite:
         assert(option.summary.length > 5, s"${command.name} $flag")
         assert(command.help.contains(flag), s"${command.name} $flag")
 
-  test("--out is a folder, and results go nowhere else"):
+  test("--out names a folder, and no command writes results elsewhere"):
     assert(having("--out").sizeIs > 6)
     for (command, option) <- having("--out") do
       assert(option.summary.startsWith("folder "), s"${command.name}: ${option.summary}")
@@ -27,7 +27,7 @@ class OptionsAgreeSuite extends munit.FunSuite:
     for (command, option) <- having("--predictor") do
       assert(option.summary.startsWith("model that predicts"), command.name)
 
-  test("scenario, settings, seed and loops are asked for in the same words wherever they are"):
+  test("the options for scenario, settings, seed and loops have equal descriptions in all commands"):
     for flag <- Seq("--set", "--seed") do
       val words = having(flag).map(_._2.summary.takeWhile(letter => letter != '(' && letter != ',').trim)
       assertEquals(words.distinct.size, 1, words.toString)

@@ -13,7 +13,7 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     val told = ByteArrayOutputStream()
     (Console.withErr(told)(Main.written(lost, broken(why))), told.toString)
 
-  test("what was said and could not be written is no success, but for a pipe that its reader closed"):
+  test("output that could not be written is no success, except into a pipe that its reader closed"):
     assertEquals(Main.written(PrintStream(ByteArrayOutputStream()), broken("unused")), 0)
     assertEquals(
       status("No space left on device"),
@@ -21,13 +21,13 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertEquals(status("Broken pipe"), (0, ""))
 
-  test("one command at a time works in a folder"):
+  test("only one command at a time writes to a folder"):
     val folder = temporaryFolder()
     val both   = OutFolder.alone(folder)(Right(OutFolder.alone(folder)(Right(1))))
     assert(clue(both).exists(_.left.exists(_.contains("another command is at work"))))
     assertEquals(OutFolder.alone(folder)(Right(2)), Right(2))
 
-  test("a command that cannot be done leaves no folder that it made and wrote nothing into"):
+  test("a refused command leaves no folder that it created and did not use"):
     val folder                                                           = temporaryFolder()
     def refused(name: String)(write: Path => Unit): Either[String, Unit] = OutFolder.unlessRefused:
       OutFolder.made("--out", s"$folder/$name").flatMap: made =>
@@ -46,7 +46,7 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(OutFolder.unlessRefused(OutFolder.made("--out", s"$folder/kept")).map(_ => ()), Right(()))
     assert(Files.exists(folder.resolve("kept")))
 
-  test("who ends virtual flights is told which are recorded"):
+  test("a user who ends virtual flights is shown how many are recorded"):
     assertEquals(
       FlyCommand.recorded(0, 1, Path.of("f")),
       "none of 1 flight has ended, and nothing is recorded"
@@ -56,7 +56,7 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
       "1 of 3 flights have ended and are recorded, the rest is not; ./skein report f/*.duckdb shows them"
     )
 
-  test("a flight without a decision is a mistake, unless somebody ended it before"):
+  test("a flight without a decision is an error, unless the user ended it before"):
     val decisions = Seq("stream-vpn" -> 0, "futures-vpn" -> 12, "predictive-vpn" -> 0)
     val told      = FlyCommand.undecided(decisions, ended = Set("predictive-vpn"))
     assert(told.left.exists(_.startsWith("nothing was decided in stream-vpn: ")), told.toString)

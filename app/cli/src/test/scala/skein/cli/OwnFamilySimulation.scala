@@ -6,7 +6,7 @@ import skein.policy.*
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
-/** Turns towards where the opponent is, the less the older that is known to be. */
+/** Turns towards the opponent's last known position, less the older it is. */
 final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
   def initial: Double = 0
 
@@ -38,7 +38,7 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
     assertEquals(status, 0, said)
     said
 
-  folder.test("a family of one's own is searched by SIMD, flown, replayed and swept, by its name"): folder =>
+  folder.test("a user's own family is searched with SIMD, run, replayed and swept, by its name"): folder =>
     val found = done(
       "search --family doubting --candidates 16 --episodes 2 --fresh " +
         s"16 --duration 12s --link vpn --out $folder/found"
@@ -58,7 +58,7 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
       s"budget --policy doubting --means 2 --jitters 2 --episodes 10 --duration 12s --out $folder/swept"
     ): Unit
 
-    // A program that does not know it says which it knows.
+    // A program without the family lists those it has.
     val (status, said) = run(Main, s"fly --clock virtual --policy $policy --out $folder/refused")
     assertEquals(status, 1, said)
     assert(
@@ -66,11 +66,11 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
       said
     )
 
-  test("bash completes a family of one's own"):
+  test("bash completes a user's own family"):
     val search = Doubters.commands.find(_.name == "search").get
     assert(search.options.exists(option => option.flag == "--family" && option.values.contains("doubting")))
 
-  test("two families of one name, and names that options could not tell, are refused"):
+  test("two families with one name, and names that options could not distinguish, are refused"):
     def known(names: String*) =
       Scenarios(Scenarios.ours.kinds, names.toVector.map(Doubters.family))
     assertEquals(known("mine", "yours").family("yours").map(_.name), Right("yours"))

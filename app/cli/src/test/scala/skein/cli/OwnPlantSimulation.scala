@@ -34,13 +34,14 @@ class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opti
     Files.list(folder).filter(_.toString.endsWith("vpn.duckdb")).findFirst.get
 
   folder.test(
-    "a plant of one's own is fitted to flights, flies searches, predicts in flight, and is replayed"
+    "a user's own plant is fitted to flights, simulated in searches, predicts in flight, and is " +
+      "replayed"
   ): folder =>
     val flight = "fly --clock virtual --link vpn --duration"
     done(s"$flight 40s --loop stream --out $folder/flown"): Unit
     val fitted = done(s"identify ${recording(folder.resolve("flown"))} --structure leaning --out $folder")
     assert(fitted.contains("lean-lag-s") && !fitted.contains("Off the full quadrotor"), fitted)
-    // What another throws ends nothing.
+    // An exception of another structure ends nothing.
     assert(
       clue(fitted).linesIterator.exists(
         _.matches(
@@ -61,7 +62,7 @@ class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opti
     val flown = recording(folder.resolve("foreseen"))
     assert(done(s"replay $flown").contains("same"))
 
-    // Skein's own program does not know the structure: not in a file, and not in a recording.
+    // Skein's own program lacks the structure: both in a file, and in a recording.
     val (status, said) = run(Main, s"search --plant $model --candidates 4")
     assertEquals(status, 1)
     assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), came 'leaning'"), said)

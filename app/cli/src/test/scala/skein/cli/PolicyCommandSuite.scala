@@ -20,7 +20,7 @@ class PolicyCommandSuite extends munit.FunSuite, TemporaryFolders:
       .writeString(folder.resolve("policy.conf"), PolicyFile(family.roles.head, family, values).hocon(""))
       .toString
 
-  test("a network goes to ONNX and back, to the bit"):
+  test("a network converted to ONNX and back has equal bits"):
     val folder         = temporaryFolder()
     val file           = written(folder, "learned:4x3")
     val onnx           = folder.resolve("policy.onnx").toString
@@ -33,7 +33,7 @@ class PolicyCommandSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(PolicyFile.read(conf).map(_.text), PolicyFile.read(file).map(_.text))
     assertEquals(PolicyFile.read(conf).map(_.role), PolicyFile.read(file).map(_.role))
 
-  test("what is no network, no file, or no folder to write into, is told"):
+  test("a policy that is no network, a missing file, and an unusable folder are reported"):
     val folder = temporaryFolder()
     for
       (words, expected) <- Seq(

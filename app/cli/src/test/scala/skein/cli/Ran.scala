@@ -3,13 +3,13 @@ package skein.cli
 import java.io.ByteArrayOutputStream
 import java.nio.charset.StandardCharsets.UTF_8
 
-/** What a command that ran in this process said.
+/** The result of a command that ran in this process.
   *
   * @param status its exit status
   */
 private[cli] final case class Ran(status: Int, out: String, err: String):
 
-  /** On both outputs, standard error first. */
+  /** Both outputs, standard error first. */
   def said: String = err + out
 
 private[cli] object Ran:

@@ -52,7 +52,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assert(Files.exists(folder.resolve("report/report.html")))
 
   recordings.test(
-    "a recording is not exported onto itself, whatever it is called there, and a folder is no recording"
+    "a recording is not exported over itself under any name, and a folder is no recording"
   ): folder =>
     val file   = folder.resolve("stream-vpn.duckdb")
     val before = Files.size(file)
@@ -66,7 +66,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(status, 1)
     assert(err.contains("/ is not a recording: it is a folder"), err)
 
-  test("flights over links with signs in their names have files of their own, and their report knows them"):
+  test("flights over links with special characters in their names have separate files, which reports read"):
     val folder = temporaryFolder()
     val words  = "fly --clock virtual --loop stream --duration 1s --link".split(' ').toSeq
     val flown  = Ran.of(Main.run(words ++ Seq("constant:50ms", "--out", folder.resolve("one").toString)))
@@ -125,7 +125,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
 
   flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
     folder =>
-      // Of a program's own structures all are fitted too, and one that cannot be is named.
+      // A program's own structures are all fitted, too, and one that cannot be is named.
       def own(label: String, parameters: Int)(plant: Vector[Double] => ReducedModel) =
         Structure(label, SearchSpace(Vector.tabulate(parameters)(i => Axis(s"lag-$i-s", 0.02, 30, 1))), plant)
       val plain               = own("plain", 1)(values => ReducedModel.lag(1, values(0), 0))
@@ -171,7 +171,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(unfit, 1)
     assert(reason.contains("expected"), reason)
 
-  recordings.test("a flight that is named twice, or has a copy, is not fitted to as if it were two"):
+  recordings.test("a flight that is named twice, or copied, is fitted only once"):
     folder =>
       val flight               = folder.resolve("stream-vpn.duckdb")
       val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
@@ -190,7 +190,9 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assert(err.contains(s"$text is not a recording"), err)
     assert(!Files.exists(folder.resolve("report.html")))
 
-  recordings.test("digest shows the same for the same contents in another file, and another for others"):
+  recordings.test(
+    "equal contents in different files have equal digests, and different contents different ones"
+  ):
     folder =>
       val again = folder.resolve("again.duckdb")
       write(SyntheticFlight("stream", "vpn", seed = 1, seconds = 12), again)
@@ -210,7 +212,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     )
     assert(Files.size(parquet.resolve("decision.parquet")) > 1000)
 
-  recordings.test("export --mcap writes a file of which import makes the same recording"): folder =>
+  recordings.test("a recording exported with --mcap and imported again is unchanged"): folder =>
     val recording     = folder.resolve("stream-vpn.duckdb").toString
     val mcap          = folder.resolve("flight.mcap").toString
     val again         = folder.resolve("again.duckdb").toString
@@ -243,7 +245,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     plots.foreach:
       case path(topic, field) => assert(schemas(topic)("properties").obj.contains(field), s"$topic.$field")
       case other              => fail(other)
-    // The duel's, and those of a forest's scouts with their lidars; two vehicles' front cameras.
+    // The duel's vehicles, and a forest's scouts with their lidars; two vehicles' front cameras.
     val scouts  = (1 to 5).map(number => s"Scout$number").toVector
     val sensors = scouts.map(ImagingSensor(_, "lidar", isLidar = true)) ++
       Seq("Pursuer", "Evader").map(ImagingSensor.camera(_, "front_center", "Scene"))
@@ -254,7 +256,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       images.flatMap(mode => Seq(mode("imageTopic").str, mode("calibrationTopic").str))
     assertEquals((images.size, shown.diff(known)), (2, Set.empty[String]))
 
-  recordings.test("export says what it can write when nothing was asked for"): folder =>
+  recordings.test("export without a format lists the formats"): folder =>
     val (status, _, err) = run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString)
     assertEquals(status, 1)
     assert(

@@ -28,7 +28,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
   private def fly(gauge: ScenarioGauge, steps: Range): Unit =
     for step <- steps; vehicle <- Seq("A", "B") do gauge.see(reading(step, vehicle))
 
-  test("a scenario's series come point by point, each once, with the bound they are held to"):
+  test("a scenario's series arrive point by point, each once, with their bound"):
     val told = gauge(Climbing)
     fly(told, 0 to 10)
     val first = ujson.read(told.json().get)("series")(0)
@@ -40,7 +40,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
     val later = ujson.read(told.json().get)("series")(0)("points").arr.map(_(0).num)
     assert(later.head > points.last._1 && later.last > 1.9, later)
 
-  test("a limit that is broken is told with its worst and who broke it, and stays so"):
+  test("a broken limit is reported with its worst value and the vehicles that broke it, and stays so"):
     val told     = gauge(Capped(1.5))
     def limits() = ujson.read(told.json().get)("limits").arr
     fly(told, 0 to 10)
@@ -50,7 +50,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
     assertEquals((ceiling("text").str, ceiling("altitudeM").num), ("altitude of at most 1.5 m", 1.5))
     assertEquals((ceiling("stretches").num.toInt, ceiling("worst").str), (2, "2.0 m"))
 
-  test("of many readings every second is forgotten, and before all vehicles are seen nothing is told"):
+  test("of many readings every second one is dropped, and before all vehicles are seen nothing is sent"):
     val told = gauge(Climbing, most = 100)
     told.see(reading(0, "A"))
     assertEquals(told.json(), None)
@@ -58,7 +58,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
     assert(told.kept <= 100 && told.kept >= 40, told.kept)
     assertEqualsDouble(ujson.read(told.json().get)("series")(0)("points").arr.last(0).num, 99.8, 3)
 
-  test("a computation that took long is followed by a long rest"):
+  test("a long computation is followed by a long pause"):
     var now  = 0L
     val slow = gauge(Climbing, clock = () => { now += 10_000_000L; Instant.ofNanos(now) })
     fly(slow, 0 to 10)
@@ -68,7 +68,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
     now += 200_000_000L
     assert(slow.json().isDefined)
 
-  test("a scenario whose code fails is told once, and asked no more"):
+  test("a scenario whose code fails is reported once, and not computed again"):
     val told = gauge(Failing)
     fly(told, 0 to 10)
     assertEquals(ujson.read(told.json().get)("failed").str, "no such thing")

@@ -4,7 +4,7 @@ import skein.gpu.CudaGpu
 import skein.testing.{Optimised, TemporaryFolders}
 
 class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
-  test("with --json a search prints its result as data, and all else to the error output"):
+  test("with --json a search prints its result as data, and everything else to the error output"):
     val words =
       "search --family lead-pursuit --candidates 8 --episodes 1 --fresh 2 --duration 12s --json --out".split(
         ' '
@@ -32,7 +32,7 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       val (status, told) = refused()
       assert(status != 0 && told.contains(s"--gpu: $why"), told)
 
-  test("without an objective, the measures of the scenario are told that there may be"):
+  test("without an objective, the possible measures of the scenario are listed"):
     val ran = Ran.of(Main.run(Seq("search", "--scenario", "crossing", "--vary", "lane-m=4..8")))
     assertEquals(ran.status, 1)
     assertEquals(

@@ -3,11 +3,11 @@ package skein.cli
 import skein.airsim.WorldSettings
 import skein.link.Address
 
-/** Where `serve` listens. */
+/** Chooses the listening address of `serve`. */
 class ServeAddressSuite extends munit.FunSuite:
   private val world = WorldSettings.Default
 
-  test("at the port of the settings on this machine alone, unless the command line says otherwise"):
+  test("the default address is this machine's, at the settings' port, unless the command line sets another"):
     val set = world.copy(apiPort = Some(42099))
     assertEquals(ServeCommand.addressOf(None, world), Right(Address("127.0.0.1", 41451)))
     assertEquals(ServeCommand.addressOf(None, set), Right(Address("127.0.0.1", 42099)))

@@ -6,10 +6,10 @@ import skein.simulator.PeerStats
 class ServerNewsSuite extends munit.FunSuite:
   private val calm = ServerStats(3, 3, 0, 0, 0, 0, 0, 0, 100, 0, 100, 0, 0, 0, 0, 500, 3 << 20)
 
-  test("as long as nobody is refused anything, nothing is said"):
+  test("while no client is refused anything, nothing is printed"):
     assertEquals(ServerNews.line(calm, ServerLimits()), None)
 
-  test("what peers of MAVLink lost is told, too"):
+  test("losses of MAVLink peers are printed, too"):
     assertEquals(
       ServerNews.line(
         calm,
@@ -33,7 +33,7 @@ class ServerNewsSuite extends munit.FunSuite:
       )
     )
 
-  test("lost lockstep, foreign connections and moves that hold all workers are told"):
+  test("lost lockstep, foreign connections and moves that hold all workers are printed"):
     assertEquals(
       ServerNews.line(calm, ServerLimits(), PeerStats(unanswered = 1, foreign = 2), "px4", hasHeldUp = true),
       Some(

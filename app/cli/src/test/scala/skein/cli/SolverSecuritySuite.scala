@@ -11,7 +11,7 @@ class SolverSecuritySuite extends munit.FunSuite, TemporaryFolders:
   private def refused(at: String, tls: Option[String] = None, kafka: Option[String] = None): String =
     SolverSecurity(tls, kafka).checked(way(at)).swap.getOrElse(fail("was taken"))
 
-  test("on loopback nothing is asked for; beyond it TCP needs certificates, and Kafka its own settings"):
+  test("on loopback no security is required; beyond it TCP needs certificates, and Kafka its own settings"):
     for at <- Seq("tcp://127.0.0.1:7400", "tcp://localhost:1", "kafka://127.0.0.1:9092/skein", "link:direct")
     do
       assertEquals(
@@ -23,7 +23,7 @@ class SolverSecuritySuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(refused(at)).startsWith("--tls: expected"))
     assert(clue(refused("kafka://192.0.2.1:9092/skein")).startsWith("--tls: expected"))
 
-  test("what is of another kind of solver is refused, and files that are not there are named"):
+  test("options of another kind of solver are refused, and missing files are named"):
     assert(clue(refused(
       "tcp://127.0.0.1:1",
       kafka = Some("f")
@@ -39,7 +39,7 @@ class SolverSecuritySuite extends munit.FunSuite, TemporaryFolders:
     assert(clue(refused("tcp://192.0.2.1:1", tls = Some("no-such-folder"))).contains("no-such-folder"))
     assert(clue(refused("kafka://192.0.2.1:1/a", kafka = Some("no-such-file"))).contains("no-such-file"))
 
-  folder.test("of Kafka's settings those of security are taken, and say by which protocol"): folder =>
+  folder.test("Kafka's security settings are used, and state the protocol"): folder =>
     def read(text: String) = SolverSecurity.properties(Files.writeString(folder.resolve("kafka"), text))
     assertEquals(
       read("# a broker's\nsecurity.protocol=SSL\nssl.truststore.location=/t.p12\n"),

@@ -18,7 +18,7 @@ import skein.solver.*
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
 
-/** Solvers that show certificates, and ask for them, on loopback. */
+/** Solvers with certificates that require clients' certificates, on loopback. */
 class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given system: ActorSystem = ActorSystem("SolverTlsLiveSuite")
   private given Scenarios           = Scenarios.ours
@@ -39,7 +39,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private val loopback = Address("127.0.0.1", 0)
 
-  /** Answers what it hears, and counts it. */
+  /** A server that echoes its input, and counts it. */
   private def echoing[A](shows: SSLContext)(body: (Listening, AtomicInteger) => A): A =
     val heard = AtomicInteger()
     val echo  = Flow[ByteString].map: bytes =>
@@ -63,14 +63,14 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def failure(exchange: Future[String]): Throwable = Await.result(exchange.failed, 30.seconds)
 
-  test("with certificates of one set both sides hear one another"):
+  test("with certificates of one set both sides receive each other's messages"):
     echoing(own): (server, _) =>
       assertEquals(Await.result(exchanged(server.address, Some(own)), 30.seconds), "geese")
 
-  test("nothing is heard of who shows no certificate, one of another set, or speaks an older TLS"):
+  test("a peer without a certificate, with one of another set, or with an older TLS is not accepted"):
     echoing(own): (server, heard) =>
       assert(clue(failure(exchanged(server.address, Some(stranger)))).isInstanceOf[TransportError.NotTrusted])
-      // Who does not speak TLS is cut off, and sees no answer.
+      // A peer without TLS is disconnected, and receives no answer.
       val plain = Await.ready(exchanged(server.address, None), 30.seconds).value.get
       assertNotEquals(plain.getOrElse(""), "geese")
       val socket = own.getSocketFactory.createSocket("127.0.0.1", server.address.port).asInstanceOf[SSLSocket]
@@ -80,7 +80,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       finally socket.close()
       assertEquals(heard.get, 0)
 
-  test("who listens with the certificate of another host, or of another set, is told nothing"):
+  test("a server with the certificate of another host, or of another set, receives no data"):
     for shown <- Seq(elsewhere, stranger) do
       echoing(shown): (server, heard) =>
         val why = failure(exchanged(server.address, Some(own)))
@@ -96,9 +96,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     try body(server.address)
     finally Await.result(server.close(), 20.seconds): Unit
 
-  test(
-    "a flight that does not trust its solver, or is not trusted, is told so long before its patience ends"
-  ):
+  test("a flight that does not trust its solver, or is not trusted, fails long before its patience ends"):
     for
       (solvers, flights, who) <- Seq(
         (stranger, own, "whose side is refused here"),
@@ -113,14 +111,14 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         assert(clue(why).contains(s"no trusted connection to $at, "))
         assert(clue(why).contains(who))
 
-  test("a flight without certificates is told so long before its patience ends"):
+  test("a flight without certificates fails with that reason long before its patience ends"):
     served(own): at =>
       val link   = TcpLink(transport(None), at, () => SolverOptions.wantsTls(at))
       val flight = SolvedFlight(SolverChoice.Tcp(at), link, patience = Span.ofSeconds(600))
       val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
       assert(clue(why).contains(s"the solver at $at asks for certificates; expected --tls FOLDER"))
 
-  test("a flight with certificates is told what its solver lacks so long before its patience ends"):
+  test("a flight with certificates reports what its solver lacks long before its patience ends"):
     val server = Await.result(
       SolverServer.start(loopback, transport(None), SolvedFlight.desk(), Clock.system),
       20.seconds
@@ -133,8 +131,8 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(why).contains(s"the solver at $at does not speak TLS; expected ./skein decide with --tls"))
     finally Await.result(server.close(), 20.seconds): Unit
 
-  test("a flight with certificates that nothing is known of asks whether its solver has them, too"):
-    // A link whose other side is not there.
+  test("a flight with certificates checks whether an unknown solver has them, too"):
+    // A link whose far side is down.
     val closing = transport(None).listen(loopback).to(Sink.foreach(
       _.flow.join(Flow.fromSinkAndSource(Sink.cancelled, Source.empty)).run(): Unit
     ))

@@ -25,7 +25,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
 
   private def ready(words: String) = SpreadQuestion.Ready(options(words).settings.fold(fail(_), identity))
 
-  /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
+  /** A worker that knows only the question's bytes; it answers the last block first. */
   private def worker(words: String)(change: ArraySeq[Byte] => ArraySeq[Byte] = identity): BlockExecutor =
     val solver =
       QuestionKind.solvers.of(QuestionKind.Spread.of(question(words).bytes)).fold(fail(_), identity)()
@@ -54,7 +54,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
       "a team" -> "--scenario surround --loop paused --loop stream --link vpn --duration 8s"
     )
   do
-    test(s"$name flown elsewhere tell what they tell here, every number to the bit"):
+    test(s"$name run by workers have the results of a local run, every number to the bit"):
       val asked = ready(words)
       val here  = if words == duels then duelsHere else SpreadFlights.fly(asked.settings, asked.flights(2))
       var count = 0
@@ -68,7 +68,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
         assertEquals(a.distance, b.distance)
         assertEquals(a.result.map(_.measured.map(_.value)), b.result.map(_.measured.map(_.value)))
 
-  test("a flight that is too large for a message is flown here, and told; cut-off answers are no flights"):
+  test("a flight too large for a message is run here and reported; truncated answers are refused"):
     val asked = ready(duels)
     var told  = Vector.empty[String]
     val large = worker(duels)(_ => BlockBytes.of(SpreadQuestion.FlightAnswer.TooLarge))
@@ -79,7 +79,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
     val cut = asked.elsewhere(worker(duels)(answer => answer.take(answer.length / 2)), 1, _ => ())(())(())
     assert(clue(cut).left.exists(_.startsWith("expected a flight's answer")))
 
-  test("a flight that could not be flown elsewhere is told with its seed and its reason"):
+  test("a flight that a worker could not run is reported with its seed and the reason"):
     val asked  = ready(duels)
     val failed = worker(duels)(_ => BlockBytes.of(SpreadQuestion.FlightAnswer.NotFlown("no rotor turned")))
     val there  = asked.elsewhere(failed, 2, line => fail(line))(())(()).fold(fail(_), identity)
@@ -88,10 +88,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
       Left("predictive-vpn, seed 2: no rotor turned")
     )
 
-  test(
-    "a worker whose flights are others refuses, and so does the " +
-      "command where workers could not ask the policy"
-  ):
+  test("a worker with other flights refuses, and so does the command if workers could not load the policy"):
     val other = String(question(duels).bytes.toArray, UTF_8).replace("vpn", "direct")
     val told  = SpreadQuestion.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))
     assert(clue(told).left.exists(_.startsWith("short flights are others here")))

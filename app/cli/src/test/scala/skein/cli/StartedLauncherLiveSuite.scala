@@ -3,8 +3,8 @@ package skein.cli
 import java.nio.file.Files
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** Commands of the README as a user starts them: the launcher's script, as `cli/stage` makes it, in a process
-  * of its own.
+/** Commands of the README as a user starts them: through the staged launcher script, in a process of their
+  * own.
   */
 class StartedLauncherLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private lazy val scratch = temporaryFolder()

@@ -4,8 +4,8 @@ import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import skein.testing.{Conclusive, Lengthy, TemporaryFolders}
 
-/** `decide` and `fly` as two programs that the launcher's script starts, as it is made by `cli/stage`: what
-  * it leaves out of their command lines, no test within a process sees.
+/** `decide` and `fly` as two programs started by the staged launcher script: tests within one process cannot
+  * see mistakes in its command lines.
   */
 class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Conclusive:
   private lazy val scratch = temporaryFolder()
@@ -14,7 +14,7 @@ class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     val log = scratch.resolve(s"$name.log")
     (Launchers.start(Launchers.staged, log, words), log)
 
-  /** Asks again and again, since the other process tells by its log alone when it has come so far. */
+  /** Polls the log of the other process for its address. */
   private def addressIn(log: Path, of: Process): String =
     val said     = """decides at (tcp://\S+);""".r
     val deadline = System.nanoTime + TimeUnit.MINUTES.toNanos(2)
@@ -22,7 +22,7 @@ class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     while found.isEmpty && of.isAlive && System.nanoTime < deadline do Thread.sleep(20)
     found.getOrElse(fail(s"no address in what the solver said: ${Files.readString(log)}"))
 
-  test("a flight's manoeuvres are planned by a solver of another process, with the JDK's vectors"):
+  test("a solver in another process plans a flight's manoeuvres, with the JDK's vector module"):
     assume(Files.exists(Launchers.staged), "./sbtw cli/stage makes the launcher")
     conclusive:
       val (solver, solverLog) = started("decide", "decide", "--at", "tcp://127.0.0.1:0")

@@ -13,7 +13,7 @@ class TortureQuestionSimulation extends munit.FunSuite, Unhurried:
 
   private def ready(of: TortureQuestion) = of.ready.fold(fail(_), identity)
 
-  test("flown in blocks elsewhere, flights tell what they tell here, broken rules included"):
+  test("flights run in blocks by workers have the results of a local run, including broken rules"):
     val question = TortureQuestion.of(duration, Some("failing"), None)
     var here     = Vector.empty[FaultVerdict]
     ready(question).fly(Iterator(3, 4, 5), threads = 1)(here :+= _)
@@ -28,7 +28,7 @@ class TortureQuestionSimulation extends munit.FunSuite, Unhurried:
     val question = TortureQuestion.of(duration, Some("unknown"), None)
     assert(clue(TortureQuestion.read(question.bytes)).left.exists(_.startsWith("--scenario: ")))
 
-/** Whose policy gives up. */
+/** A scenario whose policy throws after some time. */
 final case class Failing(afterS: Double = 4) extends Scenario:
   def agents: Vector[Agent] =
     Vector(Agent("Lone", Role("Lone"), MetresPerSecond(6), Vector3(0, 0, -10), Radians(0), GivesUp(afterS)))

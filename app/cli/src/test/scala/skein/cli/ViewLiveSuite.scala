@@ -16,7 +16,7 @@ import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 import skein.units.Clock
 import skein.view.{RecordedShow, Shows, ViewServer}
 
-/** Flights that are looked at while they fly: by Foxglove's own client, and in a browser. */
+/** Flights that are viewed while they run: by Foxglove's own client, and in a browser. */
 class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   import ViewLiveSuite.*
   private given Scenarios = DuelReport.scenarios
@@ -42,7 +42,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
 
   private def step(what: String, how: ujson.Value*): ujson.Value = ujson.Arr((ujson.Str(what) +: how)*)
 
-  folder.test("Foxglove's client subscribes to every topic, and every message is as its topic's schema says"):
+  folder.test("Foxglove's client subscribes to every topic, and every message fits its topic's schema"):
     out =>
       val packages = needed(JavaScriptTools.packages)
       val flying   = Flying.start(out, Flown*)
@@ -67,7 +67,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         "/skein/scenario"
       )
       val seens = told.map((protocol, said) => protocol -> ujson.read(said.fold(fail(_), identity)))
-      // Before the flight is ended, which has ended by itself where something never came.
+      // Checked before the flight is ended: it has ended by itself if something never arrived.
       for (protocol, seen) <- seens do
         assertEquals((seen("protocol").str, seen("wrong")), (protocol, ujson.Arr()))
         val counts = seen("topics").arr.map(topic => topic("name").str -> topic("messages").num.toInt).toMap
@@ -91,7 +91,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
             (state.value.positionNed.x, state.receivedAt.toNanos)
           )
 
-  folder.test("in a browser a flight is seen, paused and let go on, and its recording is played and sought"):
+  folder.test("in a browser a flight is shown, paused and resumed, and its recording is played and sought"):
     out =>
       val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
       val flying = Flying.start(out, Flown*)
@@ -174,7 +174,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
       assert(images.sizeIs > 20, s"${images.size} images")
       assertEquals(seen("told")("decided"), seen("told")("still"))
-      // Two of each part of a vehicle, and due, events, view, cast, steered, fan, record, feed back.
+      // Two of each vehicle's stages, and due, events, view, cast, steered, fan, record, feed back.
       assertEquals(seen("told")("parts").num.toInt, 18)
       assertEquals(seen("told")("crossed").num.toInt, 0, "lines above labels")
       for vehicle <- seen("told")("before").arr do
@@ -186,7 +186,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
         assert(vehicle(3).num > 3)
       replayed(file, recorded)
 
-  /** What the page shows at a time is what the recording held by then. */
+  /** Checks that the page shows at a time exactly what the recording held by then. */
   private def replayed(file: Path, recorded: Recording): Unit =
     val shows = Shows()
     val rows  = RecordingReader.records(file).fold(error => fail(error.message), identity)
@@ -226,7 +226,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
 object ViewLiveSuite:
   private val SeenReadings = 60
 
-  /** For as long as a busy machine may need to serve all; they end it. */
+  /** Options for flights long enough for a busy machine to serve all viewers; the viewers end them. */
   private val Flown = Seq(
     "--loop",
     "predictive",
@@ -242,7 +242,7 @@ object ViewLiveSuite:
 
   private val Vehicles = Vector("Pursuer", "Evader")
 
-  /** What is not to move when a flight has ended. */
+  /** A script that reads what must not move once a flight has ended. */
   private val Standing =
     "[skein.flight.now, document.getElementById('time').textContent, " +
       "[...skein.flight.vehicles.values()].map(one => [one.trail.length, one.north]), " +
@@ -264,10 +264,10 @@ object ViewLiveSuite:
       ) ++
       Seq("/scene", "/vehicles/Pursuer/front_center/image", "/vehicles/Evader/front_center/calibration")
 
-  /** What waits for other processes, each on a thread of its own. */
+  /** Threads for waiting on other processes. */
   private val threads = ExecutionContext.fromExecutor(Executors.newCachedThreadPool())
 
-  /** `./skein fly --view` in this process. */
+  /** `./skein fly --view`, run in this process. */
   final class Flying(err: ByteArrayOutputStream, status: Future[Int]):
     private def told(what: String): String = s"$what(\\S+)".r
       .findFirstMatchIn(err.toString)
@@ -277,14 +277,14 @@ object ViewLiveSuite:
     def token: String = told("controls: ")
     def port: Int     = url.split(':').last.toInt
 
-    /** Until viewers find it. */
+    /** Waits until viewers can find the flight. */
     def awaitStart(flight: String): Unit =
       val listed = HttpRequest.newBuilder(URI.create(s"$url/flights")).build()
       Using.resource(HttpClient.newHttpClient()): client =>
         while !status.isCompleted && !client.send(listed, BodyHandlers.ofString).body.contains(flight) do
           Thread.sleep(50)
 
-    /** As the page's button does. */
+    /** Aborts a flight as the page's button does. */
     def abort(flight: String): Unit =
       val request = HttpRequest.newBuilder(URI.create(s"$url/flights/$flight/abort"))
         .header("X-Skein-Token", token)
@@ -293,7 +293,7 @@ object ViewLiveSuite:
       val answer = Using.resource(HttpClient.newHttpClient())(_.send(request, BodyHandlers.ofString))
       if answer.statusCode != 200 then throw IllegalStateException(answer.body)
 
-    /** Waits for its end. */
+    /** Waits for the command's end. */
     def land(): Unit =
       val ended = Await.result(status, 3.minutes)
       if ended != 0 then throw IllegalStateException(s"it ended with $ended: $err")

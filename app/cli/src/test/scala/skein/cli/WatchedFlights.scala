@@ -11,7 +11,7 @@ import skein.record.{FlightTopics, RecordingReader}
 import skein.report.DuelReport
 import skein.scenario.Scenarios
 
-/** How late a flight's questions leave, by its recording.
+/** The delay of a flight's requests, from its recording.
   *
   * @param p99Ms after the tick that each belongs to
   */
@@ -19,7 +19,7 @@ final case class Lateness(questions: Int, p50Ms: Double, p99Ms: Double, mostMs: 
 
 object Lateness:
 
-  /** Ticks are whole periods apart; the phase is that of the most punctual questions. */
+  /** Computes delays. Ticks are whole periods apart; the phase is that of the most punctual requests. */
   def of(file: Path): Lateness =
     val recorded =
       RecordingReader.read(file).fold(error => throw IllegalStateException(error.message), identity)
@@ -36,8 +36,8 @@ object Lateness:
     def quantile(share: Double)       = late(((late.size - 1) * share).round.toInt)
     Lateness(late.size, quantile(0.5), quantile(0.99), late.last)
 
-/** Viewers that subscribe to every topic and throw away what comes: all as fast as it comes, but one that
-  * reads a byte a second.
+/** Viewers that subscribe to every topic and discard the data: all at full speed, except one that reads a
+  * byte a second.
   */
 final class Viewers(port: Int, count: Int) extends AutoCloseable:
   val bytes: AtomicLong    = AtomicLong()
@@ -50,10 +50,10 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n" +
       "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n").getBytes(US_ASCII))
     out.flush()
-    // What comes before the server's answer is none of the WebSocket's yet.
+    // Bytes before the server's answer do not belong to the WebSocket.
     val answer = Iterator.continually(socket.getInputStream.read()).takeWhile(_ >= 0).map(_.toChar)
     answer.scanLeft("")((last, next) => (last + next).takeRight(4)).find(_ == "\r\n\r\n"): Unit
-    // Numbers of channels count from 1; those that are not there are refused, and no more than a few.
+    // Channel numbers start at 1; unknown ones are refused, and only a few are tried.
     val topics = FlightTopics.all(Vector("Evader", "Pursuer")).size + 1
     val wanted = (1 to topics).map(at => s"""{"id":$at,"channelId":$at}""").mkString(",")
     val text   = s"""{"op":"subscribe","subscriptions":[$wanted]}""".getBytes(US_ASCII)
@@ -72,8 +72,7 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
     on = false
     sockets.foreach(_.close())
 
-/** The same flight without viewers and with ten, in turns: `cli/Test/runMain skein.cli.watchedFlights 30 3`.
-  */
+/** A flight without viewers and with ten, in turns: `cli/Test/runMain skein.cli.watchedFlights 30 3`. */
 @main def watchedFlights(seconds: Int, rounds: Int): Unit =
   given Scenarios = DuelReport.scenarios
   val folder      = Files.createTempDirectory("watched")

@@ -16,12 +16,13 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.view.{Feed, LiveShow, Shows, ViewServer}
 
-/** Twenty vehicles at 20 Hz on the page in a real browser: what the server's thread needs, and how many
-  * frames the page draws. The rows are those of a flight in virtual time, told at their times, so that
-  * nothing else runs here.
+/** Twenty vehicles at 20 Hz on the page in a real browser: processor time of the server's thread, and frames
+  * that the page draws. The rows are those of a flight in virtual time, sent at their times, so that nothing
+  * else runs here.
   *
-  * On a busy machine the frames say little: then the processor time of all of the browser's processes for one
-  * frame says how many one core could draw. `cli/Test/runMain skein.cli.watchedTeam 20 true`.
+  * On a busy machine the number of frames says little: then the processor time of all of the browser's
+  * processes for one frame states how many one core could draw. `cli/Test/runMain skein.cli.watchedTeam 20
+  * true`.
   *
   * @param plain whether the browser draws by software alone, else by software that imitates a graphics card,
   *   which costs more
@@ -59,7 +60,7 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
         while on && System.nanoTime() - began < at.toNanos do LockSupport.parkNanos(2_000_000)
       feed.offer(record)
   val cpu = ManagementFactory.getThreadMXBean
-  // The steps in the browser, with what was spent when they began and ended.
+  // The steps in the browser, with the processor time at their begin and end.
   val said = JavaScriptTools.packages.flatMap(packages =>
     JavaScriptTools.browser.flatMap: browser =>
       val task = ujson.Obj(
@@ -76,7 +77,7 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
         ProcessBuilder("node", JavaScriptTools.script("browser.mjs"), s"$packages", browser, server.url, task)
           .redirectError(ProcessBuilder.Redirect.INHERIT)
           .start()
-      // While it looks: from some seconds after it came, for the half of what it stays.
+      // Measured while the page is open: from some seconds after its start, for half of its time.
       while shows.all.head.watching == 0 && asked.isAlive do Thread.sleep(50)
       Thread.sleep(5000)
       val from = (System.nanoTime(), cpu.getThreadCpuTime(mine.threadId), browsing(asked))
@@ -104,7 +105,7 @@ import skein.view.{Feed, LiveShow, Shows, ViewServer}
       f"load ${load()}; problems: ${seen("problems")}"
   )
 
-/** Processor time of a process and all below it, s. */
+/** Processor time of a process and all its descendants, s. */
 private def browsing(process: Process): Double =
   (process.toHandle +: process.descendants.toArray(new Array[ProcessHandle](_)).toVector)
     .flatMap(one => Try(Files.readString(Path.of(s"/proc/${one.pid}/stat"))).toOption)

@@ -69,7 +69,7 @@ object ConfigurationReference:
       s"### ${kind.name}\n\n${docs.text}\n\n| setting | default | meaning |\n|---|---|---|\n${rows.mkString}"
     .mkString("\n")
 
-  /** What a scenario's source says of it and of its settings. */
+  /** A scenario's docstring: of itself and of its settings. */
   private case class Docstring(text: String, parameters: Map[String, String]):
     def parameter(name: String): String =
       parameters.getOrElse(name, throw java.util.NoSuchElementException(s"no @param $name: $text"))
@@ -89,5 +89,5 @@ object ConfigurationReference:
       parts.tail.map(part => part.takeWhile(_ != ' ') -> part.dropWhile(_ != ' ').trim).toMap
     )
 
-  /** Without the brackets of links between definitions. */
+  /** The text without the brackets of links between definitions. */
   private def shown(text: String): String = """\[\[([^\]]*)\]\]""".r.replaceAllIn(text, "`$1`")

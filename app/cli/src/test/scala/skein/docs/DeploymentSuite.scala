@@ -6,12 +6,14 @@ import java.util.concurrent.TimeUnit
 import org.yaml.snakeyaml.Yaml
 import scala.jdk.CollectionConverters.*
 
-/** What `deploy` holds fits together, and passes the programs that will read it, where they are installed. */
+/** The files in `deploy` agree with each other, and are accepted by the programs that will read them, where
+  * these are installed.
+  */
 class DeploymentSuite extends munit.FunSuite:
   private val root      = Documentation.root
   private val manifests = root.resolve("cluster/deploy/kubernetes")
 
-  /** A document's values by their paths; elements of lists have their place for a name. */
+  /** A document's values by their paths; list elements have their index as a name. */
   private def paths(of: Any, at: String = ""): Map[String, String] = of match
     case map: java.util.Map[?, ?] => map.asScala.flatMap((key, value) => paths(value, s"$at/$key")).toMap
     case list: java.util.List[?]  =>
@@ -31,7 +33,7 @@ class DeploymentSuite extends munit.FunSuite:
   private def below(document: Map[String, String], path: String): Set[String] =
     document.collect { case (at, value) if at.startsWith(path) => value }.toSet
 
-  /** What it says, or the reason that it is not asked. */
+  /** A program's output, or the reason why it is not run. */
   private def said(words: String*): Either[String, (Int, String)] =
     try
       val process = ProcessBuilder(words*).directory(root.toFile).redirectErrorStream(true).start()
@@ -46,7 +48,7 @@ class DeploymentSuite extends munit.FunSuite:
     for document <- all; key <- Seq("/kind", "/apiVersion", "/metadata/name") do
       assert(document.contains(key), s"$key of $document")
 
-  test("services select the pods that are there, at the ports and by the names that the commands use"):
+  test("services select existing pods, at the ports and by the names that the commands use"):
     val space       = in("kustomization.yaml").head("/namespace")
     val Vector(job) = of("Job")
     val Vector(set) = of("StatefulSet")
@@ -76,7 +78,7 @@ class DeploymentSuite extends munit.FunSuite:
     for host <- Seq("coordinator.search.skein.svc.cluster.local", "*.worker.skein.svc.cluster.local") do
       assert(guide.contains(host), host)
 
-  test("kubectl puts the manifests together"):
+  test("kubectl accepts the combined manifests"):
     val rendered = said("kubectl", "kustomize", manifests.toString)
     assume(rendered.isRight, s"kubectl is not here: ${rendered.left.getOrElse("")}")
     val Right((status, text)) = rendered: @unchecked

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import skein.cli.CommandReference
 import skein.record.RecordingSchema
 
-/** Pages that are written by the code they describe. */
+/** Documentation pages that code generates. */
 object Documentation:
   val root: Path =
     Iterator
@@ -14,7 +14,7 @@ object Documentation:
 
   val hint = """write it anew with ./sbtw "cli/Test/runMain skein.docs.writeDocumentation""""
 
-  /** By path from the root: what each page has to say. */
+  /** The generated pages by path from the root. */
   val generated: Vector[(String, () => String)] = Vector(
     "docs/commands.md"      -> (() => CommandReference.markdown),
     "docs/configuration.md" -> (() => ConfigurationReference.markdown),

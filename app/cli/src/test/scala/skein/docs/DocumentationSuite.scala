@@ -5,9 +5,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.matching.Regex
 import skein.cli.OurScenarios
 
-/** Holds what is written to what is there: links lead somewhere, and pages that tell what code says tell it
-  * truly.
-  */
+/** Checks the documentation: links resolve, and generated pages are up to date. */
 class DocumentationSuite extends munit.FunSuite:
   private val root = Documentation.root
 
@@ -21,12 +19,12 @@ class DocumentationSuite extends munit.FunSuite:
     assertEquals(broken, Vector.empty)
 
   for (name, written) <- Documentation.generated do
-    test(s"$name says what the code says"):
+    test(s"$name agrees with the code"):
       val path = root.resolve(name)
       assert(Files.exists(path), s"$name is missing: ${Documentation.hint}")
       assertNoDiff(Files.readString(path), written(), s"$name is not up to date: ${Documentation.hint}")
 
-  test("code that a page shows of a source file stands there"):
+  test("code that a page quotes from a source file is in that file"):
     val shown =
       for
         page  <- pages
@@ -61,8 +59,8 @@ class DocumentationSuite extends munit.FunSuite:
 
   private val quoted: Regex = """(?s)<!-- (file|lines of) (\S+) -->\n+```scala\n(.*?)\n```""".r
 
-  /** The first passage of `code` that does not stand in `source` behind the one before it. Passages are
-    * parted by lines of `…`; indentation does not count.
+  /** The first passage of `code` that `source` does not contain after the previous one. Passages are
+    * separated by lines of `…`; indentation is ignored.
     */
   private def strayed(code: String, source: String): Option[String] =
     def lines(text: String) = text.linesIterator.map(_.trim).toVector

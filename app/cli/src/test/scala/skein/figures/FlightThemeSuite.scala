@@ -15,7 +15,7 @@ class FlightThemeSuite extends munit.FunSuite:
       LoopKind.values.toVector.map(loop => FlightTheme.of(loop.label)) :+ FlightTheme.of("a loop to come")
     assertEquals(colours.distinct.size, LoopKind.values.length + 1)
 
-  test("curves are told apart without colours: each has dashes of its own, the legend's are the same"):
+  test("curves can be distinguished without colours: each has its own dashes, also in the legend"):
     val flights = LoopKind.values.toVector.map: loop =>
       FlightSummary.of(SyntheticFlight(loop.label, "vpn", seed = 1, seconds = 12))
     val all    = flights ++ flights.map(_.copy(policy = Some("pure-pursuit")))

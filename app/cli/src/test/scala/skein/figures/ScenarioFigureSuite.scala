@@ -7,7 +7,7 @@ import skein.report.SyntheticFlight
 import skein.scenario.{Crossing, Limit, Result, Scenario, Track, Tracks}
 import skein.units.*
 
-/** Two vehicles that fly the same way, one above the other, below a ceiling. */
+/** Figures of two vehicles with coinciding trajectories, one above the other, below a ceiling. */
 class ScenarioFigureSuite extends munit.FunSuite:
   import ScenarioFigureSuite.*
 
@@ -32,7 +32,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
 
   private def texts(drawing: Drawing) = drawing.shapes.collect { case text: Mark.Text => text.content }
 
-  /** Of curves of so many points at least. */
+  /** Strokes of curves with at least this many points. */
   private def strokes(drawing: Drawing) =
     drawing.shapes.collect { case Mark.Path(points, Some(stroke), None, false) if points.size > 20 => stroke }
 
@@ -57,7 +57,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
     assert(!texts(kept).exists(_.contains("at most")), texts(kept))
     assertEquals((kept.shapes.count(isRed), ScenarioFigure.hasAltitudes(flown(100))), (0, false))
 
-  test("a geofence is drawn as far as it lies in the panel, and named where it does"):
+  test("a geofence is cut to the panel, and named if any of it is visible"):
     assert(texts(ScenarioFigure.trajectories(flown(100))).contains("geofence"))
 
 object ScenarioFigureSuite:

@@ -6,7 +6,7 @@ import skein.report.{DuelReport, Report, SyntheticFlight}
 import skein.scenario.Scenarios
 import skein.training.{LearnScore, LearningCurve}
 
-/** Figures of very little, and of what lies far apart. */
+/** Figures of very few data, and of data that are far apart. */
 class SparseFiguresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
@@ -17,19 +17,19 @@ class SparseFiguresSuite extends munit.FunSuite:
     val flights = Report.of(Seq(SyntheticFlight("stream", "vpn", seed = 2, seconds)))
     texts(DistanceFigure(flights).get).filter(_.startsWith("last 10 s"))
 
-  test("the last 10 s are announced where they are drawn, and the paper's where there is any"):
+  test("the legend has the last 10 s where they are drawn, and the paper's where there is any"):
     assertEquals(headings(8), Vector.empty)
     assertEquals(headings(12), Vector("last 10 s: ours ●"))
     assertEquals(headings(60), Vector("last 10 s: ours ●, paper ◆"))
 
-  test("the paper's farthest does not squeeze our curves, and each column beside them has its flight's name"):
+  test("the paper's greatest distance does not compress our curves, and each column has its flight's name"):
     val flights = Report.of(Seq(SyntheticFlight("sequential", "vpn", seed = 2, 60)))
     val figure  = DistanceFigure(flights).get
     val ours    = flights.flights.flatMap(_.distance).flatMap(_.points.map(_._2)).max
     assert(flights.flights.flatMap(_.published).flatMap(_.distance).map(_.most).max > 1.3 * ours, ours)
     val heights =
       figure.shapes.collect { case Mark.Path(points, _, None, _) if points.size > 20 => points.map(_.y) }
-    // The panel is 220 high, from 34 on.
+    // The panel is 220 units high, from 34 on.
     assert(heights.flatten.min < 34 + 0.3 * 220, heights.flatten.min)
     assert(texts(figure).contains("◆ 41 m") || texts(figure).contains("◆ 40 m"), texts(figure))
     val upright = figure.shapes.collect { case text: Mark.Text if text.upwards => text.content }
@@ -51,7 +51,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     assert(texts(real).contains("to 10.0.0.7:41451") && !texts(real).exists(_.contains("no network")))
     assertEquals(real.width, 378.0)
 
-  test("a single score of a learner is seen"):
+  test("a single score of a learner is visible"):
     val colour           = LearningCurve.learned
     def discs(many: Int) =
       val scores = Vector.tabulate(many)(index => LearnScore(1000L * (index + 1), 5, 1))
@@ -61,7 +61,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     assertEquals(discs(1), Vector(Some(colour)))
     assertEquals(discs(2), Vector.empty)
 
-  test("a round trip far longer than all others is told, and does not squeeze them"):
+  test("a round trip far longer than all others is counted, and does not compress the axis"):
     val usual  = Vector.tabulate(1000)(index => 30 + index * 0.02)
     val shapes =
       LatencyFigure(

@@ -12,14 +12,14 @@ class VehicleThemeSuite extends munit.FunSuite:
       roles.toVector.zip(Formation(vehicles = roles.size).agents).map: (role, agent) =>
         agent.copy(role = Role(role))
 
-  test("of several that are alone in their roles, only the first is grey"):
+  test("of several vehicles alone in their roles, only the first is grey"):
     val two = strokes(OfRoles("Leader", "Wing"))
     assertEquals(two.head.colour, Colour(0x404040))
     assertEquals(two(1).colour, Colour(0x0072b2))
     assertEquals(strokes(OfRoles("Scout", "Scout", "Leader")).last.colour, Colour(0x404040))
     assertEquals(strokes(OfRoles("Leader")).head.colour, Colour(0x0072b2))
 
-  test("no two vehicles of a scenario look alike, of a hundred neither"):
+  test("no two vehicles of a scenario look alike, even of a hundred"):
     val scenarios =
       Seq(Surround(vehicles = 6), Formation(vehicles = 9), Convoy(), Forest(), Formation(vehicles = 100))
     for scenario <- scenarios do

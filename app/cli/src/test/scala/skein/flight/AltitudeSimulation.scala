@@ -12,7 +12,7 @@ import skein.testing.TemporaryFolders
 import skein.units.Span
 import skein.vehicle.{ReducedModel, PlantModel, VehicleModel}
 
-/** AirSim's vehicles lag the more the higher they fly: models hold at one altitude. */
+/** AirSim's vehicles lag more the higher they fly: a model is valid at one altitude. */
 class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
@@ -23,12 +23,12 @@ class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
       .resolve()
   )
 
-  /** By what each vehicle's readings are carried forward. */
+  /** The models that predict each vehicle's readings. */
   private def models(hocon: String): Set[VehicleModel[?]] =
     val read = settings(hocon).fold(fail(_), identity)
     read.fleet.agents.indices.map(read.loopSettings.model).toSet
 
-  /** A model file of flights at 20 m. */
+  /** A model file, identified from flights at 20 m. */
   private val file = FunFixture[Path](
     _ =>
       Files.writeString(
@@ -43,7 +43,7 @@ class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
     Files.delete
   )
 
-  test("vehicles are carried forward by the reduced model of the altitude at which they fly"):
+  test("vehicles are predicted by the reduced model of their altitude"):
     def reduced(altitudeM: Double): Set[VehicleModel[?]] =
       Set(PlantModel(ReducedModel.airSimAt(altitudeM)))
     assertEquals(models("skein.fly.predictor = drag"), reduced(20))
@@ -67,7 +67,7 @@ class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
         val told = Conditions("stream", model, 100, 60, altitudeM = 5).resolved.left.getOrElse("")
         assert(told.startsWith("--plant") && told.contains("came one of 20 m"), told)
 
-  test("forward simulation takes an altitude, and tells which of its models holds at 20 m alone"):
+  test("forward simulation accepts an altitude, and reports which of its models is valid only at 20 m"):
     val told = Conditions("stream", "reduced", 100, 60, altitudeM = 5).resolved.left.getOrElse("")
     assert(told.contains("at 5.0 m altitude: reduced holds at 20.0 m"), told)
     for model <- Seq("drag", "quadrotor", "ideal") do

@@ -15,7 +15,7 @@ import skein.testing.{Lengthy, Optimised}
 import skein.torture.Torture
 import skein.units.*
 
-/** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in
+/** A pursuer that observes the evader only through its camera, with rendering, links and recognition, in
   * virtual time.
   */
 class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
@@ -46,7 +46,7 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
     val digests = Seq.fill(2)(fly(settings(LoopKind.Predictive, 4)).recorder.digest)
     assertEquals(digests.distinct.size, 1)
 
-  test("predictive: the evader is found, believed where it is, and all is decided the same again"):
+  test("predictive: the evader is detected, estimated correctly, and a replay makes all decisions again"):
     val recording = predictive
     assertEquals(Replay(settings(LoopKind.Predictive, 20).fleet, recording).firstDifference, None)
     val seen = FlightSummary.of(recording).seeing.headOption.getOrElse(fail("nothing was seen"))
@@ -61,7 +61,7 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
     assertEquals(seen.decisive.map(_._1).distinct.size, seen.decisive.size)
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label}: the sensor fitted to a flight costs in forward simulation what it cost in flight"):
+    test(s"${loop.label}: a sensor model fitted to a flight has the flight's effect in forward simulation"):
       val recording = if loop == LoopKind.Predictive then predictive else twentySeconds(loop)
       val fit       = SensorFit.of(RecordedSeeing.of(recording)).fold(fail(_), identity)
       assert(fit.model.detection > 0.7 && fit.model.bearingSdRad < 0.01 && fit.model.rangeSd < 0.03, s"$fit")
@@ -88,7 +88,7 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
       assertEquals(verdict.violations, Vector.empty, verdict.faultPlan.toString)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Paused) do
-    test(s"${loop.label}: the pursuer comes near by its camera alone"):
+    test(s"${loop.label}: the pursuer approaches the evader with only its camera"):
       val summary = FlightSummary.of(fly(settings(loop, 8)).recorder.recording)
       assert(summary.seeing.exists(_.detections.sizeIs > 20), s"${summary.seeing.map(_.detections.size)}")
       val closest = summary.result.flatMap(_.measured(1).value)

@@ -9,7 +9,7 @@ import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** The paper's experiment in virtual time, held to what AirSim's own flight code gave. */
+/** The paper's experiment in virtual time, compared with the results of AirSim's own flight code. */
 class ExperimentSimulation extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
@@ -51,7 +51,7 @@ class ExperimentSimulation extends munit.FunSuite:
     within(truth.closest._2, 3.4, 4.0)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"without a network, ${loop.label} flies within 2 % of the truth"):
+    test(s"without a network, ${loop.label} is within 2 % of the truth"):
       val ratio = distance(loop, LatencyProfile.none).lastTenSeconds.get.mean / truth.lastTenSeconds.get.mean
       within(ratio, 0.98, 1.02)
 
@@ -68,7 +68,7 @@ class ExperimentSimulation extends munit.FunSuite:
     within(stream.mean, 9.9, 11.0)
     within(stream.sd, 0, 0.3)
 
-  test("over the busy VPN, predictive flies like the truth"):
+  test("over the busy VPN, predictive equals the truth"):
     val ratio =
       distance(
         LoopKind.Predictive,

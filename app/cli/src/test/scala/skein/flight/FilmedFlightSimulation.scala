@@ -37,7 +37,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
     flown.recorder
 
   folder.test(
-    "images of a policy's camera and of others are recorded, flown again to the byte, and kept by an export"
+    "images of a policy's camera and of others are recorded, identical when flown again, and exported"
   ): folder =>
     val flown = fly(
       BlindPursuit(),
@@ -60,7 +60,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
     for image <- images do
       assertEquals(image.pixels.size.toLong, image.width * image.height * 3)
       val degrees = if image.camera == "front_center" then 100.0 else 90.0
-      // Nobody had asked when the first were taken.
+      // No request had been made when the first were taken.
       for fov <- image.fov do assertEqualsDouble(fov.value, math.toRadians(degrees), 1e-6)
     assert(images.count(_.fov.isDefined) > images.size / 2)
 
@@ -93,5 +93,5 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
       val steps = course.north.zip(course.east).sliding(2).collect { case Vector((n0, e0), (n1, e1)) =>
         math.hypot(n1 - n0, e1 - e0)
       }
-      // No vehicle is faster than 10 m/s, but for a gust of its own controller.
+      // No vehicle is faster than 10 m/s, except for an overshoot of its controller.
       assert(steps.forall(_ < 1.2))

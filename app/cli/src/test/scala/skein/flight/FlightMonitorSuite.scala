@@ -6,7 +6,7 @@ import skein.units.*
 
 class FlightMonitorSuite extends munit.FunSuite:
 
-  test("progress tells how far apart two are, and of a team the age alone"):
+  test("progress shows the distance of two vehicles, and for a team only the age"):
     val flown   = SyntheticFlight("stream", "none", seed = 1, seconds = 12)
     val monitor = FlightMonitor(MemoryRecorder(flown.heading))
     val last    = flown.decisions.last
@@ -17,6 +17,6 @@ class FlightMonitorSuite extends munit.FunSuite:
     monitor.offer(Sighting(last.vehicle, last.sequence, "Third", 1, None))
     assert(clue(text).matches(" *[0-9]+ ms old"))
 
-  test("of a flight that has ended while others fly, progress tells that, and no age that grows"):
+  test("for a flight that has ended while others run, progress shows that, and no growing age"):
     val seen = Some(LastSeen(Some(Metres(8.4)), Span.ofSeconds(7)))
     assertEquals(FlightProgress("paused-none", Span.ofSeconds(10), seen, hasEnded = true).text, "ended")

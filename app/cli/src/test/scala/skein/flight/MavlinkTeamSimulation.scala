@@ -10,11 +10,11 @@ import skein.signal.LatencyProfile
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 import skein.units.*
 
-/** A team over one MAVLink connection, and its report. */
+/** A team over one MAVLink connection, with its report. */
 class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private given Scenarios = OurScenarios.all
 
-  folder.test("six vehicles on one link surround an evader, and the report tells of it"): folder =>
+  folder.test("six vehicles on one link surround an evader, and the report shows it"): folder =>
     val scenario = Surround(vehicles = 6)
     val settings = FlySettings(
       List(LoopKind.Predictive),

@@ -24,7 +24,7 @@ class PolicyFlightSimulation extends munit.FunSuite:
     policies = List(policy, policy)
   )
 
-  test("a policy flies beside the paper's, over the same delays; recording, replay and report say which"):
+  test("a policy flies beside the paper's with equal delays; recording, replay and report name it"):
     assertEquals(
       settings.plans.map(plan => (plan.id, plan.seed)),
       Vector("", "-lead-pursuit", "-lead-pursuit-2").flatMap(name =>
@@ -47,7 +47,7 @@ class PolicyFlightSimulation extends munit.FunSuite:
 
     val table = ReportSections.text(Report.of(flown))
     assert(table.contains("stream, lead-pursuit"), table)
-    // As if they were as long as the paper's.
+    // As if the flights were as long as the paper's.
     val long = flown.map(FlightSummary.of).map(one =>
       one.copy(flight = one.flight.copy(duration = Published.Duration))
     )

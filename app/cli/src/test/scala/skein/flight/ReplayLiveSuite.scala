@@ -5,11 +5,11 @@ import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.testing.Unhurried
 
-/** Real sockets, real time and real threads, of which virtual time has one. */
+/** Real sockets, real time and many threads; virtual time has only one. */
 class ReplayLiveSuite extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
-  test("what live loops decided is decided again from their recordings, futures on several threads included"):
+  test("decisions of live loops are repeated from their recordings, also of futures on several threads"):
     val loops    = List(LoopKind.Futures, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive)
     val settings = TwinFlights.settings(loops, seconds = 6).copy(scenario = PaperDuel(pairs = 2))
     TwinFlights.inFolder: folder =>

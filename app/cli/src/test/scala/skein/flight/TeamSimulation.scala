@@ -64,11 +64,11 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
       val pauses = commands.map(_.sentAt).sorted.sliding(2).map(pair => pair(1).since(pair(0)))
       assert(pauses.forall(_ >= Span.ofMillis(20)), s"$vehicle is commanded faster than the rate cap allows")
 
-  test("twenty that plan cross over the VPN: the set separation is kept, and they are through sooner"):
+  test("twenty planning vehicles cross over the VPN: they keep the separation and finish sooner"):
     val result = resultOf(fly(settings(Crossing(), LoopKind.Plan, LatencyProfile.vpn, 12.5)))
     assertEquals(value(result, "violations"), 0.0, result.measured)
     assert(value(result, "closest m") >= 2.5, result.measured)
-    // Avoiding one another by their policy, none of them is there before 13 s.
+    // Since their policy avoids collisions, none of them arrives before 13 s.
     assert(value(result, "arrived") >= 15, result.measured)
 
   test("a team that searches its plans for long surrounds the evader as closely as by its rule"):
@@ -90,10 +90,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
       Crossing(vehicles = 6) -> LoopKind.Plan
     )
   do
-    test(
-      s"${scenario.name} by ${loop.label} decides the same when " +
-        "it is decided upon again, and when flown again"
-    ):
+    test(s"${scenario.name} by ${loop.label} has equal decisions when decided again, and when flown again"):
       val chosen   = settings(scenario, loop, LatencyProfile.vpn, 2)
       val plan     = chosen.plans.head
       val recorder = VirtualFlights.fly(chosen, plan).fold(fail(_), identity).recorder
@@ -109,7 +106,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
         Files.deleteIfExists(file): Unit
         Files.delete(folder)
 
-  test("a replay notices that another vehicle of the team was seen elsewhere"):
+  test("a replay notices a changed position of another vehicle of the team"):
     val flown     = settings(Surround(), LoopKind.Predictive, LatencyProfile.direct, 2)
     val recording = fly(flown)
     val forged    = recording.sightings.map(sighting =>

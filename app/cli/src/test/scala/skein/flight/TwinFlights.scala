@@ -19,7 +19,7 @@ import skein.units.*
 object TwinFlights:
   private given Scenarios = DuelReport.scenarios
 
-  /** Of the duel over `direct` and whatever links are given. */
+  /** Settings of the duel over `direct` and the given links. */
   def settings(loops: List[LoopKind], seconds: Int, more: LatencyProfile*): FlySettings = FlySettings(
     loops,
     LatencyProfile.direct :: more.toList,
@@ -28,7 +28,7 @@ object TwinFlights:
     seed = 1
   )
 
-  /** Flies all that the settings say, and each again in virtual time. Blocks for as long as a flight lasts.
+  /** Runs all flights of the settings, and each again in virtual time. Blocks for the duration of a flight.
     *
     * @param twins of each live flight
     */
@@ -61,8 +61,8 @@ object TwinFlights:
         _.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_))
       )
 
-/** Shows that live flights and their virtual twins agree: flies `stream` and `predictive` over `direct` and
-  * `vpn` in real time for so many seconds, each again in virtual time with ten seeds, and fails where the
+/** Checks that live flights and their virtual twins agree: runs `stream` and `predictive` over `direct` and
+  * `vpn` in real time for `seconds` seconds, each again in virtual time with ten seeds, and fails where the
   * converged distances differ by more than 2 %. For a quiet machine; 60 s are the experiment's own:
   * `cli/Test/runMain skein.flight.checkTwins 60`.
   */

@@ -7,20 +7,18 @@ import skein.testing.{Lengthy, Timing}
 
 /** Real sockets and real time: one flight over the emulated direct link and its twins in virtual time.
   *
-  * What a loaded machine disturbs is how old data grows: each millisecond that its mean age exceeds the
-  * twins' is allowed for. It shifts the distribution of ages by about 6 % of its height, and widens the orbit
-  * by 0.6 %. On a quiet machine nothing is left but 2 % of the distance and 0.2 between the distributions.
-  * Where data is older by more than [[mostExcessMs]], hardly any two distributions would be too far apart:
-  * such a flight says nothing. [[checkTwins]] holds full flights to 2 % without allowance.
+  * A loaded machine increases the age of data: the test allows for each millisecond by which its mean age
+  * exceeds the twins'. It shifts the distribution of ages by about 6 % of its height, and widens the orbit by
+  * 0.6 %. On a quiet machine the allowance is 2 % of the distance and 0.2 between the distributions. Where
+  * data is older by more than [[mostExcessMs]], hardly any two distributions would be too far apart: such a
+  * flight is inconclusive. [[checkTwins]] holds full flights to 2 % without allowance.
   */
 class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
 
   private val mostExcessMs = 6.0
 
-  test(
-    "a live flight and its virtual twins decide on data of the same ages and converge to the same distance"
-  ):
-    // A machine may be busy in other ways than by making data older; it is not so each time.
+  test("a live flight and its virtual twins have equal ages of data and converge to equal distances"):
+    // A busy machine can also disturb a flight without making data older; not every time.
     val (busy, agreed) = Iterator.continually(compared()).take(3).span(!_.agrees)
     val flown          = busy.toVector ++ agreed.take(1)
     // .ci/run counts such lines.
@@ -32,7 +30,7 @@ class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
     assert(flown.exists(_.agrees), s"flights disagree with their twins: ${flown.map(_.problems)}")
 
   /** @param excessMs mean age of data beyond that of the twins
-    * @param problems what one live flight and its twins do not agree on
+    * @param problems differences between one live flight and its twins
     */
   private final case class Compared(excessMs: Double, problems: Vector[String]):
     def isCalm: Boolean = excessMs <= mostExcessMs

@@ -13,12 +13,12 @@ class WarmUpSimulation extends munit.FunSuite, Lengthy:
   private val settings =
     TwinFlights.settings(List(LoopKind.Paused, LoopKind.Stream), seconds = 60, LatencyProfile.vpn)
 
-  /** A second passes from reading to reading. */
+  /** A clock that advances by a second with each reading. */
   private def everySecond: Clock =
     val seconds = AtomicLong()
     Clock.ofNanos(() => Span.ofSeconds(seconds.getAndIncrement().toDouble).toNanos)
 
-  test("so many flights are flown, and no more begin when it has lasted long enough"):
+  test("a number of flights are run, and no more begin once it has lasted long enough"):
     assertEquals(WarmUp.fly(settings, flights = 1, everySecond), Right(1))
     assertEquals(WarmUp.fly(settings, flights = 20, everySecond), Right(WarmUp.AtMost.toSeconds.toInt - 1))
 

@@ -6,8 +6,8 @@ import skein.loop.{GraphLayout, LoopKind, OwnLoop}
 import skein.plot.Svg
 import skein.scenario.PaperDuel
 
-/** The graphs in `docs/pictures` are those that run. `cli/Test/runMain skein.report.drawLoops` draws them
-  * anew.
+/** The graphs in `docs/pictures` equal the running ones. `cli/Test/runMain skein.report.drawLoops` draws them
+  * again.
   */
 class LoopPicturesLiveSuite extends munit.FunSuite:
 
@@ -15,7 +15,7 @@ class LoopPicturesLiveSuite extends munit.FunSuite:
     for (file, text) <- LoopPicturesLiveSuite.drawn do
       assertEquals(Files.readString(file), text, s"$file: draw it anew")
 
-  test("parts stand behind those that lead to them, but for what is fed back"):
+  test("parts are placed after those that lead to them, except for feedback edges"):
     val turns = LoopPicturesLiveSuite.graphs.map: (kind, graph) =>
       val spots = GraphLayout.of(graph)
       assertEquals(spots.keySet, graph.stages.toSet)

@@ -5,14 +5,14 @@ import skein.record.*
 import skein.scenario.Scenarios
 import skein.units.*
 
-/** What a report shows of flights that have no result, and of those that a busy machine flew. */
+/** A report on flights without a result, and on flights that a busy machine disturbed. */
 class NoResultSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
   private val paused = SyntheticFlight("paused", "none", seed = 1, seconds = 12)
   private val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 12)
 
-  /** The flight as it would be recorded if the simulator's clock showed something else, s since its begin. */
+  /** The recording as if the simulator's clock had shown another time, s since its begin. */
   private def shown(recording: Recording)(clockS: Double => Double): Recording =
     val begun = recording.readings.map(_.state.validAt).min
     recording.copy(readings = recording.readings.map(reading =>
@@ -37,9 +37,7 @@ class NoResultSuite extends munit.FunSuite:
     assert(ReportSections.text(set).contains("has no result: "))
     assertEquals(set.deviations, Vector.empty)
 
-  test(
-    "a clock that runs backwards, stands still, leaps or drifts leaves no figure of the flight, and says why"
-  ):
+  test("with a clock that runs backwards, stops, leaps or drifts a flight has no figures, and states why"):
     for
       (clock, why) <- Seq[(Double => Double, String)](
         (s => if s < 6 then s else 12 - s, "the simulator's clock "),
@@ -65,7 +63,7 @@ class NoResultSuite extends munit.FunSuite:
     do
       assertEmpty(Report.of(Seq(shown(paused)(clock), stream)), "paused, no result: clock broken", why)
 
-  test("a vehicle that was taken away leaves none either, in any scenario's table"):
+  test("a removed vehicle leaves no figures either, in any scenario's table"):
     val why = "the simulator at host:1 no longer gives Evader to this flight"
     assertEmpty(
       Report.of(Seq(paused, noted(stream, EventKind.VehicleTaken, why))),
@@ -87,7 +85,7 @@ class NoResultSuite extends munit.FunSuite:
       set.flights.flatMap(_.roles).flatMap(role => role.ownTrueAgeMs ++ role.opponentTrueAgeMs).map(_.least)
     assert(least.size == 4 && least.forall(_ > 0), least.toString)
 
-  test("a flight of a machine that was too busy is marked, and not compared"):
+  test("a flight on a machine that was too busy is marked, and not compared"):
     val why = "the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms"
     val set = Report.of(Seq(paused, noted(stream, EventKind.Starved, why)))
     val one = row(set, "stream")
@@ -97,7 +95,7 @@ class NoResultSuite extends munit.FunSuite:
     assert(SummaryTables.remarks(set).exists(_.contains(s"is not compared with other flights: $why")))
     assert(TimingVerdict.sentence(set).exists(_.contains("stream, starved over vpn is not judged")))
 
-  test("one sentence says whether the timing is bad, by the truth where it flew"):
+  test("one sentence states whether the timing is bad, by the truth if there is a paused flight"):
     val deviation = Report.of(Seq(paused, stream)).deviations.head.share.mean.abs
     val said      = TimingVerdict.sentence(Report.of(Seq(paused, stream)))
     val word      = if deviation > 0.05 then "bad" else "good"
@@ -107,7 +105,7 @@ class NoResultSuite extends munit.FunSuite:
     )
     assertEquals(TimingVerdict.sentence(Report.of(Seq(paused))), None)
 
-  test("and else by how far a vehicle flies before a command answers to what was read"):
+  test("without a paused flight, timing is judged by the distance flown until a command answers a reading"):
     val none = SyntheticFlight("stream", "none", seed = 3, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(Seq(stream, none))).getOrElse(fail("nothing was said"))
     assert(said.contains("stream over vpn is probably bad: a vehicle flies on for "), said)

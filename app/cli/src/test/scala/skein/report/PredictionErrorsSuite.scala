@@ -26,7 +26,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEquals(errors.samples.count(_._1 == 50.0), PredictionErrors.Fewest - 1)
     assertEquals(errors.around(60), None)
 
-  test("the table, too, has no 95 % quantile of few"):
+  test("the table has no 95 % quantile of few predictions either"):
     def p95(count: Int) =
       val errors = PredictionErrors(count, Vector.fill(count)((100.0, 0.012)))
       PredictionTable.of(Vector(PredictionGroup("stream", "vpn", errors, PredictionErrors(0, Vector.empty))))
@@ -114,7 +114,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEqualsDouble(deviations.head.share.mean, metres("stream") / metres("paused") - 1, 1e-12)
     assertEquals(Deviation.of(flights.filterNot(_.flight.loop == "paused")), Vector.empty)
 
-  test("the sections stand in the text, on the report's page and on that of a spread"):
+  test("the sections are in the text, on the report's page and on that of a spread"):
     val set  = FlightSet(flights)
     val text = ReportSections.text(set)
     assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms, mm"), text)

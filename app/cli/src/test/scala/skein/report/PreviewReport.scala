@@ -3,9 +3,8 @@ package skein.report
 import java.nio.file.Path
 import skein.scenario.Scenarios
 
-/** Writes the report of the experiment's seven flights, flown synthetically, into the folder of its argument:
-  * for looking at pictures while working on them.
-  * `./sbtw "cli/Test/runMain skein.report.PreviewReport FOLDER"`
+/** Writes a report of seven synthetic flights like the experiment's into a folder, to inspect pictures during
+  * development. `./sbtw "cli/Test/runMain skein.report.PreviewReport FOLDER"`
   */
 object PreviewReport:
   private given Scenarios = DuelReport.scenarios

@@ -52,7 +52,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val ticks = texts.filter(_.toDoubleOption.isDefined).groupMapReduce(identity)(_ => 1)(_ + _)
     assert(ticks.nonEmpty && ticks.values.forall(_ % set.flights.size == 0), ticks)
 
-  folder.test("what is to be typed next can be typed, whatever the folder is called"): folder =>
+  folder.test("the printed next command can be typed, whatever the folder is called"): folder =>
     val (one, two) = (folder.resolve("it's a.duckdb"), folder.resolve("b.duckdb"))
     for (file, seed) <- Seq(one -> 1, two -> 2) do
       val flight = SyntheticFlight("stream", "direct", seed, seconds = 12)
@@ -74,18 +74,20 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val named = Seq(file, folder.resolve("./flight.duckdb"), file)
     assertEquals(Report.read(named).map(_.all.size), Right(1))
 
-  test("the page needs nothing beside itself"):
+  test("the page is self-contained"):
     val page    = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
     val links   = "(?:src|href|url|@import)\\s*[=(]".r.findFirstIn(page)
     val scripts = "<script|<link|<iframe|<img".r.findFirstIn(page)
     val hosts   = "https?://[^\"]*".r.findAllIn(page).toSet
     assertEquals((links, scripts, hosts - "http://www.w3.org/2000/svg"), (None, None, Set.empty[String]))
 
-  test("the same recordings give the same page"):
+  test("equal recordings give equal pages"):
     def page = HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set)))
     assertEquals(page, page)
 
-  folder.test("where a scenario's own report throws, it is told, and all else is written"): folder =>
+  folder.test(
+    "an exception of a scenario's own report is reported, and everything else is written"
+  ): folder =>
     object Broken extends ScenarioKind(PaperDuel()), ScenarioReport:
       override def results(set: FlightSet): Vector[Section]                = sys.error("no results")
       override def figures(set: FlightSet): Vector[Figure]                 = sys.error("no figures")
@@ -103,7 +105,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(spread.failures.map(_.takeWhile(_ != '(').trim), Vector(told("spread")))
     assert(Files.readString(spread.page).contains("Deviation"))
 
-  test("what a recording says cannot become markup"):
+  test("text from a recording cannot become markup"):
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val named  = flight.heading.flight.copy(simulator = "<b onload=\"x\">&", link = "<i>")
     val page   =
@@ -123,7 +125,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(stream.contains(ours.fixed(2)), stream)
     assert(stream.contains("8.50"), stream)
 
-  test("columns of a text table stand below their names"):
+  test("columns of a text table are aligned with their names"):
     val table =
       TextTable(Vector("<name", "m"), Vector(Vector("a", "10.5"), Vector("lon\u001b name", "2")))
     assertEquals(

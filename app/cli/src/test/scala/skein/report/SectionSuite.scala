@@ -31,7 +31,7 @@ class SectionSuite extends munit.FunSuite:
       )
     )
 
-  test("text: a note stands below its table, in lines of at most 100 letters"):
+  test("text: a note is below its table, in lines of at most 100 characters"):
     val note  = Vector.fill(60)("words").mkString(" ")
     val lines = Section.text(Seq(
       Section("One", note, Some(table)),

@@ -25,7 +25,10 @@ class SolverTableSuite extends munit.FunSuite:
       FlightSummary.of(VirtualFlights.fly(settings, plan).fold(fail(_), identity).recorder.recording)
     )
 
-  test("a flight decided elsewhere stands beside the same loop that decides itself, with what the hop adds"):
+  test(
+    "a flight with a remote solver is compared with the loop that decides itself, with the hop's " +
+      "increase"
+  ):
     val set   = FlightSet(summaries("link:constant:20ms"))
     val table = SolverTable.of(set)
     assertEquals(table.rows.size, 1)

@@ -99,7 +99,7 @@ class SummarySuite extends munit.FunSuite:
       yield Truth(vehicle, second(time), Vector3(x, 0, -20))
     assertEqualsDouble(curveOf(readings ++ truths*).closest._2, 7, 1e-12)
 
-  test("a flight in which one vehicle was never seen has no distance"):
+  test("a flight in which one vehicle was never read has no distance"):
     assertEquals(FlightSummary.of(Recording(heading, Seq(seen("Red", 0, 0, 0)))).distance, None)
 
   test("observations are sorted by the role that was decided for"):
@@ -113,7 +113,7 @@ class SummarySuite extends munit.FunSuite:
     // The first decision has no move before it.
     assertEquals(summary.roles.head.observedMs(TimingObservation.SinceOwnMove).count, ofEvader.size - 1)
 
-  test("the table of what was observed tells mean, median and the 99 % quantile"):
+  test("the table of observations has mean, median and the 99 % quantile"):
     val recording = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val table     = SummaryTables.observations(Report.of(Seq(recording)))
     val ages      = recording.decisions
@@ -139,7 +139,7 @@ class SummarySuite extends munit.FunSuite:
     assertEqualsDouble(set.deviation(set.flights(1)).get, means(1) / means(0) - 1, 1e-12)
     assertEquals(Report.of(Seq(stream)).deviation(set.flights(1)), None)
 
-  test("a flight is held against paused ones of its own period, duration and settings alone"):
+  test("a flight is compared only with paused ones of equal period, duration and settings"):
     def flight(recording: Recording)(change: FlightRow => FlightRow) =
       recording.copy(heading = recording.heading.copy(flight = change(recording.heading.flight)))
     val stream                    = SyntheticFlight("stream", "vpn", seed = 2, seconds = 20)
@@ -151,13 +151,14 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(against(SyntheticFlight("paused", "none", seed = 3, seconds = 15)), None)
     assertEquals(against(flight(paused)(_.copy(period = Span.ofMillis(400)))), None)
 
-  test("a published flight stands beside ours of the same loop and link, paused beside any"):
+  test("a published flight is beside ours of the same loop and link, a paused one beside any"):
     assertEquals(Published.flight(LoopKind.Stream, "vpn").flatMap(_.distance).map(_.mean), Some(8.5))
     assertEquals(Published.flight(LoopKind.Paused, "none").flatMap(_.distance).map(_.mean), Some(8.53))
     assertEquals(Published.flight(LoopKind.Stream, "none"), None)
 
   test(
-    "a flight that has not ten seconds has no last ten; the paper's figures stand beside flights of a minute"
+    "a flight shorter than ten seconds has no last ten; the paper's figures are beside flights of a " +
+      "minute"
   ):
     def rows(seconds: Int) =
       SummaryTables.distances(Report.of(Seq(SyntheticFlight("stream", "direct", 1, seconds))))
@@ -168,7 +169,7 @@ class SummarySuite extends munit.FunSuite:
     assertEquals((longer(paper), long(paper)), ("", "9.31"))
     assert(longer(last).toDouble > 0)
 
-  test("a flight that was cut short is marked in tables and page, stands beside nothing, and says why"):
+  test("a flight that ended early is marked in tables and page, is not compared, and states why"):
     val whole                                          = SyntheticFlight("stream", "direct", 1, 20)
     val paused                                         = SyntheticFlight("paused", "none", 2, 20)
     def of(ending: Option[Ending])                     = Report.of(Seq(whole.copy(ending = ending), paused))
@@ -185,7 +186,7 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(row(header.indexOf("paper m")), "")
     assertEquals(cut.deviations, Vector.empty)
 
-  test("an eye that found nothing stands in the table"):
+  test("a camera that found nothing is in the table"):
     val duel  = SyntheticFlight("stream", "direct", 1, 12)
     val named = duel.heading.flight.copy(scenario = "blind-pursuit")
     val blind = duel.copy(heading = duel.heading.copy(flight = named))
@@ -197,7 +198,7 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(DetectionFigure(set), None)
     assertEquals(RecordedSeeing.of(blind)(using OurScenarios.all), Vector.empty)
 
-  test("a recording that breaks off is known for it, also without a word of its end"):
+  test("a truncated recording is recognised, even without an end record"):
     val broken  = SyntheticFlight("stream", "direct", 1, 12)
     val planned = broken.heading.flight.copy(duration = Span.ofSeconds(25))
     val summary = FlightSummary.of(broken.copy(heading = broken.heading.copy(flight = planned)))

@@ -8,8 +8,8 @@ import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 
 /** A recording of the paper's duel between vehicles that follow their commanded velocity with a first-order
-  * lag of 0.8 s, seen through a link's round trips. Its shapes are those of a flight; its figures are
-  * nobody's.
+  * lag of 0.8 s, observed through a link's round trips. It has the form of a real flight; its figures are
+  * invented.
   */
 object SyntheticFlight:
   private val step   = Span.ofMillis(5)

@@ -18,7 +18,7 @@ import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.{brief, fixed}
 
-/** What the tables say, held against the flights that they are about. */
+/** The tables, compared with the flights that they describe. */
 class TablesSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
@@ -31,7 +31,7 @@ class TablesSuite extends munit.FunSuite:
     val values = table.rows.find(_.head == loop).getOrElse(fail(s"no row of $loop"))
     table.header.map(_.stripPrefix("<")).zip(values).toMap
 
-  test("the spread of a loop over its flights stands beside the truth of the same policies"):
+  test("the spread of a loop over its flights is beside the truth of the same policies"):
     val table = SpreadTable.of(set.flights)
     assertEquals(
       table.rows.map(_.take(3)),
@@ -49,7 +49,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(row(table, "paused")("vs paused"), "")
     assertEquals(row(table, "paused")("sd"), "")
 
-  test("the truth is of the flight's own clock where there is one, else of any, and never of other settings"):
+  test("the truth is of the flight's own clock if there is one, else of any, and never of other settings"):
     val Vector(truth, flight)                            = set.flights.take(2): @unchecked
     def by(one: FlightSummary, clock: String)            = one.copy(flight = one.flight.copy(clock = clock))
     def truths(of: FlightSummary, among: FlightSummary*) = Truth.among(among).of(of)
@@ -62,7 +62,7 @@ class TablesSuite extends munit.FunSuite:
     val off = Truth.among(Vector(virtual)).deviation(flight)
     assertEquals(off, flight.headline.map(_ / truth.headline.get - 1))
 
-  test("without a paused flight nothing is said of the truth, and captures are counted"):
+  test("without a paused flight the truth is left out, and captures are counted"):
     val stream = row(SpreadTable.of(set.flights.tail), "stream")
     assertEquals(stream("vs paused"), "")
     val closest = set.flights.tail.map(_.distance.get.closest._2)
@@ -81,7 +81,7 @@ class TablesSuite extends munit.FunSuite:
       )
     )
 
-  test("what happened is counted by flight; a rare kind of event has a column where any flight has it"):
+  test("events are counted by flight; a rare kind of event has a column where any flight has it"):
     val refused = Event(streams.head.flight.startedAt, EventKind.Refused, None, "no")
     val one     = streams.head.copy(events = streams.head.events :+ refused)
     val table   = SummaryTables.counts(Report.of(Seq(paused, one)))
@@ -92,14 +92,14 @@ class TablesSuite extends munit.FunSuite:
     val usual = SummaryTables.counts(Report.of(Seq(paused))).header.map(_.stripPrefix("<"))
     assertEquals(usual.drop(5).toSet, Set("dropped", "skipped", "timed out"))
 
-  test("the text has the sections that there is something to say in, and no others"):
+  test("the text has the sections with content, and no others"):
     val text = ReportSections.text(set)
     for title <- Seq("Distance between pursuer", "Observations per decision", "What happened", "Deviation") do
       assert(text.contains(title), s"no $title")
     for title <- Seq("Prediction error", PlanTable.title, "Live against virtual", "Results: surround") do
       assert(!text.contains(title), s"$title though there is none")
 
-  /** A duel of 20 s whose pursuer is so far north of the evader. */
+  /** A duel of 20 s whose pursuer is at a given distance north of the evader. */
   private def duel(loop: String, seed: Long)(distanceM: Double => Double): Recording =
     val flight   = SyntheticFlight(loop, "direct", seed, seconds = 20)
     val like     = flight.readings.head
@@ -118,13 +118,13 @@ class TablesSuite extends munit.FunSuite:
         )
     flight.copy(readings = readings)
 
-  /** Closes at 1 m/s, is 1.01 m apart at 10 s, and falls behind at 0.2 m/s. */
+  /** A distance that falls by 1 m/s to 1.01 m at 10 s, and then grows by 0.2 m/s. */
   private def pass(more: Double)(second: Double) =
     more + (if second < 10 then 11.01 - second else 1.01 + 0.2 * (second - 10))
 
   private val steady = duel("paused", 1)(_ => 4.02)
 
-  test("distances: what was flown, where it was closest and when, its last 10 s, and against the truth"):
+  test("distances: the flight, the closest approach with its time, the last 10 s, and the truth"):
     val table = SummaryTables.distances(Report.of(Seq(steady, duel("stream", 2)(pass(0)))))
     assertEquals(
       table.rows,
@@ -143,9 +143,7 @@ class TablesSuite extends munit.FunSuite:
       Vector("stream", "direct", "2", "2.51", "0.50", "2.01", "3.01", "0.58", "1.51", "1", "-37.6 %")
     )
 
-  test(
-    "plans: how many candidates in what time, what was missed and broken, and when the evader was captured"
-  ):
+  test("plans: candidates and their time, missed and broken plans, and when the evader was captured"):
     def planned(candidates: Long, slices: Vector[Long], tookMs: Double, breaches: Long) =
       Planned("Pursuer", 1, candidates, slices, Some(1), Span.ofMillis(tookMs), breaches)
     val plans = Vector(
@@ -173,7 +171,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(row.takeRight(2), Vector("never", "0.0 %"))
     assertEquals(SpreadTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5))).flights).rows.head(9), "0")
 
-  test("a live flight stands beside its twin with both distances and the difference"):
+  test("a live flight is beside its twin with both distances and the difference"):
     val flown = duel("stream", 2)(pass(0))
     val live  = flown.copy(heading = flown.heading.copy(flight = flown.heading.flight.copy(clock = "real")))
     val table = SummaryTables.twins(Report.of(Seq(live, duel("stream", 3)(pass(1)))))
@@ -182,7 +180,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals((shown("live m"), shown("virtual m"), shown("difference")), ("2.01", "3.01", "-33.2 %"))
     assertEquals(shown("flown otherwise"), "")
 
-  test("what teams planned has no captures"):
+  test("plans of teams have no captures"):
     val unseen = duel("plan", 2)(pass(0)).copy(
       planned = Vector(Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)),
       readings = Vector.empty
@@ -192,7 +190,7 @@ class TablesSuite extends munit.FunSuite:
     assert(!table.header.contains("captured at s"), table.header)
     assert(!PlanTable.note(Report.of(Seq(unseen))).contains("captured"))
 
-  test("prediction errors are in mm, and those of which none was verified are told"):
+  test("prediction errors are in mm, and groups without a verified prediction are marked"):
     val own   = PredictionErrors(made = 50, Vector.tabulate(41)(index => (100.0, index * 20 / 1000.0)))
     val none  = PredictionErrors(made = 0, Vector.empty)
     val lost  = PredictionErrors(made = 3, Vector.empty)
@@ -208,7 +206,7 @@ class TablesSuite extends munit.FunSuite:
       )
     )
 
-  test("observations stand beside the paper's of the same role, and true ages are means in ms"):
+  test("observations are beside the paper's of the same role, and true ages are means in ms"):
     val recording = SyntheticFlight("stream", "direct", seed = 1)
     val table     = SummaryTables.observations(Report.of(Seq(recording)))
     val paper     = table.header.indices.filter(table.header(_) == "paper")
@@ -222,7 +220,7 @@ class TablesSuite extends munit.FunSuite:
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
     assertEquals(TimingObservation.values.size, paper.size)
 
-  test("of opponents nothing is told where nobody has one"):
+  test("without opponents their columns are left out"):
     val duel = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val set  = Report.of(Seq(duel.copy(heading =
       duel.heading.copy(flight = duel.heading.flight.copy(scenario = "surround"))
@@ -236,7 +234,7 @@ class TablesSuite extends munit.FunSuite:
     val titles = ObservationFigure(set).get.shapes.collect { case text: Mark.Text => text.content }
     assert(titles.contains("Own location age") && !titles.exists(_.contains("pponent")), titles)
 
-  test("without a flight of the paper's nothing stands beside what was observed"):
+  test("without a flight of the paper's observations have no comparison"):
     val slope = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val other = slope.copy(heading =
       slope.heading.copy(flight = slope.heading.flight.copy(scenario = "chase"))
@@ -245,7 +243,7 @@ class TablesSuite extends munit.FunSuite:
     assert(!table.header.contains("paper"), table.header)
     assert(table.rows.nonEmpty && table.rows.forall(_.size == table.header.size))
 
-  test("the page tells what was flown: parameters in their units, and when it began"):
+  test("the page states the flights' parameters in their units, and when it began"):
     val page =
       HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
     val row = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")
@@ -257,12 +255,12 @@ class TablesSuite extends munit.FunSuite:
     assert(page.contains("Skein: 1 flight, scenario duel"), page.take(400))
     assert(page.contains("one decision per vehicle every 100 ms; simulator synthetic; virtual clock"))
 
-  test("a set names its scenario only where all fly the same"):
+  test("a set names its scenario only if all flights have the same"):
     val team  = SyntheticFlight("stream", "vpn", seed = 1, seconds = 12)
     val other = team.copy(heading = team.heading.copy(flight = team.heading.flight.copy(scenario = "own")))
     assert(HtmlReport.render(Report.of(Seq(team, other)), Nil).contains("<h1>Skein: 2 flights</h1>"))
 
-  test("flights that are shown are in the paper's order: by link, then by loop"):
+  test("flights are in the paper's order: by link, then by loop"):
     val links     = Seq("vpn", "zebra", "none", "direct")
     val loops     = Seq("stream", "paused", "sequential")
     val summaries =

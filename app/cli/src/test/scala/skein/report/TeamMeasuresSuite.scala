@@ -8,12 +8,11 @@ import skein.record.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** Measures of flights whose vehicles fly where they are told. */
+/** Measures of flights whose vehicles follow given trajectories. */
 class TeamMeasuresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  /** @param placeM north and east of a vehicle at a time, s
-    */
+  /** @param placeM north and east of a vehicle at a time, s */
   private def flown(scenario: Scenario, seconds: Int, loop: String = "stream")(
       placeM: (Int, Double) => (Double, Double)
   ): Recording =
@@ -67,7 +66,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "gap °"), 90, 1e-9)
     assertEqualsDouble(value(result, "surrounded after s"), 3.95, 0.06)
 
-  test("a live flight and its twin are told apart by the scenario's first measure, in its unit"):
+  test("a live flight and its twin are compared by the scenario's first measure, in its unit"):
     val scenario = Surround(vehicles = 5)
     val virtual  = flown(scenario, 20)((vehicle, _) => (vehicle * 6.0, 0))
       .copy(decisions = SyntheticFlight("stream", "none", seed = 1, seconds = 20).decisions)
@@ -85,7 +84,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     ))
     assertEquals(result.measured.find(_.measure.title == "surrounded after s").flatMap(_.value), None)
 
-  test("slots are kept round the circuit, but for a follower that is 0.3 m beside its own from 15 s on"):
+  test("slots are kept on the circuit, except for a follower that is 0.3 m off its own from 15 s on"):
     val scenario = Formation(vehicles = 3, spacingM = 4)
     val circuit  = scenario.circuit
     val slots    = scenario.slots
@@ -107,8 +106,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
   test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
     val scenario = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val goals    = scenario.goals
-    // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from
-    // 8 s on.
+    // The first passes the waiting second at 1 m at 5 s; the third is at its goal from 8 s on.
     val result = resultOf(flown(scenario, 12): (vehicle, second) =>
       vehicle match
         case 0 => ((second - 5) * 4, 200.0)
@@ -121,7 +119,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "to goal s"), 8, 0.1)
     assertEqualsDouble(value(result, "per min"), 7.5, 0.1)
 
-  test("a flight is measured against the paused truth of its own scenario, and by where its vehicles are"):
+  test("a flight is compared with the paused truth of its own scenario, and by its vehicles' positions"):
     val scenario              = Surround(vehicles = 3)
     def ring(radiusM: Double) = (vehicle: Int, _: Double) =>
       (if vehicle == 0 then 0.0 else if vehicle == 1 then radiusM else -radiusM, 0.0)
@@ -194,7 +192,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEquals(streams(column(spread, "to goal s")), "8.00 ± 0.00, 8.00 … 8.00, 1 never")
     assertEquals(spread.rows.map(_.size).distinct, Vector(spread.header.size))
 
-  test("of a flight shorter than what is measured, the tables say so; what did not happen, never did"):
+  test("for a flight shorter than the measured window the tables state that, and for missing events 'never'"):
     val scenario = Surround(vehicles = 3)
     // Both pursuers stand on one side of the evader.
     val beside = (vehicle: Int, _: Double) => (10.0 * vehicle, 0.0)

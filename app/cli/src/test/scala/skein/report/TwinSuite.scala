@@ -31,7 +31,7 @@ class TwinSuite extends munit.FunSuite:
       case others       => fail(s"expected one pair, came ${others.size}")
     assertEquals(twin.virtual.map(_.flight.seed), Vector(2L, 3L))
     assertEquals(twin.seeds, "2 seeds, 2 … 3")
-    // Twins stand beside their live flight alone; a virtual flight without one is a flight like others.
+    // Twins are shown only beside their live flight; a virtual flight without one is an ordinary flight.
     assertEquals(
       set.flights.map(one => (one.flight.loop, one.flight.link)),
       Vector(("sequential", "direct"), ("stream", "direct"), ("stream", "vpn"))
@@ -44,10 +44,7 @@ class TwinSuite extends munit.FunSuite:
     assertEquals(twin.difference, Some(0.0))
     assertEquals(twin.unlike, Vector.empty)
 
-  test(
-    "data that grew older on another link is that far apart, and the " +
-      "difference of the distances is relative to the twin"
-  ):
+  test("older data on another link has that difference, and distances differ relative to the twin's"):
     val other = live("stream", "vpn", 1)
     val vpn   = other.copy(heading =
       other.heading.copy(flight = other.flight.copy(link = "direct", duration = Span.ofSeconds(13)))
@@ -59,7 +56,7 @@ class TwinSuite extends munit.FunSuite:
     assertEqualsDouble(twin.difference.get, l / v - 1, 1e-12)
     assertEquals(twin.unlike, Vector("duration 13 s live, 12 s virtual"))
 
-  test("the section stands in the text and on the page where there is a pair, and only there"):
+  test("the section is in the text and on the page if there is a pair, and only then"):
     val paired = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 2)))
     val page   = HtmlReport.render(paired, ReportSections.of(paired, ReportFigures.of(paired)))
     assert(page.contains("Live against virtual") && page.contains("KS 0."), "no section")

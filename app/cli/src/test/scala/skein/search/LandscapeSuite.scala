@@ -18,7 +18,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     candidates.map: c =>
       RunningStats.of(episodes.size)(_ => 10 * c(1) * c(1) + 0.01 * c(2) + c(3))
 
-  test("of many parameters the two are drawn that matter most, the others at the best"):
+  test("of many parameters the two most sensitive ones are drawn, the others at the best"):
     val best = Vector(0.5, 0.0, 1.0, 2.0)
     val land = Landscape.of(space, best, evaluator, 0 until 3, () => false, onMap = 5).get
     assertEquals(Landscape.of(space, best, evaluator, 0 until 3, () => true), None)
@@ -39,7 +39,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val texts   = drawing.shapes.collect { case text: Mark.Text => text.content }
     assert(texts.contains("title") && texts.contains("x") && texts.contains("value"), texts)
 
-  test("of a curve's values that are no number nothing is drawn"):
+  test("NaN values of a curve are not drawn"):
     val line                         = SearchSpace(Vector(Axis("x", 0, 1)))
     def drawn(ofX: Double => Double) =
       val values: Evaluator =
@@ -58,14 +58,14 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val best  = Vector(0.5, 1.23456, 1.5, 1.75, 0.25, 0.125).take(dimension)
     Landscape(space, best, 0, Some(1), Vector(0, 2), Vector(0, 2), Vector.fill(2, 2)(RunningStats(3, 1, 0)))
 
-  test("what is not drawn is told with its value, of many how many there are"):
+  test("parameters that are not drawn are listed with their values, or counted if many"):
     assertEquals(LandscapeFigure.fixed(at(2)), None)
     assertEquals(LandscapeFigure.fixed(at(3)), Some("at the best: capture radius = 1.5 m"))
     assertEquals(LandscapeFigure.fixed(at(4)), Some("at the best: capture radius = 1.5 m, gain = 1.75"))
     assertEquals(LandscapeFigure.fixed(at(6)), Some("4 others at the best"))
     val shapes = LandscapeFigure(at(3), "title", "last10s, m", Direction.Minimise).shapes
     val texts  = shapes.collect { case text: Mark.Text => text.content }
-    // What is marked, and the same marks in the legend: the found one as a ring, which does not hide the default.
+    // The marks, and equal marks in the legend: the found one as a ring, which does not hide the default.
     val (rings, discs) = shapes.collect { case disc: Mark.Disc => disc }.partition(_.fill.isEmpty)
     assertEquals((rings.groupBy(_.centre).size, discs.groupBy(_.centre).size), (2, 2))
     assert(rings.map(_.radius).min > discs.map(_.radius).max + 2)
@@ -74,7 +74,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
       texts
     )
 
-  test("a map's legend tells the standard error of a cell, and nothing stands beside its colours"):
+  test("a map's legend states the standard error of a cell, and no text overlaps its colours"):
     val random = java.util.SplittableRandom(1)
     val noise  = at(2).copy(
       xs = Vector.tabulate(21)(_ / 10.0),
@@ -109,7 +109,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val places = figure.shapes.collect { case Mark.Path(points, _, _, _) => points }.flatten
     assert(places.forall(at => at.y >= 0 && at.y <= figure.height), places)
 
-  test("where the found value is the default, both lines are seen"):
+  test("where the found value is the default, both lines are visible"):
     val figure = LandscapeFigure(alongOne(Vector(3.0, 1, 2), 1), "title", "distance, m", Direction.Minimise)
     val lines  = figure.shapes.collect:
       case Mark.Path(Vector(from, to), Some(stroke), _, _) if from.x == to.x && from.y != to.y => stroke
@@ -117,7 +117,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     assertEquals(marks.map(_.dash.isEmpty), Vector(true, false), marks)
     assert(marks(0).width > 2 * marks(1).width)
 
-  test("parameters are called what they are, with their units"):
+  test("parameters have readable titles, with their units"):
     val names = Seq(
       "turnRateRadPerS",
       "turningRadiusM",
@@ -144,7 +144,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
       )
     )
 
-  test("a map's colours end before outliers on the worse side, and the bar says so"):
+  test("a map's colours end before outliers on the worse side, and the bar marks that"):
     val even                                               = Vector.tabulate(101)(_ / 10.0)
     val outliers                                           = even.init :+ 1000.0
     def scale(means: Vector[Double], direction: Direction) =

@@ -30,7 +30,7 @@ class SearchBlockLaws extends munit.ScalaCheckSuite, Optimised:
       atMost
     )
 
-  property("however a call is cut, its answers put together are the undivided call's, to the bit"):
+  property("for any division of a call, the combined answers are the undivided call's, to the bit"):
     Prop.forAll(calls): (judge, candidates, episodes, atMost) =>
       val blocks  = SearchBlock.cut(judge, candidates, episodes, atMost)
       val answers = blocks.map(block => SearchBlock.read(block.bytes).fold(fail(_), _.answer(_ => Rough)))
@@ -39,7 +39,7 @@ class SearchBlockLaws extends munit.ScalaCheckSuite, Optimised:
         Right(Rough.tallies(candidates, episodes))
       )
 
-  property("no block asks more than it may, unless one candidate on one episode does"):
+  property("no block exceeds its bound, unless one candidate on one episode does"):
     Prop.forAll(calls): (judge, candidates, episodes, atMost) =>
       for block <- SearchBlock.cut(judge, candidates, episodes, atMost) do
         assert(block.candidates.size * block.episodes.size <= atMost)
@@ -49,7 +49,7 @@ class SearchBlockLaws extends munit.ScalaCheckSuite, Optimised:
       for block <- SearchBlock.cut(judge, candidates, episodes, atMost) do
         assertEquals(SearchBlock.read(block.bytes), Right(block))
 
-  property("whatever bytes come, what is no block is told in a line"):
+  property("for any bytes, an invalid block is refused in a line"):
     Prop.forAll(Gen.listOf(Arbitrary.arbitrary[Byte])): bytes =>
       val read = SearchBlock.read(ArraySeq.from(bytes))
       for block <- read do assertEquals(block.bytes.size, bytes.size)

@@ -6,7 +6,7 @@ import skein.optimise.{Evaluator, RunningStats}
 import skein.scenario.Scenarios
 import skein.testing.{Optimised, TemporaryFolders}
 
-/** What flies a search's candidates, and what its fresh episodes, is told apart. */
+/** The engine of a search's candidates, and that of its fresh episodes, are reported separately. */
 class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
@@ -31,7 +31,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private def eyeFile(): String =
     Files.writeString(temporaryFolder().resolve("eye.conf"), SearchEnginesSuite.Eye).toString
 
-  test("what flies by lanes comes to what the scalar reference comes to, and what does not is told"):
+  test("SIMD results equal the scalar reference's, and a difference is reported"):
     val duel      = setup("stream", "vpn", eye = None)
     val episodes  = 0 until SearchResult.Checked
     val flown     = duel.judges(1)(Judge.Winner).tallies(Vector(duel.space.defaults), episodes).head
@@ -41,7 +41,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     for other <- Seq(reference.copy(mean = 3 * reference.mean), reference.copy(mean = Double.NaN)) do
       assert(SearchResult.disagreement(flown, other, "m").exists(_.contains("the scalar engine comes to")))
 
-  test("where both fly by lanes, each says by which"):
+  test("where both use SIMD, each states its kernel"):
     for
       loop <- Seq("sequential", "futures", "stream", "predictive")
       link <- Seq("vpn", "vpn-mixed")
@@ -50,14 +50,14 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       val told = engines(loop, link, eye)
       assert(told.matches("SIMD, .*; fresh episodes: SIMD, .*"), s"$loop, $link, $eye: $told")
 
-  test("fresh episodes that fly by the scalar engine are told of, with the reason"):
+  test("fresh episodes with the scalar engine are reported, with the reason"):
     val seeing = engines("paused", "vpn", Some(eyeFile()))
     assert(
       seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor while the world waits .*"),
       seeing
     )
 
-  test("a team's fresh episodes fly world by world, side by side"):
+  test("a team's fresh episodes run world by world, in parallel"):
     val team = TeamQuestion(
       scenario = "surround",
       set = Map("vehicles" -> "3"),
@@ -79,7 +79,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       team.engines
     )
 
-  test("candidates that another engine flies are counted, and told of with its reason"):
+  test("candidates with another engine are counted, and reported with its reason"):
     val by = new Evaluator:
       def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
         candidates.map(_ => RunningStats.of(1)(_ => 0.0))

@@ -46,7 +46,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
         ready.search.step(read.state, evaluator, 17)
       assertEquals(broken, unbroken)
 
-  test("files that a question names are known by what they held"):
+  test("files that a question names are recognised by their content"):
     val folder = temporaryFolder()
     val file   = Files.writeString(folder.resolve("link.txt"), "20\n30\n")
     val before = NamedFiles.digests(Seq(s"file:$file", "reduced", "vpn"))
@@ -73,7 +73,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     )
     Files.delete(folder)
 
-  folder.test("what is written for people can be read back, whatever files the question names"): folder =>
+  folder.test("output for people can be read back, whatever files the question names"): folder =>
     val link  = s"file:${Files.writeString(folder.resolve("our \"own\" \\ $link.txt"), "20\n30\n")}"
     val tally = RunningStats.of(2)(_.toDouble)
     def read(text: String): Config =
@@ -107,7 +107,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     val learned = LearnResult(setup, state, setup.policy(weights), tally, tally, None).file
     assertEquals(read(learned).getString("learned.link"), link)
 
-  test("settings that are text are flown as they were searched"):
+  test("text settings are used unchanged in flights and searches"):
     given Scenarios = Scenarios(ScenarioKind(SearchFileSuite.Signed()))
     val asked       = TeamQuestion(
       "signed",
@@ -147,7 +147,8 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     Files.delete(folder)
 
   test(
-    "a run that is stopped within a step keeps the state before it, and goes on from there to the same end"
+    "a run that is stopped within a step keeps the state before it, and continues from there to the " +
+      "same end"
   ):
     val folder = temporaryFolder()
     val ready  = setup("cma-es")
@@ -171,7 +172,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     Files.delete(folder.resolve(SearchFile.Name))
     Files.delete(folder)
 
-  test("what is not the state of a search, or is no more what was written, is refused"):
+  test("a file that is no search state, or was changed, is refused"):
     val ready = setup("cma-es")
     val whole = SearchFile.json(SearchFile(SearchFile.Version, ready.question, ready.search.start))
     for (text, part) <- Seq(
@@ -199,7 +200,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     )
     assert(asked.setup.isRight, asked.setup)
 
-  test("moves in flight are the loop's, and are told where they are not the usual two"):
+  test("moves in flight belong to the loop, and are printed where they are not the default two"):
     def asked(moves: Int) =
       question("cma-es").copy(conditions =
         Conditions("predictive", "reduced", 100, 12, movesInFlight = moves)

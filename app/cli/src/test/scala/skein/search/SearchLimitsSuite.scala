@@ -5,7 +5,7 @@ import skein.policy.{Axis, SearchSpace}
 class SearchLimitsSuite extends munit.FunSuite:
   private val space = SearchSpace(Vector(Axis("turnRateRadPerS", 0.2, 3.0), Axis("gainPerS", 0.5, 8.0)))
 
-  test("a candidate at limits of its axes is told with the axes and their limits"):
+  test("a candidate at limits of its axes is reported with the axes and their limits"):
     assertEquals(
       SearchResult.atLimits(space, Vector(2.996, 0.5)),
       Some(
@@ -14,5 +14,5 @@ class SearchLimitsSuite extends munit.FunSuite:
       )
     )
 
-  test("one within them is not"):
+  test("a candidate within its limits is not reported"):
     assertEquals(SearchResult.atLimits(space, Vector(2.9, 0.7)), None)

@@ -29,7 +29,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
   private def ended(search: Search, evaluator: Evaluator): SearchState =
     Iterator.iterate(search.start)(search.step(_, evaluator, Int.MaxValue)).find(_.isDone).get
 
-  test("the best settings of a scenario are found by lanes, and flown as they are written down"):
+  test("the best settings of a scenario are found with SIMD, and the written file can be flown"):
     val ready = setup()
     assert(ready.engines.startsWith("SIMD"), ready.engines)
     val judges = ready.judges(2)
@@ -40,7 +40,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val flown = ScenarioSettings.read(written).fold(fail(_), identity)
     assertEquals(flown, ready.scenario(found.best))
 
-  test("a candidate comes to what its measures say of the same flight by the scalar engine"):
+  test("a candidate's value equals its measures of the same flight by the scalar engine"):
     val ready    = setup()
     val lanes    = ready.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 3).head
     val surround = ready.scenario(Vector(8.0, 8.0))
@@ -55,7 +55,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     )
     assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
 
-  test("a measure of whole flights is searched world by world, and the engine says so"):
+  test("a measure of whole flights is searched world by world, and the engine line states it"):
     val ready = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
     assert(ready.engines.matches("scalar: surrounded-after is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
@@ -68,7 +68,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     )
     assertEquals(judges.valuesUnless(() => true)(Vector(Vector(8.0, 8.0)), 0 until 2), None)
 
-  test("off-ring by whole flights of the scalar engine is what lanes come to"):
+  test("off-ring by whole flights of the scalar engine equals the SIMD result"):
     val reduced = setup()
     val whole   = reduced.flownBy match
       case TeamEngine.Reduced(conditions, delays) =>
@@ -79,7 +79,10 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     // The window's first and last instants differ by up to half a period, in which a vehicle flies 0.4 m.
     assertEqualsDouble(mean(reduced.copy(flownBy = whole)), mean(reduced), 0.1)
 
-  test("settings that change how high all fly are flown in virtual time; so many flights are refused"):
+  test(
+    "settings that change the altitude are simulated in virtual time, and too many such flights are " +
+      "refused"
+  ):
     val high  = question.copy(vary = Vector(Varied("altitude-m", 10, 20)), objective = "off-ring")
     val ready = setup(high)
     assert(ready.isVirtual)
@@ -88,10 +91,10 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val plant =
       high.copy(conditions = high.conditions.copy(plant = "reduced")).setup.swap.getOrElse("it was taken")
     assert(plant.startsWith("--plant: expected none"), plant)
-    // Also where it is the one that flies where none is told.
+    // Even if it is the default plant.
     assert(clue(high.read(plantIsTold = true)).left.exists(_.startsWith("--plant: expected none")))
 
-  test("a search over settings is written down, read back and gone on with to the same end"):
+  test("a search over settings is stored, read back and continued to the same end"):
     val ready     = setup(question.copy(method = "cma-es"))
     val evaluator = ready.judges(2)(Judge.Candidates)
     val broken    = Iterator
@@ -104,7 +107,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       .get
     assertEquals(broken, ended(ready.search, evaluator))
 
-  test("what cannot be searched is told in a line, with the option"):
+  test("an impossible search is refused in a line, with the option"):
     def mistake(of: TeamQuestion) = of.setup.fold(identity, _ => fail("it was taken"))
     assertEquals(
       mistake(question.copy(vary = Vector(Varied("ring", 4, 12)))),
@@ -138,7 +141,7 @@ object TeamSearchSimulation:
   import skein.forward.{Engagement, LoopObserver, Rollout}
   import skein.simd.WorldRandom
 
-  /** Where all were in the last 10 s of an episode, flown by the scalar engine. */
+  /** Positions of all vehicles in the last 10 s of an episode, simulated by the scalar engine. */
   private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Positions] =
     val (conditions, delays) = setup.flownBy match
       case TeamEngine.Reduced(conditions, delays) => (conditions, delays)

@@ -7,9 +7,9 @@ import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** The wheel as a user has it: installed into a fresh environment, it trains. Skipped where there is no
-  * Python, or where its packages cannot be fetched. The package's own tests take longer, and run where Python
-  * has what they need.
+/** The wheel as a user installs it: in a fresh environment, it trains. Skipped where there is no Python, or
+  * where its packages cannot be fetched. The package's own tests take longer, and run where Python has their
+  * dependencies.
   */
 class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private val root = Iterator
@@ -18,7 +18,6 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     .get
   private val target = root.resolve("app/python/target")
 
-  /** Or why there is none. */
   private def wheel: Either[String, Path] =
     val why = target.resolve("no-wheel.txt")
     if Files.exists(why) then Left(Files.readString(why))
@@ -51,7 +50,7 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     )
     assert(installed.isRight, installed.left.getOrElse(""))
 
-  test("there, the ten lines of the example train a pursuer"):
+  test("in the fresh environment, the ten lines of the example train a pursuer"):
     assume(Files.exists(home), "nothing was installed")
     val trained   = python(root.resolve("examples/learn-in-python/learn.py").toString)
     val distances = """mean distance ([0-9.]+) m""".r

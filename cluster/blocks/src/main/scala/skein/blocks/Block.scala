@@ -4,16 +4,15 @@ import java.nio.ByteBuffer
 import java.security.MessageDigest
 import scala.collection.immutable.ArraySeq
 
-/** A part of a question's work. Computing it is pure: whoever does it, and however often, gets the same
-  * bytes.
+/** A part of a question's work. Computing it is pure: any process, at any time, gets identical bytes.
   *
   * @param number counted by the coordinator, from 0
-  * @param work what to compute, as the question's solver reads it
+  * @param work input of the computation, in the question solver's encoding
   */
 final case class Block(number: Long, work: ArraySeq[Byte]):
   val key: BlockKey = BlockKey.of(work)
 
-/** Names a block by what it asks, so that a coordinator that was started again knows what it has: the first
+/** Identifies a block by its content, so that a restarted coordinator recognises answered blocks: the first
   * 128 bits of the work's SHA-256.
   */
 final case class BlockKey(high: Long, low: Long)

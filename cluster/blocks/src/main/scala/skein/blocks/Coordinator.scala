@@ -2,15 +2,15 @@ package skein.blocks
 
 import scala.collection.immutable.TreeSet
 
-/** Who computes which block: a value, changed by what workers say and by time. Blocks may be given out
-  * several times; the first answer counts, and later ones are counted as repeats.
+/** Assigns blocks to workers: an immutable value, changed by workers' messages and by time. Blocks may be
+  * assigned several times; the first answer counts, and later ones are counted as repeats.
   *
-  * @param waiting blocks that nobody has
-  * @param leases blocks that somebody has, by their numbers
-  * @param seldom leases of one worker alone, the oldest first: given out again once nothing waits
-  * @param workers by name, also those that are gone
-  * @param cores of all workers that are here
-  * @param patienceNanos after which a block is given to others, whatever its worker does
+  * @param waiting blocks without a worker
+  * @param leases blocks with at least one worker, by their numbers
+  * @param seldom leases of a single worker, the oldest first: assigned again once nothing waits
+  * @param workers by name, including those that have left
+  * @param cores of all current workers
+  * @param patienceNanos after which a block is assigned to others, whatever its worker does
   * @param slowNanos after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
@@ -35,7 +35,7 @@ final case class Coordinator private (
       cores = this.cores - before + cores
     )
 
-  /** What only this worker had waits again, before all else. */
+  /** Removes a lost worker; blocks that only it had wait again, ahead of all others. */
   def lost(worker: String): Coordinator =
     workers.get(worker).filter(_.isHere).fold(this): record =>
       released(worker, record.holds).copy(
@@ -45,19 +45,19 @@ final case class Coordinator private (
 
   def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting.followedBy(blocks))
 
-  /** A worker asks for a block. It holds one for each of its cores and, while there are more than enough, as
-    * many that wait for their turn at the worker.
+  /** Handles a worker's request for a block. A worker holds one block for each of its cores and, while there
+    * are more than enough, as many that wait at the worker.
     *
-    * @param holding numbers of the blocks that it has; what it was given, or named, more than [[OnItsWay]]
-    *   ago and does not name was lost
-    * @param nowNanos on any clock that does not go back
-    * @return the block that it gets, if there is one
+    * @param holding numbers of the blocks that it has; a block assigned or named more than [[OnItsWay]] ago
+    *   and missing here was lost
+    * @param nowNanos on any monotonic clock
+    * @return the assigned block, if there is one
     */
   def asked(worker: String, holding: Set[Long], nowNanos: Long): (Coordinator, Option[Block]) =
     workers.get(worker).filter(_.isHere) match
       case None         => (this, None)
       case Some(record) =>
-        // An answer that is on its way may be overtaken by the request behind it.
+        // An answer in transit may be overtaken by the request after it.
         val seen =
           record.holds.map((number, since) => number -> (if holding(number) then nowNanos else since))
         val gone = seen.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
@@ -67,9 +67,9 @@ final case class Coordinator private (
         if holding.size.max(here.workers(worker).holds.size) >= most then (here, None)
         else here.handedOut(worker, nowNanos)
 
-  /** A worker's answer.
+  /** Handles a worker's answer.
     *
-    * @return whether it is the first, which counts
+    * @return whether it is the first one for its block, which counts
     */
   def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, AnswerKind) =
     def tallied(record: WorkerRecord, accepted: Int) = record.copy(
@@ -92,7 +92,7 @@ final case class Coordinator private (
         (next, AnswerKind.First(lease.block))
       case None =>
         waiting.again.get(number) match
-          // Its lease was given up, and it came all the same.
+          // Its lease was dropped, and the answer arrived nevertheless.
           case Some(block) =>
             val next = copy(
               waiting = waiting.without(number),
@@ -107,10 +107,10 @@ final case class Coordinator private (
             )
             (next, AnswerKind.Repeated)
 
-  /** Blocks that have been out for too long wait again; their workers may still answer. */
+  /** Returns overdue blocks to the waiting ones; their workers may still answer. */
   def at(nowNanos: Long): Coordinator =
     def isOverdue(lease: Lease) = nowNanos - lease.place._1 > patienceNanos
-    // Towards the end every block may be with two who both hang.
+    // Towards the end every block may be with two workers that both hang.
     val overdue =
       if seldom.isEmpty then leases.valuesIterator.filter(isOverdue).toVector
       else seldom.iterator.map((_, number) => leases(number)).takeWhile(isOverdue).toVector
@@ -125,7 +125,7 @@ final case class Coordinator private (
         )
       )(_.forgotten(_, Set(number)))
 
-  /** Gives up all blocks; answers that still arrive are repeats. */
+  /** Drops all blocks; answers that still arrive are repeats. */
   def cancelled: Coordinator = copy(
     waiting = Waiting(),
     leases = Map.empty,
@@ -138,7 +138,7 @@ final case class Coordinator private (
       case Some((block, others)) =>
         (copy(waiting = others).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
       case None =>
-        // The last blocks go out twice: whoever is quicker counts.
+        // The last blocks are assigned twice: the faster answer counts.
         val slow = seldom.iterator
           .takeWhile((since, _) => nowNanos - since >= slowNanos)
           .map((_, number) => leases(number))
@@ -159,7 +159,7 @@ final case class Coordinator private (
       )
     )
 
-  /** Takes blocks out of what a worker is known to hold. */
+  /** Removes blocks from the record of what a worker holds. */
   private def forgotten(worker: String, numbers: Set[Long]): Coordinator =
     copy(workers = workers.updatedWith(worker)(_.map(record => record.copy(holds = record.holds -- numbers))))
 
@@ -178,11 +178,11 @@ final case class Coordinator private (
         else here.copy(leases = here.leases.updated(number, left), seldom = here.seldom + left.place)
 
 object Coordinator:
-  /** Of each core: a block that is computed, and one that waits for its turn at the worker. */
+  /** Blocks for each core: one being computed, and one that waits at the worker. */
   val MostHeld = 2
 
-  /** Within which a block that was given, or the answer to one that its worker named, may still be on its
-    * way: twice as long as workers wait between two requests, at most.
+  /** Time for which an assigned block, or the answer to one that its worker named, may still be in transit:
+    * twice a worker's longest interval between two requests.
     */
   val OnItsWay: Long = 4_000_000_000L
 
@@ -200,22 +200,22 @@ object Coordinator:
       slowNanos
     )
 
-  /** A block with the workers that have it, and since when. */
+  /** A block with its workers, and since when each has it. */
   final case class Lease(block: Block, holders: Map[String, Long]):
     private[blocks] def place: (Long, Long) = (holders.values.min, block.number)
 
-  /** @param accepted blocks whose first answer came
+  /** @param accepted blocks whose first answer was received
     * @param repeated answers that were not the first
-    * @param doubled blocks given out again since nothing else waited
+    * @param doubled blocks assigned again since nothing else waited
     * @param lost blocks that waited again since their worker was gone
-    * @param overdue blocks that waited again since nobody answered for too long
+    * @param overdue blocks that waited again since no answer arrived in time
     */
   final case class Counts(accepted: Long, repeated: Long, doubled: Long, lost: Long, overdue: Long)
 
-/** What a worker has done.
+/** A worker's assignments and work.
   *
-  * @param holds numbers of the blocks that it was given, and when, or when it named them last
-  * @param busyNanos that it computed, over all its answers
+  * @param holds numbers of its assigned blocks, with the time of assignment or of its last mention
+  * @param busyNanos of computing, over all its answers
   */
 final case class WorkerRecord(
     cores: Int,
@@ -226,9 +226,8 @@ final case class WorkerRecord(
     busyNanos: Long = 0
 )
 
-/** What a worker's answer to a block counts for. */
+/** Whether an answer is the first, a repeat, or unknown. */
 enum AnswerKind:
   case First(block: Block)
 
-  /** The block is done or given up. */
   case Repeated

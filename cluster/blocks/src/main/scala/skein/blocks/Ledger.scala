@@ -9,17 +9,16 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import scala.util.Using
 
-/** The answers that count, on disk: each block's first one, once. A coordinator that is started again reads
-  * it and asks for nothing twice. Whatever ends the process, a record is there whole or is cut off at the
-  * next start.
+/** The answers that count, on disk: each block's first one, once. A restarted coordinator reads it and
+  * requests nothing twice. If the process dies, a record is either complete or cut off at the next start.
   *
-  * A record that was damaged since is passed over, and its block computed again.
+  * A damaged record is skipped, and its block computed again.
   *
-  * The file: 16 bytes of [[Ledger.Magic]], 32 bytes that name the question, then records: length and CRC-32
-  * of what follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
+  * The file: 16 bytes of [[Ledger.Magic]], 32 bytes that identify the question, then records: length and
+  * CRC-32 of what follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
   *
-  * @param index where each block's answer stands, and how long it is
-  * @param broken bytes of the file, as it was opened, that belong to no whole record
+  * @param index position and length of each block's answer
+  * @param broken bytes of the opened file that belong to no complete record
   */
 final class Ledger private (
     file: Path,
@@ -39,12 +38,14 @@ final class Ledger private (
       while bytes.hasRemaining && channel.read(bytes, at + bytes.position()) >= 0 do ()
       ArraySeq.unsafeWrapArray(bytes.array)
 
-  /** @return whether the answer is the block's first and was written
+  /** Writes an answer.
+    *
+    * @return whether it is the block's first and was written
     */
   def accept(key: BlockKey, answer: ArraySeq[Byte]): Boolean =
     !index.contains(key) && {
       val record = Ledger.record(key, answer)
-      // Of a record that could not be written whole nothing is left before the next.
+      // Removes a record that could not be written completely before the next.
       while record.hasRemaining do
         val _ = channel.write(record, end + record.position())
       index.update(key, (end + Ledger.Head + BlockKey.Bytes, answer.length))
@@ -52,10 +53,10 @@ final class Ledger private (
       true
     }
 
-  /** All that was accepted is on the disk when this returns. */
+  /** Returns once all accepted answers are on the disk. */
   def force(): Unit = channel.force(false)
 
-  /** Of one without an answer no file is left. */
+  /** Closes the file; deletes it if it has no answer. */
   def close(): Unit = if channel.isOpen then
     force()
     channel.close()
@@ -69,10 +70,10 @@ object Ledger:
   private val First    = Magic.length + Question
   private val Longest  = 16 << 20
 
-  /** Opens the ledger of a question, or begins it.
+  /** Opens a question's ledger, or creates it.
     *
-    * @param question 32 bytes that name it
-    * @return or why not: another question's ledger, or a file that cannot be written
+    * @param question 32 bytes that identify it
+    * @return Left states why not: another question's ledger, or a file that cannot be written
     */
   def open(file: Path, question: ArraySeq[Byte]): Either[String, Ledger] =
     import StandardOpenOption.*
@@ -81,7 +82,7 @@ object Ledger:
       val channel = FileChannel.open(file, CREATE, READ, WRITE)
       val size    = channel.size
       if size < First then
-        // Nothing can stand behind half a heading.
+        // Nothing can follow an incomplete heading.
         val _       = channel.truncate(0)
         val heading = ByteBuffer.wrap(Magic ++ question.toArray)
         while heading.hasRemaining do { val _ = channel.write(heading) }
@@ -101,11 +102,11 @@ object Ledger:
           Right(Ledger(file, channel, index, found.end, found.broken))
     catch case failed: IOException => Left(s"cannot open the ledger $file: $failed")
 
-  /** What a ledger holds, read from the file alone.
+  /** A ledger's content, read from the file alone.
     *
     * @param blocks records with different keys
-    * @param repeats records whose key came before; none, or something is wrong
-    * @param broken bytes that belong to no whole record
+    * @param repeats records whose key occurred before; more than none is an error
+    * @param broken bytes that belong to no complete record
     */
   final case class Audit(blocks: Int, repeats: Int, broken: Long)
 
@@ -116,12 +117,12 @@ object Ledger:
       val found   = scan(channel)((key, _, _) => if !keys.add(key) then repeats += 1)
       Audit(keys.size, repeats, found.broken)
 
-  /** @param end behind the last whole record
-    * @param broken bytes between whole records and behind the last
+  /** @param end of the last complete record
+    * @param broken bytes between complete records and after the last
     */
   private final case class Scanned(end: Long, broken: Long)
 
-  /** Passes every whole record to `tell`, in order; skips damaged ones. */
+  /** Passes every complete record to `tell`, in order; skips damaged ones. */
   private def scan(channel: FileChannel)(tell: (BlockKey, Long, Int) => Unit): Scanned =
     val size  = channel.size
     var at    = First.toLong
@@ -139,7 +140,7 @@ object Ledger:
       next = recordAt(channel, at, size)
     Scanned(end, size - First - whole)
 
-  /** How long the record is that stands there, and its key unless its checksum is another. */
+  /** Length of the record at this position, with its key unless the checksum differs. */
   private def recordAt(channel: FileChannel, at: Long, size: Long): Option[(Option[BlockKey], Int)] =
     if size - at < Head + BlockKey.Bytes then None
     else

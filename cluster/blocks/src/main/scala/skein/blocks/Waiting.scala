@@ -2,11 +2,11 @@ package skein.blocks
 
 import scala.collection.immutable.TreeMap
 
-/** Blocks that nobody has. Those that somebody had go out first, by their numbers; then the others, in the
-  * order in which they came. No step takes longer where there are a million.
+/** Blocks without a worker. Those that had one go out first, by their numbers; then the others, in order of
+  * arrival. Each step takes logarithmic time, even with a million blocks.
   *
-  * @param again that somebody had, by their numbers; an answer to them may still come
-  * @param fresh that nobody ever had
+  * @param again blocks that had a worker, by their numbers; an answer to them may still arrive
+  * @param fresh blocks that never had a worker
   */
 final case class Waiting private (again: TreeMap[Long, Block], fresh: Vector[Block]):
   def size: Int         = again.size + fresh.size
@@ -15,7 +15,7 @@ final case class Waiting private (again: TreeMap[Long, Block], fresh: Vector[Blo
 
   def iterator: Iterator[Block] = again.valuesIterator ++ fresh.iterator
 
-  /** The block that goes out next, and the others. */
+  /** The next block to assign, and the remaining ones. */
   private[blocks] def next: Option[(Block, Waiting)] =
     again.headOption match
       case Some((number, block)) => Some((block, without(number)))

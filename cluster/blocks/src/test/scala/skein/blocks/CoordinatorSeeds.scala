@@ -4,9 +4,9 @@ import java.nio.file.Files
 
 /** Many small jobs in virtual time, each by one, two and five workers, over a network that loses, doubles,
   * delays and reorders messages: `./sbtw "blocks/Test/runMain skein.blocks.coordinatorSeeds 510"`. Each
-  * second a worker dies with a chance of 1 in 60, and is cut off with one of 1 in 30; under every second seed
-  * the coordinator dies twice, with a part of its ledger. Ends with an error at the first job whose answer is
-  * not that of one process to the bit, or whose ledger has not every block once.
+  * second a worker dies with probability 1/60, and is cut off with probability 1/30; with every second seed
+  * the coordinator dies twice, and loses a part of its ledger. Fails at the first job whose answer differs in
+  * a bit from that of one process, or whose ledger does not have every block exactly once.
   */
 @main def coordinatorSeeds(seeds: Int): Unit =
   require(seeds > 0, s"expected a number of seeds, came $seeds")

@@ -8,8 +8,8 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import skein.signal.SplitMix64
 
-/** Coordinator, ledger and workers over a network that loses, doubles, delays and reorders, on a clock of
-  * their own. The ledger is a file, of which a coordinator that dies loses a part that was not saved.
+/** Coordinator, ledger and workers over a network that loses, doubles, delays and reorders, on a simulated
+  * clock. The ledger is a file; a coordinator that dies loses an unsaved part of it.
   *
   * @param folder for the ledger
   * @param meanSeconds of a block, at a speed of 1
@@ -35,7 +35,7 @@ final class CoordinatorSimulation(
   private var run           = 0
   private val keys          = Vector.tabulate(blocks)(number => BlockKey.of(work(number)))
 
-  /** What the coordinator was told in this life, as it is kept for whoever asked. */
+  /** Answers that the coordinator received in this run, by block. */
   private var answers = mutable.HashMap.empty[BlockKey, ArraySeq[Byte]]
 
   var acceptedTwice              = 0
@@ -53,7 +53,7 @@ final class CoordinatorSimulation(
   def done: Int                  = answers.size
   def isDone: Boolean            = done == blocks
 
-  /** Of all blocks, put together in their order. */
+  /** The combined result of all blocks, in order. */
   def result: Result = resultOf(keys.iterator.map(key => valueOf(ledger.answer(key).get)))
 
   def close(): Unit = ledger.close()
@@ -61,7 +61,7 @@ final class CoordinatorSimulation(
   private def open() =
     Ledger.open(file, Question).fold(reason => throw IllegalStateException(reason), identity)
 
-  /** What the coordinator does, and how long it takes. */
+  /** Runs a coordinator's step and measures its duration. */
   private def deciding[A](body: => A): A =
     val begun = System.nanoTime()
     try body
@@ -73,7 +73,7 @@ final class CoordinatorSimulation(
 
   private def exponential(meanS: Double): Long = (random.nextExponential(meanS) * Second).toLong
 
-  /** A message between a worker and the coordinator: late, now and then twice, now and then never. */
+  /** Sends a message between a worker and the coordinator: late, sometimes twice, sometimes never. */
   private def send(worker: Worker, bytes: Int)(arrives: => Unit): Unit =
     messages += 1
     messageBytes += bytes
@@ -87,7 +87,7 @@ final class CoordinatorSimulation(
     private var begunAt = -1L
     var cutUntil        = 0L
 
-    /** In a process of this worker's, which may end at any time. */
+    /** Runs one worker's process, which may end at any time. */
     def live(deathsAnHour: Double, cutsAnHour: Double): Unit =
       at(now + (random.nextDouble() * Second).toLong)(beat())
       if deathsAnHour > 0 then at(now + exponential(3600 / deathsAnHour))(die(deathsAnHour, cutsAnHour))
@@ -105,7 +105,7 @@ final class CoordinatorSimulation(
       cut(now + exponential(30))
       at(now + exponential(3600 / cutsAnHour))(isolated(cutsAnHour))
 
-    /** Nothing comes to it, and nothing from it. */
+    /** Cuts it off: nothing reaches it, and nothing leaves it. */
     def cut(until: Long): Unit =
       cuts += 1
       cutUntil = cutUntil.max(until)
@@ -173,8 +173,8 @@ final class CoordinatorSimulation(
     all += worker
     worker.live(deathsAnHour, cutsAnHour)
 
-  /** The coordinator's own death and its next life: what it knew is gone but for the ledger, and of that what
-    * was not on the disk yet, or a part of it.
+  /** The coordinator dies and restarts: it loses everything except the ledger, and of that all or part of
+    * what was not on the disk yet.
     */
   private def restart(): Unit =
     restarts += 1
@@ -195,15 +195,15 @@ final class CoordinatorSimulation(
           .map(number => Block(run * 10_000_000L + number, work(number)))
       )
 
-  /** Until all is done.
+  /** Runs until all is done.
     *
-    * @param deathsAnHour share of the workers that die in an hour; each is noticed after 10 s, and another
-    *   comes
+    * @param deathsAnHour fraction of the workers that die in an hour; each is noticed after 10 s, and another
+    *   starts
     * @param cutsAnHour how often a worker is cut off, for 30 s on average
-    * @param splits at these seconds a fifth of all workers is cut off at once, for two minutes
+    * @param splits at these seconds a fifth of all workers is cut off simultaneously, for two minutes
     * @param restarts of the coordinator, at these seconds
-    * @param saving whether the ledger waits for the disk once a second
-    * @param onTick once a second
+    * @param saving whether the ledger is flushed to the disk once a second
+    * @param onTick called once a second
     */
   def fly(
       deathsAnHour: Double,
@@ -239,7 +239,7 @@ object CoordinatorSimulation:
   private val NoticedAfter = 10 * Second
   private val Question     = ArraySeq.from(Array.fill[Byte](32)(7))
 
-  /** Of messages as skein-cluster writes them, without what they carry. */
+  /** Bytes of skein-cluster's messages, without their content. */
   private val AskBytes, GiveBytes, DoneBytes = 130
 
   private final class Event(val at: Long, serial: Long, val act: () => Unit) extends Comparable[Event]:
@@ -248,16 +248,16 @@ object CoordinatorSimulation:
       if at != other.at then java.lang.Long.compare(at, other.at)
       else java.lang.Long.compare(place, other.place)
 
-  /** What a search would say: the best block, its value, and the sum of all in the blocks' order. */
+  /** The result of a search: the best block, its value, and the sum of all in the blocks' order. */
   final case class Result(best: Int, value: Double, sum: Double)
 
   def bytes(text: String): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(text.getBytes("UTF-8"))
 
-  /** As long as a candidate of 16 parameters. */
+  /** A block's work, as long as a candidate of 16 parameters. */
   def work(number: Int): ArraySeq[Byte] =
     ArraySeq.unsafeWrapArray(ByteBuffer.allocate(128).putInt(number).array)
 
-  /** As long as three candidates' statistics; a function of the work alone. */
+  /** A block's answer, as long as three candidates' statistics; a function of the work alone. */
   def answer(work: ArraySeq[Byte]): ArraySeq[Byte] =
     val number = ByteBuffer.wrap(work.toArray).getInt
     ArraySeq.unsafeWrapArray(ByteBuffer.allocate(60).putDouble(SplitMix64(number).nextDouble()).array)
@@ -269,6 +269,6 @@ object CoordinatorSimulation:
       case (Result(best, most, sum), (value, index)) =>
         if value > most then Result(index, value, sum + value) else Result(best, most, sum + value)
 
-  /** What one process that computes block after block finds. */
+  /** The result of one process that computes block after block. */
   def alone(blocks: Int): Result =
     resultOf(Iterator.range(0, blocks).map(number => valueOf(answer(work(number)))))

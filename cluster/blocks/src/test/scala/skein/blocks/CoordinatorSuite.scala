@@ -32,18 +32,18 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(e.counts, Coordinator.Counts(accepted = 1, repeated = 1, doubled = 1, lost = 0, overdue = 0))
     assertEquals((e.workers("ben").accepted, e.workers("anna").repeated), (1L, 1L))
 
-  test("no worker gets a block twice at once"):
+  test("no worker holds a block twice"):
     val (a, _) = take(two.offered(blocks(1)), "anna")
     assertEquals(take(a, "anna", holding = Set(0))._2, None)
 
-  test("what a lost worker had waits again before all else; what another has, too, does not"):
+  test("a lost worker's blocks wait again ahead of all others, except those that another worker has"):
     val (a, _)    = take(two.offered(blocks(3)), "anna")
     val (b, _)    = take(a, "anna", holding = Set(0))
     val (c, next) = take(b.lost("anna"), "ben")
     assertEquals((next, c.counts.lost), (Some(0L), 2L))
     assertEquals(take(b.lost("anna"), "anna")._2, None, "who is gone gets nothing before joining again")
 
-  test("a block that never reached its worker is given again once it cannot be on its way any more"):
+  test("a block that never reached its worker is assigned again once it can no longer be in transit"):
     val (a, _)     = take(two.offered(blocks(1)), "anna", nowNanos = 0)
     val (b, early) = take(a, "anna", nowNanos = Coordinator.OnItsWay)
     val (_, late)  = take(b, "anna", nowNanos = Coordinator.OnItsWay + 1)
@@ -64,13 +64,13 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(answer, AnswerKind.First(blocks(1).head))
       assert(done.isIdle)
 
-  test("after a cancellation nothing is asked, and what comes is a repeat"):
+  test("after a cancellation nothing is assigned, and answers that arrive are repeats"):
     val (a, _)    = take(two.offered(blocks(2)), "anna")
     val cancelled = a.cancelled
     assert(cancelled.isIdle)
     assertEquals(cancelled.answered("anna", 0, 1)._2, AnswerKind.Repeated)
 
-  /** Flown to the end, with what its ledger holds. */
+  /** Runs a simulation to its end, and checks its result and ledger. */
   private def assertRight(flown: CoordinatorSimulation, blocks: Int, clue: String): Unit =
     assert(flown.isDone, s"$clue: not done")
     assertEquals(flown.acceptedTwice, 0, clue)
@@ -95,7 +95,10 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
         Files.delete(flown.file)
       assert(clue(restarts) > 10)
 
-  folder.test("a thousand workers of heavy-tailed speeds, of whom some die and many are cut off at once"):
+  folder.test(
+    "a thousand workers of heavy-tailed speeds, some of which die and many of which are cut off " +
+      "simultaneously"
+  ):
     folder =>
       val flown = CoordinatorSimulation(1, workers = 1000, blocks = 8_000, folder)
       flown.fly(deathsAnHour = 5, cutsAnHour = 5, restarts = Seq(30), splits = Seq(15, 45))()

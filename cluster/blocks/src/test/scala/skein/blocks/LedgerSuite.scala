@@ -23,7 +23,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     for number <- 0 until count do assert(ledger.accept(key(number), answer(number)))
     ledger.close()
 
-  file.test("an answer is kept once, and is there after the file was opened again"): path =>
+  file.test("an answer is stored once, and is present after reopening the file"): path =>
     written(path, 3)
     val again = open(path)
     assertEquals(again.accept(key(1), bytes("another")), false)
@@ -32,7 +32,9 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     again.close()
     assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, 0))
 
-  file.test("cut off anywhere, it holds the whole records before the cut and goes on from there"): path =>
+  file.test(
+    "truncated anywhere, it keeps the complete records before the cut and continues from there"
+  ): path =>
     written(path, 3)
     val whole = Files.readAllBytes(path)
     for length <- 0 until whole.length do
@@ -44,13 +46,13 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       ledger.close()
       assertEquals(Ledger.audit(path).broken, 0L)
 
-  file.test("a damaged record is passed over, its block is computed again, and those behind are kept"):
+  file.test("a damaged record is skipped, its block is computed again, and later records are kept"):
     path =>
       written(path, 3)
       val bytes  = Files.readAllBytes(path)
       val second = 48 + 24 + answer(0).length
       val record = 24 + answer(1).length
-      // Its checksum and what that is of.
+      // The checksum, and the bytes it covers.
       for at <- second + 4 until second + record do
         val damaged = bytes.clone()
         damaged(at) = (damaged(at) ^ 0x10).toByte
@@ -71,7 +73,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
         again.close()
         assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, record))
 
-  file.test("wherever a byte is damaged, no other answer comes of it, and it is told"): path =>
+  file.test("a damaged byte anywhere never changes an answer, and is reported"): path =>
     written(path, 3)
     val bytes = Files.readAllBytes(path)
     for at <- 48 until bytes.length do
@@ -83,11 +85,11 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       assert(ledger.size < 3 && ledger.broken > 0, s"byte $at")
       ledger.close()
 
-  file.test("one that was opened for nothing leaves no file"): path =>
+  file.test("a ledger without answers leaves no file"): path =>
     open(path).close()
     assert(!Files.exists(path))
 
-  file.test("another question's ledger, and a file that is none, are refused by name"): path =>
+  file.test("another question's ledger, and a file that is no ledger, are refused by name"): path =>
     written(path, 1)
     val other = Ledger.open(path, ArraySeq.from(Array.fill[Byte](32)(8)))
     assert(other.left.exists(_.contains("another question")), other)

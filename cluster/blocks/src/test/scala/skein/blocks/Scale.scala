@@ -3,11 +3,11 @@ package skein.blocks
 import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 
-/** What coordinating many workers costs, by simulation:
-  * `./sbtw "blocks/Test/runMain skein.blocks.scale 10000 1000000 DIR"`. Speeds are heavy-tailed (Pareto,
-  * 1.5), a block takes a minute on average at a speed of 1; 5 % of the workers die in an hour, each is cut
-  * off for half a minute once in four hours, and every half an hour a fifth of them at once for two minutes.
-  * Ends with an error where the answer is wrong, or where a block counts twice.
+/** The cost of coordinating many workers, by simulation: `./sbtw "blocks/Test/runMain skein.blocks.scale
+  * 10000 1000000 DIR"`. Speeds are heavy-tailed (Pareto, 1.5), a block takes a minute on average at a speed
+  * of 1; 5 % of the workers die in an hour, each is cut off for half a minute once in four hours, and every
+  * half an hour a fifth of them simultaneously for two minutes. Fails where the answer is wrong, or where a
+  * block counts twice.
   *
   * @param out folder for the ledger, which is deleted at the end
   */
@@ -68,7 +68,7 @@ import java.nio.file.{Files, Path}
   )
 
 private object Used:
-  /** After a collection. */
+  /** Used memory after a garbage collection, bytes. */
   def heapBytes: Long =
     System.gc()
     ManagementFactory.getMemoryMXBean.getHeapMemoryUsage.getUsed

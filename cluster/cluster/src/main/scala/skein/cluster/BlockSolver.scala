@@ -2,19 +2,19 @@ package skein.cluster
 
 import scala.collection.immutable.ArraySeq
 
-/** Computes blocks of one question, for one thread at a time. Pure: the same work gives the same bytes,
-  * whoever does it.
+/** Computes blocks of one question, for one thread at a time. Pure: equal work gives equal bytes in every
+  * process.
   */
 trait BlockSolver:
 
-  /** @param work as the question's coordinator cut it
-    */
+  /** @param work in the encoding of the question's coordinator */
   def solve(work: ArraySeq[Byte]): ArraySeq[Byte]
 
-/** Reads questions. */
+/** Makes solvers from a question's encoded bytes. */
 trait BlockSolverFactory:
 
-  /** @param question as its coordinator wrote it
-    * @return what makes a solver for each core; or why this process cannot answer the question, in a line
+  /** @param question as its coordinator encoded it
+    * @return a function that makes a solver for each core; Left states in a line why this process cannot
+    *   answer the question
     */
   def of(question: ArraySeq[Byte]): Either[String, () => BlockSolver]

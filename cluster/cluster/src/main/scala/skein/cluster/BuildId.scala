@@ -8,11 +8,12 @@ import java.util.zip.{CRC32, ZipFile}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 
-/** Names what a process would compute with: the classes on its class path, wherever they lie. */
+/** Identifies the code that a process would compute with: the classes on its class path, wherever they are.
+  */
 object BuildId:
 
-  /** 16 hexadecimal digits. Processes of the same name have the same classes; a class more, as of somebody's
-    * scenario, is another name.
+  /** 16 hexadecimal digits. Processes with equal digits have equal classes; any additional class, such as a
+    * user's scenario, changes them.
     */
   lazy val current: String = of(
     sys.props("java.class.path").split(File.pathSeparatorChar).toVector.filter(_.nonEmpty).map(Path.of(_))
@@ -30,7 +31,7 @@ object BuildId:
 
   private def isClass(name: String) = name.endsWith(".class")
 
-  /** Takes checksums from the archive's directory; nothing is unpacked. */
+  /** Checksums from the archive's directory; nothing is unpacked. */
   private def ofJar(jar: Path): Vector[(String, Long)] =
     Using.resource(ZipFile(jar.toFile)): archive =>
       archive.entries.asScala.filter(entry => isClass(entry.getName)).map(entry =>

@@ -10,28 +10,29 @@ import java.util.HexFormat
 import scala.util.{Try, Using}
 import scala.util.control.NonFatal
 
-/** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host
-  * that [[Tls.of]] reads.
+/** Makes a lab's certificates with the JDK's own `keytool`: a signing key, and a folder for each host that
+  * [[Tls.of]] reads.
   */
 object Certificates:
   private val Days = 825
 
-  /** Who signs: kept where the certificates are made, and taken to no other machine. */
+  /** The signing key's file: it stays where the certificates are made, and is copied to no other machine. */
   private val Signer = "signer.p12"
 
-  /** A folder's name, of a host's; `*.workers.lab` stands for all hosts of that domain. */
+  /** A host's folder name; `*.workers.lab` stands for all hosts of that domain. */
   def folderOf(host: String): String = host.replace("*", "_")
 
-  /** @param hosts names or addresses, as `--listen` and `--join` have them
-    * @return or which of them is neither
+  /** @param hosts names or addresses, as in `--listen` and `--join`
+    * @return Left names the one that is neither
     */
   def checked(hosts: Seq[String]): Either[String, Unit] =
     hosts.find(!isHost(_)).toLeft(()).left.map(host => s"expected a host's name or address, came '$host'")
 
-  /** Refused where a host is none, or has a certificate there already; then nothing is made.
+  /** Makes the certificates. Refused where a host is invalid, or already has a certificate; then nothing is
+    * made.
     *
-    * @param hosts names or addresses, as `--listen` and `--join` have them
-    * @return each host's folder; or what went wrong
+    * @param hosts names or addresses, as in `--listen` and `--join`
+    * @return each host's folder; Left states what went wrong
     */
   def make(folder: Path, hosts: Seq[String]): Either[String, Vector[Path]] =
     val had = hosts.map(host => folder.resolve(folderOf(host))).find(own =>
@@ -85,8 +86,7 @@ object Certificates:
     val names           =
       if host == "localhost" then "dns:localhost,ip:127.0.0.1"
       else address(host).fold(s"dns:$host")(address => s"ip:${address.getHostAddress}")
-    // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is
-    // kept.
+    // One call makes and signs a key in the signer's store: in a copy, of which only the node's key is kept.
     val signing = Files.readString(folder.resolve("signer.password")).trim
     val both    =
       Files.copy(folder.resolve(Signer), own.resolve("both.p12"), COPY_ATTRIBUTES, REPLACE_EXISTING)
@@ -122,7 +122,8 @@ object Certificates:
   private val Key =
     Seq("-keyalg", "EC", "-groupname", "secp256r1", "-sigalg", "SHA256withECDSA", "-validity", Days.toString)
 
-  /** It has ended before optimising it pays: a third of the processor's time. */
+  /** JVM options for a short run, which ends before optimising pays: saves a third of the processor's time.
+    */
   private val Brief = Seq("-J-XX:TieredStopAtLevel=1", "-J-XX:+UseSerialGC")
 
   private def password(file: Path): String =
@@ -137,7 +138,7 @@ object Certificates:
     if FileSystems.getDefault.supportedFileAttributeViews.contains("posix") then
       Files.setPosixFilePermissions(file, PosixFilePermissions.fromString("rw-------")): Unit
 
-  /** The password goes by the environment, where other users do not see it. */
+  /** Runs `keytool`; the password is in the environment, where other users cannot see it. */
   private def keytool(secret: String, store: Path, words: Seq[String]): Either[String, Unit] =
     val program = Path.of(sys.props("java.home"), "bin", "keytool").toString
     val command = (program +: Brief) ++ words ++ Seq(

@@ -2,11 +2,11 @@ package skein.cluster
 
 import skein.blocks.Coordinator
 
-/** Where a coordinator's work stands.
+/** The progress of a coordinator's work.
   *
-  * @param done blocks of the call under way that have their answers
+  * @param done blocks of the current call that have their answers
   * @param of all blocks of that call
-  * @param resumed blocks, of all calls, whose answers were in the ledger already
+  * @param resumed blocks, of all calls, whose answers were already in the ledger
   * @param died how often a worker was lost
   */
 final case class ClusterProgress(

@@ -10,19 +10,19 @@ import scala.concurrent.Promise
 import scala.concurrent.duration.DurationInt
 import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
 
-/** What a coordinator works on.
+/** A coordinator's question.
   *
-  * @param run names this coordinator's life; not 0
+  * @param run identifies this run of the coordinator; not 0
   * @param build that workers must have
   */
 private[cluster] final case class Job(run: Long, build: String, question: ArraySeq[Byte])
 
-/** The edge of [[Coordinator]], which decides: hears workers, keeps answers, tells how it goes. One call at a
-  * time.
+/** The actor around [[Coordinator]], which decides: receives workers' messages, stores answers, reports
+  * progress. One call at a time.
   *
-  * @param onProgress told after every change
-  * @param down takes a process out of the cluster that has ended or is out of reach: until that is done
-  *   nobody else becomes a member. Who was there all the same joins again
+  * @param onProgress called after every change
+  * @param down removes a process from the cluster that has ended or is unreachable: until then no other
+  *   process becomes a member. A process that was still alive joins again
   */
 private[cluster] final class CoordinatorBehavior private (
     context: ActorContext[CoordinatorBehavior.Command],
@@ -42,7 +42,7 @@ private[cluster] final class CoordinatorBehavior private (
   private var unsaved = false
   private var isDone  = false
 
-  /** Where each worker is to be answered, also one that has the question alone. */
+  /** Where to answer each worker, including those that only have the question. */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
 
   /** Workers with free cores to which no block could be given. */
@@ -57,7 +57,7 @@ private[cluster] final class CoordinatorBehavior private (
       case Message.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case Message.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
-      case _: ToCoordinator                        => () // Of an earlier run.
+      case _: ToCoordinator                        => () // A message of an earlier run.
       case asked: Compute                          => compute(asked)
       case Cancel                                  =>
         state = state.cancelled
@@ -75,7 +75,7 @@ private[cluster] final class CoordinatorBehavior private (
         save()
       case NotTrusted(reason) => once(WorkerEvent.NotTrusted(reason))
       case Farewell           =>
-        // Stays until the node ends: there are some who ask only now.
+        // Stays until the node ends: some workers may send their first request only now.
         isDone = true
         addresses.values.foreach(_ ! Message.Goodbye)
         save()
@@ -147,7 +147,7 @@ private[cluster] final class CoordinatorBehavior private (
 
   private def lost(worker: String): Unit =
     addresses -= worker
-    // Who goes when all is done was told to.
+    // Workers that leave when all is done have been dismissed.
     if !isDone then
       state.workers.get(worker).filter(_.isHere).foreach: record =>
         died += 1
@@ -177,15 +177,15 @@ private[cluster] final class CoordinatorBehavior private (
         onWanted()
         feed()
 
-  /** Completes the call. A failure gives up its remaining blocks. */
+  /** Completes the call. A failure drops its remaining blocks. */
   private def ended(outcome: Outcome): Unit =
     if outcome.isLeft then state = state.cancelled
-    // Whoever waits for the outcome sees all of it.
+    // The receiver of the outcome sees the complete progress.
     publish()
     call.foreach(_.promise.trySuccess(outcome))
     call = None
 
-  /** Whoever hears of a change sees it in the progress. */
+  /** Reports a change; its receiver finds it in the published progress. */
   private def announce(change: WorkerEvent): Unit =
     publish()
     tell(change)
@@ -200,7 +200,7 @@ private[cluster] final class CoordinatorBehavior private (
     ))
 
 private[cluster] object CoordinatorBehavior:
-  /** All answers in the order of the works, none if it was cancelled, or why there are none. */
+  /** All answers in the order of the works; None if it was cancelled; Left states why there are none. */
   type Outcome = Either[String, Option[Vector[ArraySeq[Byte]]]]
 
   sealed trait Local
@@ -213,7 +213,7 @@ private[cluster] object CoordinatorBehavior:
   case object Cancel                             extends Local
   final case class Unreachable(address: Address) extends Local
 
-  /** It is out of the cluster already; another process may have its address. */
+  /** It has left the cluster; another process may have its address. */
   final case class Removed(address: Address) extends Local
 
   final case class Ended(worker: String) extends Local
@@ -224,10 +224,10 @@ private[cluster] object CoordinatorBehavior:
 
   type Command = ToCoordinator | Local
 
-  /** Bounds the memory for news that is reported once. */
+  /** Most changes that are reported only once; bounds the memory for them. */
   private val MostTold = 1000
 
-  /** A block that is out for longer goes to a second worker, when nothing else waits. */
+  /** Age from which a block goes to a second worker, when nothing else waits. */
   private val Slow = 1_000_000_000L
 
   private final case class Call(

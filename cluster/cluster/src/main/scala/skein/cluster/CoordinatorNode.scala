@@ -21,7 +21,7 @@ import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.blocks.Ledger
 
-/** The process that hands out blocks and keeps their answers. */
+/** The process that assigns blocks and stores their answers. */
 final class CoordinatorNode private (
     system: ActorSystem,
     coordinator: ActorRef[CoordinatorBehavior.Command],
@@ -35,13 +35,13 @@ final class CoordinatorNode private (
 
   def progress: ClusterProgress = latest.get
 
-  /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed
-    * again. One call at a time.
+  /** Has works computed by all workers that are members, or join; those with answers in the ledger are not
+    * computed again. One call at a time.
     *
-    * @param onAnswer told each answer when it comes or is found in the ledger, in any order, on a thread of
-    *   the node's own
-    * @param onWanted told, on such a thread, that the ledger does not have all answers
-    * @return the answers in the order of the works; none if it was cancelled; or why there are none
+    * @param onAnswer called with each answer when it arrives or is found in the ledger, in any order, on a
+    *   thread of the node's own
+    * @param onWanted called on such a thread if the ledger lacks answers
+    * @return the answers in the order of the works; None if it was cancelled; Left states why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
@@ -54,10 +54,10 @@ final class CoordinatorNode private (
 
   def cancel(): Unit = coordinator ! CoordinatorBehavior.Cancel
 
-  /** A worker's process is known to have ended. */
+  /** Informs the coordinator that a worker's process has ended. */
   def ended(worker: String): Unit = coordinator ! CoordinatorBehavior.Ended(worker)
 
-  /** Bids the workers goodbye and ends, waiting no longer than [[MostClosing]]; the ledger is not closed.
+  /** Sends the workers a farewell and ends, waiting no longer than [[MostClosing]]; the ledger is not closed.
     */
   def close(): Future[Unit] =
     coordinator ! CoordinatorBehavior.Farewell
@@ -65,20 +65,22 @@ final class CoordinatorNode private (
     val waiting = Future.unit.map(identity)(using ExecutionContext.fromExecutor(late))
     Future.firstCompletedOf(Seq(system.terminate(), waiting))(using parasitic).map(_ => ())(using parasitic)
 
-  /** For tests: ends without a goodbye, as if killed. */
+  /** Ends without a farewell, as if killed; for tests. */
   private[cluster] def kill(): Unit =
     val _ = Await.result(system.terminate(), 30.seconds)
 
 object CoordinatorNode:
   private[cluster] val Name = "coordinator"
 
-  /** Pekko's remoting waits without a limit for the streams of its peers to end (apache/pekko#3247). */
+  /** Bound on closing: Pekko's remoting waits without a limit for its peers' streams to end
+    * (apache/pekko#3247).
+    */
   private val MostClosing = 20.seconds
 
   /** @param listen port 0 for any that is free
     * @param ledger of this question
-    * @param tell on a thread of the node's own
-    * @return or why it cannot listen
+    * @param tell called with news on a thread of the node's own
+    * @return Left states why it cannot listen
     */
   def start(
       listen: Endpoint,

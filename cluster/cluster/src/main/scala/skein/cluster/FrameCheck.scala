@@ -2,10 +2,9 @@ package skein.cluster
 
 import java.nio.ByteBuffer
 
-/** Looks over what a connection of Pekko's brings, which is four letters, a stream's number, and frames
-  * behind their lengths in four bytes each, the lowest first. Pekko 1.2.1 does not check a length: it reads a
-  * frame for ever whose length is below zero or close to 2³¹, and waits for all of one that is too long.
-  * Mutable; of one connection.
+/** Checks the frame lengths of a Pekko connection: four letters, a stream's number, and frames after their
+  * lengths in four bytes each, little-endian. Pekko 1.2.1 checks no length: it reads endlessly on one below
+  * zero or close to 2³¹, and waits for all of one that is too long. Mutable; one for each connection.
   *
   * @param most bytes of a frame
   */
@@ -14,9 +13,9 @@ private[cluster] final class FrameCheck(most: Int):
   private var length = 0
   private var digits = 0
 
-  /** Takes the next bytes, between the buffer's position and its limit, which stay where they are.
+  /** Checks the next bytes, between the buffer's position and its limit, without consuming them.
     *
-    * @return a length that no frame has, if there is one
+    * @return an invalid length, if there is one
     */
   def refused(bytes: ByteBuffer): Option[Int] =
     var at    = bytes.position()

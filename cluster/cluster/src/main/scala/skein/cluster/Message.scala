@@ -3,17 +3,18 @@ package skein.cluster
 import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
 
-/** What workers say. Any message may come late, twice or never. */
+/** Workers' messages. Any message may arrive late, twice or never. */
 private[cluster] sealed trait ToCoordinator extends Product
 
-/** What the coordinator says. */
+/** Messages from the coordinator to a worker. */
 private[cluster] sealed trait ToWorker extends Product
 
-/** `run` names a coordinator's life: what was said in an earlier one means nothing. `worker` names a process,
-  * and `number` a block of the run. Their order is that of [[MessageCodec]]'s kinds.
+/** Messages between coordinator and workers. `run` identifies a coordinator's run: messages of an earlier one
+  * are ignored. `worker` identifies a process, and `number` a block of the run. Their order is that of
+  * [[MessageCodec]]'s kinds.
   */
 private[cluster] enum Message:
-  /** A worker has room for blocks. Said once a second at least.
+  /** A worker has room for blocks. Sent at least once a second.
     *
     * @param run 0 before it is known
     * @param build see [[BuildId]]
@@ -31,7 +32,7 @@ private[cluster] enum Message:
   case Done(run: Long, worker: String, number: Long, busyNanos: Long, answer: ArraySeq[Byte])
       extends Message, ToCoordinator
 
-  /** A block that no worker can compute. */
+  /** No worker can compute the block, for this reason. */
   case Failed(run: Long, worker: String, number: Long, reason: String) extends Message, ToCoordinator
 
   /** This worker cannot answer the run's question. */

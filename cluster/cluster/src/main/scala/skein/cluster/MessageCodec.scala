@@ -4,8 +4,7 @@ import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
 import skein.bytes.Codec
 
-/** Messages as bytes, as [[Codec]] writes them. No size that a peer states is believed before it is seen to
-  * be within its bound.
+/** Encodes messages with [[Codec]]. Every size that a peer states is checked against its bound before use.
   *
   * @param nameOf an actor's address as text, and back
   */
@@ -31,7 +30,7 @@ private[cluster] final class MessageCodec(
 
   def bytes(message: Message): Array[Byte] = Codec.bytes(message)
 
-  /** @return or a line with what was expected and what was read */
+  /** @return Left states in a line what was expected and what was read */
   def message(bytes: Array[Byte]): Either[String, Message] =
     try
       Codec.message[Message](bytes).flatMap:

@@ -6,7 +6,7 @@ import org.apache.pekko.actor.typed.ActorRefResolver
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.serialization.SerializerWithStringManifest
 
-/** Makes [[MessageCodec]] known to Pekko, which names it in its configuration. */
+/** Registers [[MessageCodec]] with Pekko, whose configuration names this class. */
 final class MessageSerializer(system: ExtendedActorSystem) extends SerializerWithStringManifest:
   private lazy val codec =
     val refs = ActorRefResolver(system.toTyped)

@@ -2,14 +2,14 @@ package skein.cluster
 
 import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
 
-/** How Pekko is set up for a node. */
+/** Makes the Pekko configuration of a node. */
 private[cluster] object NodeConfig:
   val System = "skein"
 
   private val MostFrame = MessageCodec.MostBytes + (64 << 10)
 
   /** @param listen port 0 for any that is free
-    * @param joins whom it connects to
+    * @param joins the endpoint that it connects to
     */
   def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
     for
@@ -25,8 +25,8 @@ private[cluster] object NodeConfig:
       .withFallback(ConfigFactory.parseString(common(listen)))
       .withFallback(ConfigFactory.load())
 
-  /** Without certificates, which only loopback gets: nothing is encrypted. The engine passes bytes on, and so
-    * can check the lengths of frames.
+  /** The transport without certificates, on loopback only: nothing is encrypted. The engine passes bytes
+    * through, and so can check the lengths of frames.
     */
   private val Plain = """
     pekko.remote.artery {

@@ -6,9 +6,9 @@ import javax.net.ssl.{SSLContext, SSLEngine, SSLEngineResult, SSLException, SSLS
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.remote.artery.tcp.SSLEngineProvider
 
-/** Of connections on loopback without certificates: passes bytes on as they are, and refuses a connection
-  * whose frames have false lengths ([[FrameCheck]]). An engine of TLS is where Pekko's transport lets others
-  * see what comes; this one encrypts nothing. Its handshake is over with the first call.
+/** An engine for connections on loopback without certificates: passes bytes through unchanged, and refuses a
+  * connection whose frames have invalid lengths ([[FrameCheck]]). Pekko's transport lets only a TLS engine
+  * see received bytes; this one encrypts nothing. Its handshake ends with the first call.
   */
 private[cluster] final class PlainEngine(mostFrame: Int) extends SSLEngine:
   private val check     = FrameCheck(mostFrame)
@@ -40,7 +40,7 @@ private[cluster] final class PlainEngine(mostFrame: Int) extends SSLEngine:
       val moved = (from until from + count).map(at => moving(source, into(at))).sum
       val seen  = source.duplicate().position(begun).limit(begun + moved)
       for length <- check.refused(seen) do
-        isInOver = true // Pekko asks once more before it ends.
+        isInOver = true // Pekko calls once more before it ends.
         throw SSLException(s"expected a frame of $mostFrame bytes at most, came one of $length")
       val status = if moved == 0 then Status.BUFFER_OVERFLOW else Status.OK
       SSLEngineResult(status, getHandshakeStatus, moved, moved)
@@ -60,7 +60,7 @@ private[cluster] final class PlainEngine(mostFrame: Int) extends SSLEngine:
   def getUseClientMode: Boolean             = client
   def setUseClientMode(mode: Boolean): Unit = client = mode
 
-  // Of a session that is none.
+  // There is no session.
   export none.{
     getSession,
     getSupportedCipherSuites,

@@ -7,8 +7,8 @@ import javax.naming.ldap.LdapName
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
 
-/** The hosts that a certificate shows, by which the JDK's TLS verifies them (RFC 6125, 6.4): an address by
-  * its addresses alone, a name by its names, or by the subject's where it has none.
+/** The hosts in a certificate, by which the JDK's TLS verifies them (RFC 6125, 6.4): an address only by its
+  * addresses, a name by its names, or by the subject's name without any.
   */
 private[cluster] object ShownHosts:
   // RFC 5280, 4.2.1.6, GeneralName.
@@ -35,7 +35,7 @@ private[cluster] object ShownHosts:
 
   private def address(text: String): Option[InetAddress] = Try(InetAddress.ofLiteral(text)).toOption
 
-  /** A star stands for what is in one of a name's parts. */
+  /** Whether a certificate's name matches a host; a star stands for part of one label. */
   private def covers(shown: String, host: String): Boolean =
     val (ours, theirs) = (shown.toLowerCase(Locale.ROOT).split('.'), host.toLowerCase(Locale.ROOT).split('.'))
     ours.length == theirs.length && ours.zip(theirs).forall: (part, of) =>

@@ -11,17 +11,17 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.link.{Address, TlsProbe, TransportError}
 
-/** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are
+/** Certificates of a node: its own, and those that it trusts. Both sides present theirs, and host names are
   * verified.
   *
   * @param keyStore PKCS #12, with the node's key and certificate
-  * @param trustStore PKCS #12, with the certificate of whoever signs
+  * @param trustStore PKCS #12, with the signer's certificate
   */
 final case class Tls(keyStore: Path, trustStore: Path, password: String):
 
-  /** For connections that are not Pekko's own: who shows what, and whom it trusts.
+  /** A context for connections other than Pekko's.
     *
-    * @return or what is wrong with the files
+    * @return Left states what is wrong with the files
     */
   def context: Either[String, SSLContext] =
     def store(file: Path) = KeyStore.getInstance(file.toFile, password.toCharArray)
@@ -35,15 +35,15 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
       Right(made)
     catch
       case failed: (IOException | GeneralSecurityException) =>
-        // A file that is cut off fails without a word.
+        // Reading a truncated file fails without a message.
         Left(
           s"--tls: cannot read the certificates in ${keyStore.getParent}: " +
             Option(failed.getMessage).getOrElse("a file is damaged or cut off")
         )
 
-  /** Whether the node's own certificate shows this host, since the others verify it.
+  /** Whether the node's own certificate names this host, since the other nodes verify it.
     *
-    * @return or the names that it shows, or what is wrong with the files
+    * @return Left lists the names in it, or states what is wrong with the files
     */
   private[cluster] def shows(host: String): Either[String, Unit] =
     context.flatMap: _ =>
@@ -60,8 +60,8 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
           s"${keyStore.getParent} shows ${own.flatMap(ShownHosts.of).mkString(", ")}"
       )
 
-  /** Why there is no trusted connection to who listens there, where that is a matter of certificates. Takes
-    * two seconds at most for each way.
+  /** Why there is no trusted connection to that endpoint, if certificates are the reason. Takes at most two
+    * seconds for each direction.
     */
   private[cluster] def refusal(at: Endpoint): Option[String] =
     context.toOption.flatMap: made =>
@@ -72,7 +72,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
         socket.connect(InetSocketAddress(at.host, at.port), TlsProbe.Within.toMillis.toInt)
         socket.setSoTimeout(TlsProbe.Within.toMillis.toInt)
         socket.startHandshake()
-        // In TLS 1.3 the other side judges after the handshake has ended here.
+        // In TLS 1.3 the peer verifies after the handshake has ended here.
         socket.getInputStream.read()
       tried.failed.toOption.collect:
         case reason: SSLException => TransportError.NotTrusted(Address(at.host, at.port), reason).getMessage
@@ -104,7 +104,7 @@ object Tls:
 
   /** Reads a folder with `node.p12`, `trust.p12` and `password`.
     *
-    * @return or what is missing
+    * @return Left states what is missing
     */
   def of(folder: Path): Either[String, Tls] =
     val missing =

@@ -5,7 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.remote.artery.tcp.ConfigSSLEngineProvider
 import skein.link.TlsEngine
 
-/** Engines by Pekko's own settings for certificates. */
+/** Makes TLS engines from Pekko's own settings for certificates. */
 private[cluster] final class TlsEngines(system: ActorSystem) extends ConfigSSLEngineProvider(system):
   override def createServerSSLEngine(hostname: String, port: Int): SSLEngine =
     TlsEngine(super.createServerSSLEngine(hostname, port), told)

@@ -8,12 +8,13 @@ import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
 import skein.units.Decimals.fixed
 
-/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the
-  * question before it is a member, and for blocks once it is: whoever is no member would not be missed.
+/** Requests blocks from the coordinator, has them computed by a pool of threads, and answers. It requests the
+  * question before it is a member, and blocks once it is: the loss of a process that is no member would go
+  * unnoticed.
   *
-  * @param pool of as many threads as cores
-  * @param tell what it does, in lines for a person
-  * @param onEnd why it ended
+  * @param pool with as many threads as cores
+  * @param tell called with progress, in lines for a person
+  * @param onEnd called with the reason of the end
   */
 private[cluster] final class WorkerBehavior private (
     context: ActorContext[WorkerBehavior.Command],
@@ -81,7 +82,7 @@ private[cluster] final class WorkerBehavior private (
     case Message.Refused(reason) => end(End.Refused(reason))
     case Message.Goodbye         => end(End.Finished)
     case Unreachable             => end(End.Lost)
-    case _                       => this // Of an earlier run, or a block that it has.
+    case _                       => this // A block of an earlier run, or one that it already has.
 
   private def askIfReady(): Unit = if member && solvers.isDefined then ask()
 
@@ -116,7 +117,7 @@ private[cluster] final class WorkerBehavior private (
       work: ArraySeq[Byte],
       ready: ArrayBlockingQueue[BlockSolver]
   ): Solved =
-    // There are as many as threads, so that one is always free.
+    // There are as many solvers as threads, so one is always free.
     val solver = ready.take()
     val begun  = System.nanoTime()
     val answer =
@@ -135,7 +136,7 @@ private[cluster] object WorkerBehavior:
       solvers: BlockSolverFactory,
       startedAt: Long
   ):
-    /** For a person; it started at `startedAt` by `System.nanoTime`. */
+    /** The block's age for a person; it started at `startedAt` by `System.nanoTime`. */
     def age: String = s"${((System.nanoTime() - startedAt) * 1e-9).fixed(1)} s after its start"
 
   enum End:

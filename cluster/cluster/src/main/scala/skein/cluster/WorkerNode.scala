@@ -23,8 +23,8 @@ import skein.link.TlsProbe
 
 /** A process that computes blocks.
   *
-  * @param patience for how long it tries to reach a coordinator that it has not reached yet, or has lost
-  * @param tell what it does, in lines for a person
+  * @param patience how long it tries to reach a coordinator that it has not reached yet, or has lost
+  * @param tell called with progress, in lines for a person
   */
 final class WorkerNode(
     coordinator: Endpoint,
@@ -44,16 +44,16 @@ final class WorkerNode(
   @volatile private var stopped = false
   @volatile private var ending  = Promise[End]()
 
-  /** When it was last a member, or began to try. */
+  /** When it was last a member, or began to connect. */
   @volatile private var contactAt = 0L
 
   def stop(): Unit =
     stopped = true
     val _ = ending.trySuccess(End.Finished)
 
-  /** Works until the coordinator has no more to do. Blocks the calling thread.
+  /** Computes until the coordinator has no more work. Blocks the calling thread.
     *
-    * @return or why it could not
+    * @return Left states why it could not
     */
   def run(): Either[String, Unit] =
     NodeConfig.of(listen, tls, joins = Some(coordinator)).flatMap: config =>
@@ -132,12 +132,12 @@ object WorkerNode:
     made.setDaemon(true)
     made
 
-  /** What it comes to, if it does so soon enough. */
+  /** The promise's value, if it completes within this time. */
   private def within[A](nanos: Long)(promise: Promise[A]): Option[A] =
     try Some(Await.result(promise.future, nanos.max(0).nanos))
     catch case _: TimeoutException => None
 
-  /** Joins the cluster. Sends `work` membership and loss of the coordinator. */
+  /** Joins the cluster. Reports membership and loss of the coordinator to `work`. */
   private def member(
       seed: Address,
       work: ActorRef[WorkerBehavior.Command],

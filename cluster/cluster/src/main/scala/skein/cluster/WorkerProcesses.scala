@@ -8,15 +8,15 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from
-  * it, whose end it watches for ([[WorkerProcesses.endWithParent]]).
+  * it, and ends when the pipe closes ([[WorkerProcesses.endWithParent]]).
   *
-  * A process that ends is replaced, unless several in a row computed nothing: they die, or are refused.
+  * A process that ends is replaced, unless several in a row computed nothing: they crash, or are refused.
   *
   * @param command of a worker
   * @param log of a worker by its number, from 1
-  * @param onEnd told the name of a worker whose process has ended, on a thread of its own; tells whether it
-  *   had computed anything
-  * @param onGivenUp told, in a line, when no process is left and none is started again
+  * @param onEnd called with the name of a worker whose process has ended, on a thread of its own; returns
+  *   whether it had computed anything
+  * @param onGivenUp called with a reason when no process is left and none is started again
   */
 final class WorkerProcesses(
     count: Int,
@@ -31,10 +31,9 @@ final class WorkerProcesses(
   private var isStarted = false
   private var isClosing = false
 
-  /** How many ended in a row that had computed nothing. */
+  /** Processes that ended in a row without having computed anything. */
   private val idle = AtomicInteger()
 
-  /** Idempotent. */
   def start(): Unit =
     val first = synchronized:
       val is = !isStarted
@@ -64,7 +63,7 @@ final class WorkerProcesses(
           s"status ${process.exitValue}: see ${log(number)}"
       )
 
-  /** Ends all, and waits for them, but not for long. */
+  /** Ends all processes, and waits for them for a limited time. */
   def close(): Unit =
     val left = synchronized:
       isClosing = true
@@ -79,7 +78,7 @@ object WorkerProcesses:
   private val MostIdle = 3
   private val Grace    = 5_000_000_000L
 
-  /** What `X.jsa` is to this program, `X-worker.jsa` is to its workers. */
+  /** The workers' archive for a program's archive: `X-worker.jsa` for `X.jsa`. */
   private[cluster] def ofWorkers(option: String): String =
     if option.startsWith(Archive) && !option.endsWith(OfWorkers) then
       option.stripSuffix(".jsa") + OfWorkers
@@ -88,9 +87,9 @@ object WorkerProcesses:
   private val Archive   = "-XX:SharedArchiveFile="
   private val OfWorkers = "-worker.jsa"
 
-  /** What starts a worker. Where the archive of classes that the command names was not written to its end,
-    * since the JVM that wrote it was killed, it is removed: the JVM would neither read nor replace it, and
-    * all workers would start slowly ever after.
+  /** Prepares starting a worker. A class archive that was not completely written, since the JVM that wrote it
+    * was killed, is removed: the JVM would neither read nor replace it, and all later workers would start
+    * slowly.
     */
   def starting(command: Seq[String]): ProcessBuilder =
     command
@@ -100,7 +99,7 @@ object WorkerProcesses:
       .foreach(Files.deleteIfExists(_))
     ProcessBuilder(command*)
 
-  /** The JVM writes an archive's first bytes last. */
+  /** Whether an archive is incomplete: the JVM writes its first bytes last. */
   private def isCutOff(archive: Path): Boolean =
     Files.isRegularFile(archive) && Using.resource(Files.newInputStream(archive))(_.read()) <= 0
 
@@ -115,9 +114,8 @@ object WorkerProcesses:
     watching.setName("parent")
     watching.start()
 
-  /** A command that runs a program as this one runs: the same JVM, options and class path. An archive of
-    * classes that the JVM makes by itself is another, since workers need other classes: it is made by the
-    * first of them.
+  /** A command that runs a program like this one: with this JVM, its options and class path, but another
+    * archive of classes, since workers need other classes: the first worker makes it.
     *
     * @param program the class with `main`
     */

@@ -12,7 +12,7 @@ import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
 import skein.testing.TemporaryFolders
 
-/** Coordinator and worker, each alone, with what it says in a queue. */
+/** Coordinator and worker, each tested alone, with its messages in a queue. */
 class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
 
   private val question = ArraySeq[Byte](1, 2, 3)
@@ -37,7 +37,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     case ask: Message.Ask => ask.run
     case other            => fail(s"expected an Ask, came $other")
 
-  test("a worker gets its question ready before it is a member, and asks for blocks once it is"):
+  test("a worker prepares its question before it is a member, and requests blocks once it is"):
     val heard  = Heard[ToCoordinator]()
     val told   = ConcurrentLinkedQueue[String]()
     val ready  = LinkedBlockingQueue[Int]()
@@ -64,8 +64,8 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     Ledger.open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
 
   test(
-    "who has ended or is out of reach is taken out of the cluster; when all is done " +
-      "everybody else is told: who works, who is still preparing, and who asks only then"
+    "ended and unreachable members are removed; when all is done all other workers are dismissed: " +
+      "working, preparing and late ones"
   ):
     val ledger      = newLedger()
     val down        = LinkedBlockingQueue[Address]()
@@ -84,14 +84,14 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     val preparing = worker("anna", 0)
     assertEquals(preparing.next(), Message.Welcome(7, question))
     val working = worker("ben", 7)
-    // Also while it has not asked for a block.
+    // Even before its first request for a block.
     worker("dora", 0).next(): Unit
     coordinator ! CoordinatorBehavior.Ended("dora")
     assertEquals(down.poll(30, TimeUnit.SECONDS), system.deadLetters.path.address)
     val elsewhere = Address("pekko", "behaviors", "somewhere", 2552)
     coordinator ! CoordinatorBehavior.Unreachable(elsewhere)
     assertEquals(down.poll(30, TimeUnit.SECONDS), elsewhere)
-    // Who is out already is not taken out again: somebody else may be there by now.
+    // A member that has left is not removed again: another may have its address by now.
     coordinator ! CoordinatorBehavior.Removed(elsewhere)
     coordinator ! CoordinatorBehavior.Farewell
     assertEquals(preparing.next(), Message.Goodbye)
@@ -100,7 +100,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assert(down.isEmpty, down.toString)
     ledger.close()
 
-  test("whoever hears that a worker joined or was lost sees it in the progress"):
+  test("the receiver of news that a worker joined or was lost sees it in the progress"):
     val ledger      = newLedger()
     val latest      = AtomicReference(ClusterProgress())
     val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()

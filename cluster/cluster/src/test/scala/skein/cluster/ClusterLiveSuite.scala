@@ -23,7 +23,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def bytes(text: String): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(text.getBytes("UTF-8"))
 
-  /** Reverses, and counts how often it was asked.
+  /** A solver that reverses bytes, and counts its calls.
     *
     * @param before called before each block
     */
@@ -62,7 +62,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       Await.result(node.close(), 30.seconds)
       ledger.close()
 
-  /** A failure of the body is told even if closing fails, too. */
+  /** Runs the body with a coordinator; the body's failure is reported even if closing fails, too. */
   private def coordinating(tls: Option[Tls])(body: Coordinating => Unit): Unit =
     Using.resource(Coordinating(temporaryFolder(), tls = tls))(body)
 
@@ -82,7 +82,9 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       WorkerNode(to, loopback, tls, cores, solvers, patience, name, build)(told.add(_): Unit)
     (node, Future(blocking(node.run())), told)
 
-  /** Folders of a lab, of a host each. Made by other processes while other tests run, which mostly wait. */
+  /** Certificate folders of a lab, one for each host. Made by other processes, since waiting for them is most
+    * of the work.
+    */
   private def certificates(hosts: String*): Future[Vector[Path]] = Future(blocking(
     Certificates.make(temporaryFolder(), hosts).fold(fail(_), identity)
   ))
@@ -120,7 +122,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(coordinator.node.address.toString.startsWith("[::1]:"))
       anna.stop()
 
-  test("a worker that is not ready yet when all is done is told so, and ends at once"):
+  test("a worker that is still preparing when all is done is dismissed, and ends immediately"):
     val asked = CountDownLatch(1)
     val never = CountDownLatch(1)
     var ended = Option.empty[(Future[Either[String, Unit]], ConcurrentLinkedQueue[String])]
@@ -139,7 +141,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(Await.result(end, 15.seconds), Right(()))
       assert(clue(told.asScala.last).contains("the work is done"))
 
-  test("a worker of another build is refused with both told, and one that cannot answer the question too"):
+  test("a worker of another build is refused with both builds named, and so is one without an answer"):
     coordinating: coordinator =>
       val (_, other, _) = worker(coordinator.node.address, "anna", Reversing(), build = "two")
       val refusal       = Await.result(other, 30.seconds).swap.getOrElse(fail("was taken"))
@@ -154,7 +156,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     Garbage.send(port, 0 until 330)(Garbage.of)
     Garbage.send(port, 0 until 40)(Garbage.endless)
 
-  /** A worker is there before the garbage and while it comes, another one afterwards. */
+  /** Checks workers before, during and after an attack with garbage. */
   private def assertUnharmed(coordinator: Coordinating, tls: Option[Tls])(send: Int => Unit): Unit =
     val to           = coordinator.node.address
     val sent         = CountDownLatch(1)
@@ -172,14 +174,14 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     anna.stop()
     ben.stop()
 
-  test("a stranger's garbage at the port harms nothing: who is there works on, and others join"):
+  test("a stranger's garbage at the port harms nothing: members continue, and others join"):
     coordinating(assertUnharmed(_, None)(garbage))
 
-  test("nor does it where certificates are asked for"):
+  test("a stranger's garbage harms nothing where certificates are required either"):
     val own = Some(tls(lab.head))
     coordinating(own)(assertUnharmed(_, own)(garbage))
 
-  test("what a worker had that leaves is computed by another"):
+  test("blocks of a worker that leaves are computed by another"):
     coordinating: coordinator =>
       val taken        = CountDownLatch(1)
       val never        = CountDownLatch(1)
@@ -199,7 +201,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(coordinator.node.progress.coordinator.workers("ben").accepted, works.size.toLong)
       ben.stop()
 
-  test("a coordinator that is started again at its address finds its workers and what it had"):
+  test("a coordinator restarted at its address finds its workers and its answers"):
     val folder  = temporaryFolder()
     val first   = Coordinating(folder)
     val port    = first.node.address.port
@@ -208,7 +210,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val solvers = Reversing: () =>
       if reached.getCount == 0 then dead.await()
       reached.countDown()
-    // Its end is not told to anybody, as if it was killed.
+    // Its end is not announced, as if it was killed.
     val (node, _, told) = worker(first.node.address, "anna", solvers)
     first.node.compute(works): Unit
     reached.await()
@@ -228,7 +230,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       second.close()
     assert(clue(told.asScala.toVector).exists(_.contains("joined")))
 
-  test("beyond loopback nobody listens, and nobody is joined, without certificates"):
+  test("beyond loopback no node listens or connects without certificates"):
     val folder  = temporaryFolder()
     val ledger  = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val refused = CoordinatorNode.start(Endpoint("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
@@ -237,10 +239,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val joined = WorkerNode(Endpoint("192.0.2.1", 1), loopback, None, 1, Reversing(), 1.second)(_ => ()).run()
     assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
-  test(
-    "with certificates of one set nodes work together; without, " +
-      "of another set, or of another host, nobody joins"
-  ):
+  test("with certificates of one set nodes join; without, of another set, or of another host, they do not"):
     val Vector(own, elsewhere, _) = lab.map(tls): @unchecked
     val strangers                 = tls(Await.result(makingOthers, 60.seconds).head)
     coordinating(Some(own)): coordinator =>
@@ -260,7 +259,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         val told = Await.result(outcome, 90.seconds)
         assert(clue(told).left.exists(reason => why.forall(reason.contains)))
       assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set("anna"))
-      // It hears of those that tried: in an alert, and where somebody speaks no TLS.
+      // It learns of failed attempts: from an alert, or when a peer does not speak TLS.
       val told = coordinator.news.asScala.collect { case WorkerEvent.NotTrusted(reason) => reason }.toSet
       assert(clue(told).exists(_.contains("Received fatal alert")))
       assert(told.exists(_.contains("SSL message")))
@@ -271,7 +270,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       val told            = Await.result(outcome, 90.seconds)
       assert(clue(told).left.exists(_.contains(s"to $to, which does not answer as TLS does")))
 
-  test("a node listens where its certificate shows its host alone"):
+  test("a node only listens at a host that its certificate names"):
     val Vector(own, elsewhere, sixth) = lab.map(tls): @unchecked
     assertEquals(own.shows("127.0.0.1"), Right(()))
     for host <- Seq("::1", "0:0:0:0:0:0:0:1") do assertEquals(sixth.shows(host), Right(()))
@@ -283,7 +282,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     for host <- Seq("workers.lab", "a.b.workers.lab", "workers.lab.org", "127.0.0.1") do
       assert(clue(elsewhere.shows(host)).left.exists(_.contains("shows *.workers.lab")))
 
-  test("a set's folders are for their owner alone, and a certificate is not made twice"):
+  test("a set's folders are readable only by their owner, and a certificate is not made twice"):
     val folder = lab.head.getParent
     assertEquals(lab.map(_.getFileName.toString), Vector("127.0.0.1", "_.workers.lab", "::1"))
     for key <-

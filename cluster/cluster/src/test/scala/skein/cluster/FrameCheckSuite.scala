@@ -13,7 +13,7 @@ class FrameCheckSuite extends munit.FunSuite:
     for length <- lengths do bytes.putInt(length).put(Array.fill(length.max(0).min(most))(-1.toByte)): Unit
     bytes.array
 
-  /** Of the same bytes, in pieces of each size. */
+  /** Checks the bytes in pieces of each size; the results must agree. */
   private def refused(bytes: Array[Byte]): Option[Int] =
     val found = (1 to bytes.length).map: size =>
       val check = FrameCheck(most)
@@ -21,17 +21,15 @@ class FrameCheckSuite extends munit.FunSuite:
     assertEquals(found.distinct.size, 1)
     found.head
 
-  test("frames as long as they may be pass, whatever is in them and however the connection cuts them"):
+  test("frames of allowed length pass, with any content and any segmentation"):
     assertEquals(refused(connection(0, 1, 7, most, 0, 300)), None)
 
-  test(
-    "a length that no frame has is found, also behind others: below zero, above what is allowed, close to 2³¹"
-  ):
+  test("an invalid length is found, also after valid ones: negative, too large, close to 2³¹"):
     for length <- Seq(-1, Int.MinValue, most + 1, Int.MaxValue, Int.MaxValue - 8) do
       assertEquals(refused(connection(length)), Some(length))
       assertEquals(refused(connection(3, most, length)), Some(length))
 
-  test("what is not looked at yet stays where it is"):
+  test("bytes not checked yet stay in the buffer"):
     val bytes = ByteBuffer.wrap(connection(4))
     assertEquals(FrameCheck(most).refused(bytes), None)
     assertEquals(bytes.position(), 0)

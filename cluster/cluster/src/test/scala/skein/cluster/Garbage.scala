@@ -6,16 +6,15 @@ import java.nio.ByteOrder.LITTLE_ENDIAN
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Random
 
-/** What a stranger sends, by seed: noise, other protocols, Pekko's own wire and TLS's with lengths that lie.
-  */
+/** A stranger's data, by seed: noise, other protocols, Pekko's own wire and TLS's with false lengths. */
 private[cluster] object Garbage:
 
-  /** Of the kind that the number says, in turns. */
+  /** Data of the kind that the number selects, in turns. */
   def of(number: Int): Array[Byte] =
     val random = Random(number)
     kinds(number % kinds.size)(random)
 
-  /** Sends each over a connection of its own, which it leaves in one of three ways. */
+  /** Sends each over a connection of its own, and closes it in one of three ways. */
   def send(port: Int, numbers: Range)(kind: Int => Array[Byte]): Unit =
     for number <- numbers do
       val socket = Socket("127.0.0.1", port)
@@ -23,12 +22,12 @@ private[cluster] object Garbage:
         socket.getOutputStream.write(kind(number))
         number % 3 match
           case 0 => socket.shutdownOutput()
-          case 1 => socket.setSoLinger(true, 0) // It is reset.
+          case 1 => socket.setSoLinger(true, 0) // Closed with a reset.
           case _ => ()
-      catch case _: IOException => () // It is cut off midway.
+      catch case _: IOException => () // Closed in the middle of the data.
       finally socket.close()
 
-  /** What Pekko would read for ever: [[FrameCheck]]. */
+  /** Data that Pekko would read endlessly: see [[FrameCheck]]. */
   def endless(number: Int): Array[Byte] =
     val random = Random(number)
     lying(random, if random.nextBoolean() then Int.MaxValue else -1 - random.nextInt(1 << 30))
@@ -43,7 +42,7 @@ private[cluster] object Garbage:
 
   private def text(of: String) = of.getBytes("US-ASCII")
 
-  /** What a connection of Pekko's begins with, and the stream's number. */
+  /** The first bytes of a Pekko connection, with the stream's number. */
   private def pekko(stream: Int) = text("AKKA") :+ stream.toByte
 
   private def length(bytes: Int, order: ByteOrder) = ByteBuffer.allocate(4).order(order).putInt(bytes).array
@@ -55,18 +54,18 @@ private[cluster] object Garbage:
     noise(_, 64 << 10),
     random => Array.fill(1 + random.nextInt(4096))(random.nextInt(2).toByte),
     random => text(s"GET /${"a" * random.nextInt(8192)} HTTP/1.1\r\nHost: skein\r\n\r\n"),
-    // A length of a GiB, or of one byte more than is allowed, and little behind it.
+    // A length of a GiB, or of one byte more than allowed, with few bytes after it.
     random =>
       val lie = if random.nextBoolean() then 1 << 30 else MessageCodec.MostBytes + (64 << 10) + 1
       lying(random, lie)
     ,
-    // Frames as long as they say, with noise for the envelope and the message.
+    // Frames of the stated length, with noise for the envelope and the message.
     random =>
       pekko(1 + random.nextInt(3)) ++ Array.fill(1 + random.nextInt(8))(frame(noise(random, 512))).flatten,
-    // The envelope begins as an honest one.
+    // The envelope begins like a valid one.
     random => pekko(1 + random.nextInt(3)) ++ frame(Array[Byte](0, 0) ++ noise(random, 512)),
     random => pekko(random.nextInt(256)) ++ frame(noise(random, 64)),
-    // TLS: a greeting that is noise, one that is cut off, and an alert.
+    // TLS: a noisy ClientHello, a truncated one, and an alert.
     random =>
       val content = noise(random, 512)
       Array[Byte](22, 3, 1) ++ length(content.length, ByteOrder.BIG_ENDIAN).drop(2) ++ content

@@ -43,17 +43,17 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
   property("a message is read as it was written"):
     Prop.forAll(messages)(message => assertEquals(codec.message(codec.bytes(message)), Right(message)))
 
-  property("a message that is cut off, or has more behind it, is refused in a line"):
+  property("a truncated message, or one with trailing bytes, is refused in a line"):
     Prop.forAll(messages, Gen.choose(0.0, 1.0)): (message, share) =>
       val whole = codec.bytes(message)
       assert(codec.message(whole.take((share * whole.length).toInt.min(whole.length - 1))).isLeft)
       assert(codec.message(whole :+ 0).isLeft)
 
-  property("whatever bytes come, nothing is thrown and no size is believed"):
+  property("for any bytes nothing is thrown, and no stated size is trusted"):
     Prop.forAll(Gen.listOf(Arbitrary.arbitrary[Byte]), Gen.choose(0, 9)): (bytes, kind) =>
       codec.message((kind.toByte :: bytes).toArray): Unit
 
-  test("a size that only a peer states is not made room for"):
+  test("no memory is allocated for a size that only a peer states"):
     for size <- Seq(Int.MaxValue, -1, MessageCodec.MostBytes, MessageCodec.MostBytes + 1) do
       val bytes = java.nio.ByteBuffer.allocate(13).put(5: Byte).putLong(1).putInt(size).array
       assert(clue(codec.message(bytes)).isLeft)

@@ -6,7 +6,7 @@ import scala.util.Using
 import skein.testing.TemporaryFolders
 
 class TlsSuite extends munit.FunSuite, TemporaryFolders:
-  folder.test("what is wrong with a folder of certificates is told in words"): folder =>
+  folder.test("mistakes in a folder of certificates are described in words"): folder =>
     val store = KeyStore.getInstance("PKCS12")
     store.load(null, null)
     for name <- Seq(Tls.KeyStore, Tls.TrustStore) do

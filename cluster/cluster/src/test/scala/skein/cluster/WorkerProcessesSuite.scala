@@ -7,14 +7,14 @@ import skein.testing.TemporaryFolders
 
 class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
 
-  test("workers have an archive of classes of their own, and share it with those that are started by hand"):
+  test("workers have their own class archive, shared with manually started ones"):
     val option = "-XX:SharedArchiveFile=/opt/skein/skein-vector.jsa"
     val own    = WorkerProcesses.ofWorkers(option)
     assertEquals(own, "-XX:SharedArchiveFile=/opt/skein/skein-vector-worker.jsa")
     assertEquals(WorkerProcesses.ofWorkers(own), own)
     assertEquals(WorkerProcesses.ofWorkers("-Xmx1g"), "-Xmx1g")
 
-  test("an archive of classes that was not written to its end is removed before a worker starts"):
+  test("a truncated class archive is removed before a worker starts"):
     val archive                        = temporaryFolder().resolve("skein-worker.jsa")
     def isKeptWith(bytes: Array[Byte]) =
       Files.write(archive, bytes)
@@ -23,13 +23,10 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
     assert(isKeptWith(Array[Byte](0xa8.toByte, 0x0b, 0xf0.toByte, 0x0f)))
     assert(!isKeptWith(Array[Byte](0, 0, 0, 0, 1)))
     assert(!isKeptWith(Array.emptyByteArray))
-    // Nor is it missed where there is none.
+    // Without an archive nothing is missing.
     WorkerProcesses.starting(Seq("java", s"-XX:SharedArchiveFile=$archive", "worker")): Unit
 
-  test(
-    "workers that are killed again and again are replaced while " +
-      "they compute; those that never do are given up"
-  ):
+  test("killed workers are replaced while they compute; workers that never compute are given up"):
     val folder    = temporaryFolder()
     val ended     = AtomicInteger()
     val givenUp   = CompletableFuture[String]()

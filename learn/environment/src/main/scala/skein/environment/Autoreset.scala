@@ -1,12 +1,14 @@
 package skein.environment
 
-/** What follows the end of an episode, as Gymnasium names it. */
+/** What follows the end of an episode, in Gymnasium's terms. */
 enum Autoreset:
-  /** The next step ignores its action and shows the next episode's first observation. */
+  /** The next step ignores its action and returns the next episode's first observation. */
   case NextStep
 
-  /** The step that ends an episode shows the next one's first observation; its last is told apart. */
+  /** The step that ends an episode returns the next one's first observation; the last observation is stored
+    * separately.
+    */
   case SameStep
 
-  /** Nothing, until a reset. */
+  /** Nothing, until the environment is reset explicitly. */
   case Disabled

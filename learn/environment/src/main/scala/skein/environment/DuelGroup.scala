@@ -5,11 +5,11 @@ import skein.lanes.LearnerDuels
 import skein.policy.{HeadingPolicy, Role}
 import skein.signal.SplitMix64
 
-/** Up to [[LearnerDuels.WORLDS]] environments that fly side by side over one link: what befalls their
-  * messages is the same in all of them. Mutable; one thread at a time.
+/** Up to [[LearnerDuels.WORLDS]] environments that run side by side over one link: delays and losses of
+  * messages are equal in all of them. Mutable; one thread at a time.
   *
-  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends before, by a
-  * capture, the next begins at once in the loop that runs already, and lasts until the run's end.
+  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends earlier, by a
+  * capture, the next begins immediately in the current run, and lasts until the run's end.
   *
   * @param first of the batch's environments
   * @param count of environments
@@ -45,7 +45,7 @@ private final class DuelGroup(
   private var runs   = 0L
   private var isOver = true
 
-  /** Whether nobody has decided in this run. */
+  /** Whether no decision has been made in this run. */
   private var isFirst = true
 
   def reset(newSeeds: Array[Long]): Unit =
@@ -91,7 +91,7 @@ private final class DuelGroup(
             world += 1
         agent += 1
       duels.decide()
-      // What was scored before the first decision counts for the first step.
+      // Scores before the first decision count for the first step.
       if !isFirst then duels.forgetScores()
       isFirst = false
       val goesOn = duels.flyOn()
@@ -103,9 +103,9 @@ private final class DuelGroup(
     val rate  = if vehicle == 1 then settings.turnRateRadPerS else settings.evaderRateRadPerS
     share * (if rate > 0 then rate else math.Pi).toFloat
 
-  /** Rewards, and who has ended. */
+  /** Computes rewards, and which episodes have ended. */
   private def judge(): Unit =
-    // Both learners' rewards are of the same distance: what is the pursuer's loss is the evader's gain.
+    // Both learners' rewards are of one distance: the pursuer's loss is the evader's gain.
     var world = 0
     var again = false
     while world < count do
@@ -138,15 +138,15 @@ private final class DuelGroup(
         show(into.observations)
       case _ => show(into.observations)
 
-  /** Under `SameStep`: distance and time stay those of the episode that ended. */
+  /** Starts new episodes under `SameStep`: distance and time remain those of the ended episode. */
   private def restartDone(): Unit =
     if isOver then startRun()
     else for world <- 0 until count if isDone(world) do begin(world)
     java.util.Arrays.fill(isDone, false)
 
-  /** Under `NextStep`: everybody's next episode begins with a run of its own. */
+  /** Starts a run under `NextStep`: every environment's next episode begins with it. */
   private def nextRun(): Unit =
-    // Who began anew just when the run ended begins the same episode once more.
+    // An environment that was restarted exactly at the run's end begins its episode once more.
     for world <- 0 until count if !isDone(world) do episodes(world) -= 1
     startRun()
     for world <- 0 until count do clear(world)
@@ -165,7 +165,6 @@ private final class DuelGroup(
       )
     java.util.Arrays.fill(beganS, 0f)
 
-  /** An environment's next episode begins. */
   private def begin(world: Int): Unit =
     val start = Start.of(config.duel, settings.startWithinM, SplitMix64.seedOf(seeds(world), episodes(world)))
     episodes(world) += 1
@@ -176,7 +175,7 @@ private final class DuelGroup(
 
   private def clear(world: Int): Unit = into.begun(first + world, startM(world))
 
-  /** What the learners that are due see; the others' observations stay as they are. */
+  /** Writes the observations of the learners that are due; the others' stay unchanged. */
   private def show(to: FloatBuffer): Unit =
     var agent = 0
     while agent < vehicles.length do

@@ -11,20 +11,20 @@ import skein.settings.PolicyFile
 import skein.simd.LaneMath
 import skein.units.Expect
 
-/** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for
-  * from outside ([[EnvironmentSettings]]), at the moments at which the loop decides, on readings as old as
-  * the link makes them. Observations and actions are in [[EnvironmentBuffers]].
+/** Many episodes, simulated step by step. The caller decides for one or both sides of the duel, or for a side
+  * of another scenario ([[EnvironmentSettings]]), at the times at which the loop decides, on readings with
+  * the age that the link causes. Observations and actions are in [[EnvironmentBuffers]].
   *
   * A step is one decision. Its reward is, for a pursuer, minus the distances scored since the last one (once
   * a period), divided by 10 m, and 10 for a capture; for an evader the opposite. So the pursuer's rewards of
   * an episode without a capture sum to minus its mean distance, as `./skein search` has it, times the number
   * of periods, divided by 10 m.
   *
-  * In other scenarios something else may be rewarded in the place of the distance.
+  * In other scenarios another quantity may be rewarded instead of the distance.
   *
-  * The duel flies by lanes, [[DuelGroup]]. Other scenarios are flown by the scalar reference,
-  * [[ScenarioGroup]]: one vehicle of each environment is decided for, the others of its role fly their own
-  * policies, or what [[fly]] says.
+  * The duel uses SIMD, [[DuelGroup]]. Other scenarios use the scalar reference, [[ScenarioGroup]]: the caller
+  * decides for one vehicle of each environment; the others of its role use their own policies, or that of
+  * [[fly]].
   *
   * One call at a time. A step of the duel allocates nothing, except where many groups share the processors.
   *
@@ -53,32 +53,32 @@ final class EnvironmentBatch private (
     case _: EnvironmentSettings.Resolved => EnvironmentBatch.EngineOfGame
     case side: ScenarioSide              => EnvironmentBatch.engineOf(side.settings.scenario)
 
-  /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides,
+  /** Sets, in other scenarios than the duel, the policy of the learner's role for vehicles without a learner,
     * from their next episodes on.
     */
   def fly(policy: HeadingPolicy): Unit = groups.foreach:
     case team: ScenarioGroup => team.fly(policy)
     case _                   => ()
 
-  /** Ends all episodes; nothing may be called any more. */
+  /** Ends all episodes; no method may be called afterwards. */
   def close(): Unit = groups.foreach(_.close())
 
-  /** Every environment begins anew.
+  /** Resets every environment.
     *
-    * @param seeds one each; a negative one: the environment goes on with its own
+    * @param seeds one for each environment; a negative one continues the environment's own sequence
     */
   def reset(seeds: Array[Long]): Unit =
     require(seeds.length == count, s"expected $count seeds, came ${seeds.length}")
     groups.foreach(_.reset(seeds))
     isReset = true
 
-  /** Those of the mask begin anew. */
+  /** Resets the environments of the mask, with their seeds. */
   def reset(seeds: Array[Long], mask: Array[Boolean]): Unit =
     require(seeds.length == count && mask.length == count, s"expected $count seeds and as long a mask")
     require(isReset, "expected a reset of all environments before one of some")
     groups.foreach(_.reset(seeds, mask))
 
-  /** One step of every environment.
+  /** Advances every environment by one step.
     *
     * @throws IllegalArgumentException if an action is not finite; then nothing was done
     * @throws IllegalStateException if an episode has ended, and was not reset
@@ -104,7 +104,7 @@ final class EnvironmentBatch private (
 object EnvironmentBatch:
   val Most = 1 << 20
 
-  /** Fewer groups are flown by the caller's thread alone. */
+  /** Groups from which on several threads are used. */
   private val Together = 4
 
   /** What flies environments of the paper's game. */
@@ -115,7 +115,7 @@ object EnvironmentBatch:
     Engine.scalar(s"environments of $scenario fly one by one; those of the duel fly by SIMD")
 
   /** @param opponent of the side that does not learn; without one, as the settings name it
-    * @return or what was expected and came
+    * @return Left states what was expected and what was given
     */
   def of(
       settings: EnvironmentSettings,
@@ -132,10 +132,10 @@ object EnvironmentBatch:
       made <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made
 
-  /** The same from names and texts, for callers of other languages.
+  /** Makes a batch from names and texts, for callers in other languages.
     *
-    * @param settings by the names of [[EnvironmentSettings]] in snake case; what is missing is the default
-    * @throws IllegalArgumentException with what was expected and came
+    * @param settings by the names of [[EnvironmentSettings]] in snake case; missing ones have their defaults
+    * @throws IllegalArgumentException with what was expected and what was given
     */
   def make(
       settings: java.util.Map[String, String],

@@ -44,7 +44,7 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
   def action(agent: Int, number: Int): Float              = actions.get(agent * count + number)
   def reward(agent: Int, number: Int, value: Float): Unit = rewards.put(agent * count + number, value): Unit
 
-  /** Of some environments, one whose action is not finite, or −1. */
+  /** The first of these environments whose action is not finite, or −1. */
   def misfit(first: Int, count: Int): Int =
     var agent = 0
     while agent < agents do
@@ -55,7 +55,7 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
       agent += 1
     -1
 
-  /** What an environment shows beside its first observation. */
+  /** Writes an environment's state at the begin of an episode, except its observation. */
   def begun(number: Int, distanceM: Float): Unit =
     distance(number, distanceM)
     time(number, 0)

@@ -3,13 +3,13 @@ package skein.environment
 /** Some of a batch's environments, which are stepped together. Mutable; one thread at a time. */
 private trait EnvironmentGroup extends AutoCloseable:
 
-  /** Every environment begins anew.
+  /** Resets every environment.
     *
-    * @param newSeeds of the whole batch; a negative one: the environment goes on with its own
+    * @param newSeeds of the whole batch; a negative one continues the environment's own sequence
     */
   def reset(newSeeds: Array[Long]): Unit
 
-  /** Those of the mask begin anew. */
+  /** Resets the environments of the mask, with their seeds. */
   def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit
 
   /** An environment whose action is not finite, or −1. */
@@ -18,7 +18,6 @@ private trait EnvironmentGroup extends AutoCloseable:
   /** An environment that has ended and was not reset, or −1. */
   def ended: Int
 
-  /** One step of every environment. */
   def step(): Unit
 
   def close(): Unit = ()
@@ -26,5 +25,5 @@ private trait EnvironmentGroup extends AutoCloseable:
 private object EnvironmentGroup:
   val CaptureReward = 10f
 
-  /** Times of scores are floats. */
+  /** Tolerance for comparing times of scores, which are 32-bit floats, s. */
   val Tolerance = 1e-4f

@@ -11,17 +11,17 @@ import scala.util.control.NonFatal
 import skein.scenario.Scenarios
 import skein.units.Expect
 
-/** Environments behind a Unix socket, for processes that fork, or that no Java should live in. What is seen
-  * and done stands in a file that both sides map ([[EnvironmentBuffers]]); over the socket go only words:
+/** Environments behind a Unix socket, for processes that fork, or that cannot contain a JVM. Observations and
+  * actions are in a file that both sides map ([[EnvironmentBuffers]]); the socket carries only requests:
   *
   * A connection is one batch. It begins with a text of `name=value` lines: `count`, `autoreset` (0 next step,
   * 1 same step, 2 disabled), `file`, and the settings. Then each request is a byte: 1 for a step; 2 for a
   * reset, and a seed an environment (64 bits); 3 for a reset of some, with a byte an environment behind the
-  * seeds; 4 to hear what flies them. Every answer, also the one to the text, is a byte: 0 done, to a 4 with a
-  * text; 1 wrong arguments, 2 not now, both with a text. A text is its length in bytes (32 bits) and UTF-8.
-  * Numbers are big-endian.
+  * seeds; 4 for a description of their engine. Every answer, also the one to the text, is a byte: 0 done, to
+  * a 4 with a text; 1 wrong arguments, 2 wrong state, both with a text. A text is its length in bytes (32
+  * bits) and UTF-8. Numbers are big-endian.
   *
-  * It ends with its standard input: when whoever started it ends.
+  * It ends with its standard input: when the process that started it ends.
   */
 object EnvironmentServer:
   private val MostText = 1 << 16
@@ -44,7 +44,7 @@ object EnvironmentServer:
     val client = server.accept()
     daemon: () =>
       try serve(client)
-      catch case _: IOException => () // Whoever asked has gone.
+      catch case _: IOException => () // The client has gone.
       finally client.close()
 
   private def daemon(body: () => Unit): Unit =

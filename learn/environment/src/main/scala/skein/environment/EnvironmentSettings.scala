@@ -12,24 +12,24 @@ import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, Vehicle
 import skein.signal.LatencyProfile
 import skein.units.{Expect, Span}
 
-/** What an environment is, as users name it.
+/** Settings of environments, in the user's terms.
   *
   * @param learners `pursuer`, `evader`, or `both`
-  * @param opponent a policy file or a family's name; empty: the paper's. Not asked for where both learn, nor
-  *   in other scenarios than the duel, where all who do not learn fly their own
+  * @param opponent a policy file or a family's name; empty: the paper's. Ignored where both learn, and in
+  *   other scenarios than the duel, where all vehicles without a learner use their own policies
   * @param plant see [[VehicleChoice.parse]]; empty: `reduced` in the duel, else `drag`
-  * @param captureRadiusM a distance of at most this ends an episode; 0: none does
-  * @param startWithinM an episode begins with the evader so far from the pursuer, least and most, in any
-  *   direction, each commanded in any direction; both 0: as the paper's duel begins. In other scenarios:
-  *   every vehicle so far from where it begins
-  * @param movesInFlight of one vehicle
-  * @param turnRateRadPerS the most that a pursuer who learns turns
-  * @param evaderRateRadPerS the most that an evader who learns turns; 0: its actions are turns at once, of up
+  * @param captureRadiusM distance that ends an episode; 0: none does
+  * @param startWithinM least and greatest initial distance of the evader from the pursuer, in any direction,
+  *   each commanded in any direction; both 0: the paper's start. In other scenarios: distance of every
+  *   vehicle from its usual start
+  * @param movesInFlight most unanswered moves of one vehicle
+  * @param turnRateRadPerS greatest turn rate of a learning pursuer
+  * @param evaderRateRadPerS greatest turn rate of a learning evader; 0: its actions are immediate turns of up
   *   to half a turn
   * @param scenario whose pursuer or evader learns
   * @param set settings of the scenario, by their keys
-  * @param objective in other scenarios than the duel: a sum of means of the scenario's measures, which is
-  *   rewarded; empty: the distance to the nearest opponent
+  * @param objective reward in other scenarios than the duel: a sum of means of the scenario's measures;
+  *   empty: the distance to the nearest opponent
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -51,17 +51,16 @@ final case class EnvironmentSettings(
 ):
   import EnvironmentSettings.*
 
-  /** The most that who learns turns: rad/s until the next decision, and rad at once. */
+  /** The greatest turn of a learner: rad/s until the next decision, and rad in one instant. */
   def mostTurn(role: Role): (Double, Double) =
     if role == Role.Pursuer then (turnRateRadPerS, 0)
     else (evaderRateRadPerS, if evaderRateRadPerS > 0 then 0 else math.Pi)
 
-  /** @return or what was expected and came */
+  /** @return Left states what was expected and what was given */
   private[environment] def resolved: Either[String, Resolved] =
     resolvedAgainst(None)(using Scenarios.ours)
 
-  /** @param told the opponent; without one, as it is named
-    */
+  /** @param told the opponent; without one, as the settings name it */
   private[environment] def resolvedAgainst(told: Option[PolicyFile])(using
       Scenarios
   ): Either[String, Resolved] =
@@ -88,9 +87,9 @@ final case class EnvironmentSettings(
     s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
   )
 
-  /** The loop's timing, the link, and what flies at an altitude.
+  /** The loop's timing, the link, and the vehicles at an altitude.
     *
-    * @param otherwise the plant, where none is named
+    * @param otherwise the plant, if none is named
     */
   private[environment] def flown(
       atM: Double,
@@ -134,11 +133,11 @@ final case class EnvironmentSettings(
         .map(Some(_))
 
 object EnvironmentSettings:
-  /** A distance of so much costs the pursuer, and earns the evader, 1 a period. */
+  /** The distance that costs the pursuer, and earns the evader, 1 a period, m. */
   val RewardM = 10f
 
-  /** What settings come to. The duel lasts a little longer than an episode: who sees its end must be due once
-    * more.
+  /** Resolved settings. The duel lasts slightly longer than an episode: a learner that observes its end must
+    * be due once more.
     */
   private[environment] final case class Resolved(
       settings: EnvironmentSettings,
@@ -157,7 +156,8 @@ object EnvironmentSettings:
     "both"    -> Vector(Role.Evader, Role.Pursuer)
   )
 
-  /** Within this long after its end somebody is due again, unless nothing is heard of the vehicles any more.
+  /** Time after an episode's end within which a learner is due again, s, unless the vehicles' readings have
+    * ended.
     */
   private[environment] val SpareS = 3.0
 
@@ -165,7 +165,7 @@ object EnvironmentSettings:
 
   private val MostRateRadPerS = 50.0
 
-  /** @return or what was expected and came */
+  /** @return Left states what was expected and what was given */
   private[environment] def read(texts: java.util.Map[String, String]): Either[String, EnvironmentSettings] =
     texts.asScala.foldLeft[Either[String, EnvironmentSettings]](Right(EnvironmentSettings())):
       case (before, (name, text)) =>

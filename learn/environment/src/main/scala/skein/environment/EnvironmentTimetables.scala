@@ -4,8 +4,8 @@ import java.util.concurrent.ConcurrentHashMap
 import skein.lanes.timetable.Timetable
 import skein.simd.WorldRandom
 
-/** What befalls the messages of a run, drawn from a fixed number of flights over the link. Each is told once.
-  * Any thread may ask.
+/** Delays and losses of a run's messages, drawn from a fixed number of flights over the link; each is
+  * computed once. Thread-safe.
   */
 private final class EnvironmentTimetables(config: EnvironmentSettings.Resolved):
   import EnvironmentTimetables.*
@@ -18,10 +18,10 @@ private final class EnvironmentTimetables(config: EnvironmentSettings.Resolved):
     )
 
 private object EnvironmentTimetables:
-  /** Of some 200 kB for a minute each. */
+  /** Number of flights; some 200 kB for a minute of each. */
   val Flights = 128
 
   def indexOf(draw: Long): Int = ((draw >>> 1) % Flights).toInt
 
-  /** By which the delays of a flight are drawn. */
+  /** The key from which a flight's delays are drawn. */
   def keyOf(index: Int): Int = WorldRandom.key(1, 0, index)

@@ -7,11 +7,11 @@ import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 import skein.units.OwnFailure
 
-/** Episodes of a scenario, one after the other, that stop whenever one vehicle is to decide, for which
-  * somebody outside does. They are flown by [[Rollout]], whose policy waits for the answer: so whatever
-  * scenario, loop and link forward simulation knows can be learned in. Mutable.
+/** Episodes of a scenario, one after the other, that stop whenever the vehicle of a learner is to decide.
+  * They are simulated by [[Rollout]], whose policy waits for the caller's decision: so learning works in
+  * every scenario, loop and link of forward simulation. Mutable.
   *
-  * @param learner the vehicle, by its place in the scenario
+  * @param learner the vehicle, by its index in the scenario
   */
 private final class LearnerRollout(side: ScenarioSide, learner: Int) extends AutoCloseable:
   import LearnerRollout.*
@@ -22,32 +22,32 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
   private var isBegun                = false
   private val (rateRadPerS, turnRad) = side.settings.mostTurn(side.role)
 
-  /** What the vehicle sees now, as [[PlanarObservation.fromOwnHeading]] has it. */
+  /** The vehicle's current observation, in the form of [[PlanarObservation.fromOwnHeading]]. */
   val seen: Array[Float] = Array.ofDim(skein.lanes.LearnerDuels.FIELDS)
 
-  /** How it is to turn now, −1 to 1. */
+  /** The turn to make now, as a fraction, −1 to 1. */
   var share: Double = 0
 
-  /** What it has paid since it went on. */
+  /** The cost since the last decision, in the reward's unit. */
   var loss: Double = 0
 
-  /** To its nearest opponent: at the last score, and at the nearest since it went on, m. */
+  /** Distance to the nearest opponent, m: at the last score, and the least since the last decision. */
   var distanceM, leastM: Double = 0
 
-  /** When distances were scored last, since the episode's beginning, s. */
+  /** Time of the last score, since the episode's beginning, s. */
   var scoredAtS: Double = 0
   var isOver: Boolean   = true
 
-  /** With the next [[goOn]] an episode begins, whatever flies now.
+  /** Makes the next [[goOn]] start an episode, abandoning the current one.
     *
-    * @param beside the policy of the others of its role, if not their own
+    * @param beside the policy of the others of its role; without one, their own
     */
   def begin(seed: Long, beside: Option[HeadingPolicy]): Unit = next = Some((seed, beside))
 
-  /** Lets it fly. Nothing may be read until [[await]] has returned. */
+  /** Continues the simulation. Nothing may be read until [[await]] has returned. */
   def goOn(): Unit = flying.goOn()
 
-  /** Blocks until the vehicle is to decide. */
+  /** Blocks until the vehicle is to decide, or the episode has ended. */
   def await(): Unit = flying.await()
 
   def close(): Unit = flying.close()
@@ -67,7 +67,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
             WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % Flights).toInt),
             observer = scores
           ): Unit
-        // Nobody was to decide after the end.
+        // No decision was due after the end.
         isOver = true
         suspend()
       catch case Anew => ()
@@ -86,7 +86,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
       isOver = scoredAtS + EnvironmentGroup.Tolerance >= side.settings.episodeS
       ask()
       if next.isDefined then throw Anew
-      // What was scored before the first decision counts for the first step.
+      // Scores before the first decision count for the first step.
       if isBegun then
         loss = 0
         leastM = Double.PositiveInfinity
@@ -121,5 +121,5 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
 private object LearnerRollout:
   private object Anew extends ControlThrowable
 
-  /** Over the link, of which each episode meets one. */
+  /** Number of flights over the link, one of which each episode draws. */
   private val Flights = 1 << 24

@@ -3,10 +3,10 @@ package skein.environment
 import java.util.concurrent.Semaphore
 import scala.util.control.ControlThrowable
 
-/** A computation that is suspended and gone on with. It has a virtual thread of its own, which waits in
-  * between; only one of the two runs at a time.
+/** A computation that can be suspended and continued. It has a virtual thread of its own, which waits in
+  * between; only one of the two threads runs at a time.
   *
-  * @param body is given what suspends it; need not end
+  * @param body receives the function that suspends it; need not end
   */
 private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   import Resumed.GivenUp
@@ -16,14 +16,14 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   @volatile private var isGivenUp    = false
   private var thread: Option[Thread] = None
 
-  /** Lets it run. Nothing may be read that it writes until [[await]] has returned. */
+  /** Continues it. Nothing that it writes may be read until [[await]] has returned. */
   def goOn(): Unit = thread match
     case None    => thread = Some(Thread.ofVirtual.name("episode").start(() => run()))
     case Some(_) => goesOn.release()
 
   /** Blocks until it is suspended, or has ended.
     *
-    * @throws Throwable what it threw
+    * @throws Throwable that it threw
     */
   def await(): Unit =
     waits.acquireUninterruptibly()
@@ -41,7 +41,7 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
     goesOn.acquireUninterruptibly()
     if isGivenUp then throw GivenUp
 
-  /** Nobody goes on with it any more. */
+  /** Abandons it; it will not be continued. */
   def close(): Unit =
     isGivenUp = true
     goesOn.release()

@@ -5,8 +5,8 @@ import skein.lanes.LearnerDuels.FIELDS
 import skein.policy.{HeadingPolicy, Role}
 import skein.signal.SplitMix64
 
-/** Environments of a scenario, each in its own time and over its own link. In environment number n the
-  * learner is member n of its role, counted round.
+/** Environments of a scenario, each with its own time and link. In environment number n the learner is member
+  * n of its role, modulo their number.
   */
 private final class ScenarioGroup(
     side: ScenarioSide,
@@ -59,7 +59,7 @@ private final class ScenarioGroup(
       for number <- ended do show(number, into.finals)
       beginAll(ended)
 
-  /** Rewards, and whether it has ended. */
+  /** Computes an environment's reward, and whether it has ended. */
   private def judge(number: Int): Unit =
     val flight   = flights(number)
     val captured = settings.captureRadiusM > 0 && flight.leastM <= settings.captureRadiusM

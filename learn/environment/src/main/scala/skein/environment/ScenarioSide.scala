@@ -10,11 +10,11 @@ import skein.signal.SplitMix64
 import skein.units.{Expect, OwnFailure}
 import skein.vehicle.VehicleKind
 
-/** A side of a scenario that learns: some vehicle of its role is decided for from outside, the others of the
-  * role fly what is flown beside it, everybody else their own policies.
+/** A side of a scenario that learns: the caller decides for one vehicle of its role; the others of the role
+  * use a policy set by the caller, all other vehicles their own policies.
   *
-  * @param members of the role, by their places in the scenario
-  * @param objective what is rewarded; without one, a small or a great distance to the nearest opponent
+  * @param members of the role, by their indices in the scenario
+  * @param objective that is rewarded; without one, a small or a great distance to the nearest opponent
   */
 private[environment] final case class ScenarioSide(
     settings: EnvironmentSettings,
@@ -34,11 +34,11 @@ private[environment] final case class ScenarioSide(
 
   def nameOf(vehicle: Int): String = agents(vehicle).name
 
-  /** What flies in an episode.
+  /** The vehicles of an episode, with their policies.
     *
-    * @param learner its place
-    * @param beside of the others of its role; without one, their own
-    * @param seed of where the vehicles begin
+    * @param learner its index
+    * @param beside policy of the others of its role; without one, their own
+    * @param seed of the initial positions
     */
   def engagement(learner: Int, policy: HeadingPolicy, beside: Option[HeadingPolicy], seed: Long): Engagement =
     val random = SplitMix64(seed)
@@ -58,14 +58,14 @@ private[environment] final case class ScenarioSide(
       )
     Engagement.of(Fleet(flown), settings.episodeS + EnvironmentSettings.SpareS)
 
-  /** To the learner's nearest opponent, m. */
+  /** Distance from the learner to its nearest opponent, m. */
   def distanceM(learner: Int, northM: Array[Double], eastM: Array[Double]): Double =
     var least = Double.PositiveInfinity
     for rival <- rivals do
       least = least.min(StrictMath.hypot(northM(rival) - northM(learner), eastM(rival) - eastM(learner)))
     least
 
-  /** What the learner pays at a score. */
+  /** The learner's cost at a score, in the reward's unit. */
   def loss(distanceM: Double, northM: Array[Double], eastM: Array[Double]): Double = objective match
     case None     => if role == Role.Pursuer then distanceM else -distanceM
     case Some(by) =>
@@ -83,7 +83,7 @@ private[environment] final case class ScenarioSide(
 
 private[environment] object ScenarioSide:
 
-  /** @return the side that settings name, or what was expected and came */
+  /** @return the side that the settings name; Left states what was expected and what was given */
   def of(settings: EnvironmentSettings)(using scenarios: Scenarios): Either[String, ScenarioSide] =
     for
       learners <- settings.roles
@@ -119,7 +119,7 @@ private[environment] object ScenarioSide:
         "objective: expected means over time, which can be rewarded " +
           s"as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
-      // Teams fly low, where the model of three parameters does not hold.
+      // Teams fly low, where the model of three parameters is not valid.
       flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag")
       (timing, delays, vehicle) = flown
       side = ScenarioSide(settings, scenario, role, members, objective, timing, delays, vehicle.response)

@@ -3,8 +3,8 @@ package skein.environment
 import skein.forward.Duel
 import skein.signal.SplitMix64
 
-/** Where the vehicles of an episode begin, at rest: north and east, m, and the headings that are taken for
-  * commanded.
+/** The vehicles' positions at the begin of an episode, at rest: north and east, m, and the headings assumed
+  * as commanded.
   */
 private final case class Start(
     evaderNorthM: Float,
@@ -19,8 +19,7 @@ private final case class Start(
 
 private object Start:
 
-  /** @param withinM the least and the greatest distance, any direction; both 0: as the duel begins
-    */
+  /** @param withinM the least and the greatest distance, any direction; both 0: the duel's own start */
   def of(duel: Duel, withinM: (Double, Double), seed: Long): Start =
     import duel.{evader, pursuer}
     val (evaderX, evaderY, evaderRad, pursuerRad) =

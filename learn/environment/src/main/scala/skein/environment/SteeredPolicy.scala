@@ -17,7 +17,7 @@ private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends
       elapsedS: Double
   ): Double = ownHeadingRad + rateRadPerS * elapsedS
 
-/** Turns at once by an angle that is set from outside before each decision.
+/** Turns in one instant by an angle that is set from outside before each decision.
   *
   * @param turnRad to the right
   */

@@ -12,7 +12,7 @@ import skein.vehicle.ReducedModel
 class EnvironmentBatchSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
-  /** A batch, and what a learner reads and writes. */
+  /** A batch, with a learner's view of its buffers. */
   private final class Learner(
       settings: EnvironmentSettings,
       count: Int,
@@ -42,12 +42,12 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     def isDue(agent: Int): Boolean                 = block.get(endsAt + 2 * count + agent * count) != 0
     def reset(seeds: Long*): Unit                  = batch.reset(seeds.toArray)
 
-    /** The paper's pursuer, by what is seen. */
+    /** The paper's pursuer, computed from an observation. */
     def paper(number: Int, agent: Int = 0): Float =
       val (ahead, right) = (seen(number, 0, agent), seen(number, 1, agent))
       if right != 0 then math.signum(right) else if ahead < 0 then 1 else 0
 
-  /** What the engine says of the paper's pursuer over the link of a run. */
+  /** The engine's result for the paper's pursuer over the link of a run. */
   private def engine(settings: EnvironmentSettings, seed: Long): (DuelOutcome, Float, Float) =
     val config = settings.resolved.fold(fail(_), identity)
     val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)
@@ -69,9 +69,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
   for (loop, link) <-
       Seq("stream" -> "vpn", "predictive" -> "vpn", "sequential" -> "direct", "paused" -> "none")
   do
-    test(
-      s"driven by the paper's pursuer under $loop over $link it flies what the engine and the reference fly"
-    ):
+    test(s"with the paper's pursuer under $loop over $link a batch equals the engine and the reference"):
       val settings = EnvironmentSettings(loop = loop, link = link, episodeS = 20)
       val learner  = Learner(settings, 2)
       learner.reset(0, 1)
@@ -90,7 +88,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       assertEqualsDouble(mean, reference.meanDistanceM, 0.02)
       assert(least == leastByLanes, s"$least m, by the lanes $leastByLanes m")
 
-  test("equal seeds and actions give equal episodes, to the bit, whatever flies beside them in other groups"):
+  test("equal seeds and actions give equal episodes, to the bit, independent of other groups"):
     def flown(count: Int) =
       val learner =
         Learner(EnvironmentSettings(startWithinM = (3, 9), episodeS = 4, captureRadiusM = 3), count)
@@ -147,7 +145,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     assertEqualsFloat(age("none"), 0, 1e-6f)
     assert(age("direct") < 0.06 && age("vpn") > 0.05 && age("constant:400ms") > 0.2)
 
-  test("both sides learn at once, and somebody is due at every step: both, where nothing takes time"):
+  test("with both sides learning a learner is due at every step: both, where nothing takes time"):
     for (loop, link, least) <- Seq(("paused", "none", 40), ("stream", "vpn", 1)) do
       val learner = Learner(EnvironmentSettings(learners = "both", loop = loop, link = link, episodeS = 5), 3)
       learner.reset(1, 2, 3)
@@ -164,9 +162,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     assertEquals(learner.reward(0, 0), -learner.reward(0, 1))
     evader && pursuer
 
-  test(
-    "what cannot be flown is refused with what was expected, and an action that is no number changes nothing"
-  ):
+  test("invalid settings are refused with what was expected, and an action of NaN changes nothing"):
     def refused(settings: EnvironmentSettings) = settings.resolved.swap.getOrElse("accepted")
     assert(refused(EnvironmentSettings(learners = "x")).startsWith("learners: expected "))
     assert(refused(EnvironmentSettings(loop = "plan")).contains("which plans"))

@@ -34,7 +34,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     def ended(number: Int): Boolean          = truncated(number) || buffers.terminations.get(number) != 0
     def truncated(number: Int): Boolean      = buffers.truncations.get(number) != 0
 
-  /** Towards the opponent, by what is seen. */
+  /** The turn towards the opponent, computed from an observation. */
   private def towards(right: Double): Double = (right / 10).max(-1).min(1)
 
   private object steered extends ObservingPolicy[Unit]:
@@ -42,16 +42,14 @@ class ScenarioGroupSuite extends munit.FunSuite:
     def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
       Decided(seen.ownHeadingRad + towards(seen.fromOwnHeading(1).toFloat) * seen.elapsedS, ())
 
-  test("what flies is told: another scenario one by one, the duel by SIMD"):
+  test("the engine is reported: scalar for another scenario, SIMD for the duel"):
     val team = Learner(surround, 2).batch.engine
     assert(team.startsWith("scalar: environments of surround"), team)
     val duel = Learner(EnvironmentSettings(), 2).batch.engine
     assert(duel.startsWith("SIMD, "), duel)
 
   for (loop, link) <- Seq("stream" -> "vpn", "predictive" -> "direct", "paused" -> "none") do
-    test(
-      s"stepped under $loop over $link it flies, and rewards, what the reference flies with the same policy"
-    ):
+    test(s"stepped under $loop over $link, motion and rewards equal the reference's with equal policies"):
       val settings = surround.copy(loop = loop, link = link, startWithinM = (0, 5))
       val side     = ScenarioSide.of(settings).fold(fail(_), identity)
       for number <- 0 until 3 do
@@ -84,7 +82,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
         assertEquals(scores, 60)
         assertEqualsDouble(-sum * EnvironmentSettings.RewardM, paid, 1e-3)
 
-  test("equal seeds and actions give equal episodes, to the bit, whatever flies beside them"):
+  test("equal seeds and actions give equal episodes, to the bit, independent of other environments"):
     def flown(count: Int) =
       val learner = Learner(surround, count)
       learner.batch.reset(Array.tabulate(count)(_ + 3L))
@@ -118,7 +116,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
       assert(ends > 2, s"$mode: $ends episodes")
       learner.batch.close()
 
-  test("the others of the learner's role fly their own policies, or one that they are given"):
+  test("the others of the learner's role use their own policies, or a given one"):
     def paid(policy: Option[PurePursuit]) =
       val learner = Learner(surround, 1)
       policy.foreach(learner.batch.fly)
@@ -132,7 +130,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
       sum
     assertNotEquals(paid(None), paid(Some(PurePursuit(1))))
 
-  test("an evader earns what a pursuer pays, and who comes near enough captures"):
+  test("an evader's reward is a pursuer's cost, and a pursuer that comes near enough captures"):
     val settings = EnvironmentSettings(
       learners = "evader",
       scenario = "duel",
@@ -150,7 +148,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     intercept[IllegalStateException](learner.batch.step()): Unit
     learner.batch.close()
 
-  test("a policy or a quantity of the user's own that fails is told by its name"):
+  test("an exception of a user's policy or quantity is reported with its name"):
     given Scenarios                            = Scenarios(ScenarioKind(Own()))
     def told(policy: String, quantity: String) =
       val settings = EnvironmentSettings(
@@ -176,7 +174,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     )
     assertEquals(told("", "NaN"), "the quantity Off answered NaN, which nobody can be rewarded by")
 
-  test("what cannot be learned in is told with what was expected"):
+  test("a scenario unfit for learning is refused with what was expected"):
     def refused(settings: EnvironmentSettings) = ScenarioSide.of(settings).swap.getOrElse("accepted")
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
     assert(clue(refused(surround.copy(set = Map("x" -> "1")))).startsWith("set: no setting 'x'"))
@@ -190,7 +188,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     for (scenario, why) <- Seq("convoy" -> "which has cars", "forest" -> "which sees by cameras or lidars") do
       assert(clue(refused(surround.copy(scenario = scenario, set = Map.empty))).contains(why))
 
-/** An evader whose policy, and a pursuer whose quantity, answers what a setting says. */
+/** An evader's policy and a pursuer's quantity with values that settings choose. */
 final case class Own(policy: String = "", quantity: String = "") extends Scenario:
   def agents: Vector[Agent] = Vector(
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),

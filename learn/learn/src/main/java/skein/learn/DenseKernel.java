@@ -4,9 +4,9 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.VectorSpecies;
 
 /**
- * Products of matrices, which are nearly all of a dense network's work. Every element is summed by
- * itself, in the order of the inner index, each term by a fused multiplication and addition: so it has
- * the same bits whatever the width of the machine's vectors.
+ * Products of matrices, which are nearly all of a dense network's work. Every element is summed separately,
+ * in the order of the inner index, each term by a fused multiply-add: so its bits do not depend on the width
+ * of the machine's vectors.
  */
 final class DenseKernel {
   private DenseKernel() {}
@@ -108,7 +108,7 @@ final class DenseKernel {
     sum.intoArray(c, cAt);
   }
 
-  /** Four rows of one vector each: four sums under way hide how long one takes. */
+  /** Four rows of one vector each: four independent sums hide the latency of one. */
   private static void four(
       int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
     FloatVector c0 = FloatVector.fromArray(SPECIES, c, cAt),
@@ -129,7 +129,7 @@ final class DenseKernel {
     c3.intoArray(c, cAt + 3 * columns);
   }
 
-  /** Four rows of one column. */
+  /** Four rows of one column, in scalar arithmetic. */
   private static void column(
       int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
     float c0 = c[cAt], c1 = c[cAt + columns], c2 = c[cAt + 2 * columns], c3 = c[cAt + 3 * columns];

@@ -2,8 +2,8 @@ package skein.learn
 
 import java.io.{DataInput, DataOutput}
 
-/** Adam: steps against a gradient, each parameter's by its own scale. Source: Kingma and Ba, "Adam: a method
-  * for stochastic optimization", 2015, algorithm 1, with their defaults.
+/** Adam: gradient steps, each parameter's with its own scale. Source: Kingma and Ba, "Adam: a method for
+  * stochastic optimization", 2015, algorithm 1, with their defaults.
   */
 final class Adam(size: Int, val rate: Double) extends Saved:
   private val mean    = Array.ofDim[Float](size)

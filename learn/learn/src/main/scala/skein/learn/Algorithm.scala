@@ -1,6 +1,6 @@
 package skein.learn
 
-/** A way to learn. */
+/** The supported learning algorithms. */
 enum Algorithm:
   case Sac, Ddpg, Ppo
 

@@ -3,16 +3,16 @@ package skein.learn
 import java.util.concurrent.ForkJoinPool
 import java.util.stream.IntStream
 
-/** Threads among which a batch's rows are shared out, in parts of a fixed number of rows: so sums over parts
-  * have the same bits on any number of threads. A batch takes less time than threads take to start, so they
-  * wait for the next one here.
+/** Threads that share a batch's rows, in parts of a fixed number of rows: so sums over parts have equal bits
+  * on any number of threads. A batch takes less time than starting threads, so they wait for the next one
+  * here.
   */
 final class BatchThreads(threads: Int) extends AutoCloseable:
   private val pool = Option.when(threads > 1)(ForkJoinPool(threads))
 
   /** Blocks until all parts are done.
     *
-    * @param work of a part's number, its first row and the one behind its last
+    * @param work takes a part's number, its first row and the row after its last
     */
   def share(rows: Int)(work: (Int, Int, Int) => Unit): Unit =
     val parts          = BatchThreads.parts(rows)
@@ -27,7 +27,7 @@ final class BatchThreads(threads: Int) extends AutoCloseable:
   def close(): Unit = pool.foreach(_.shutdownNow())
 
 object BatchThreads:
-  /** Of a part. */
+  /** Rows of a part, a fixed number. */
   private val Rows = 64
 
   def parts(rows: Int): Int = (rows + Rows - 1) / Rows
@@ -36,12 +36,11 @@ object BatchThreads:
 private[learn] final class Gradient(size: Int, rows: Int):
   private val parts = Array.fill(BatchThreads.parts(rows))(Array.ofDim[Float](size))
 
-  /** To which one part adds. */
   def of(part: Int): Array[Float] = parts(part)
 
   def clear(): Unit = parts.foreach(java.util.Arrays.fill(_, 0f))
 
-  /** Of all parts, in their order. */
+  /** The sum of all parts, added in order. */
   def sum(): Array[Float] =
     val total = parts(0)
     var part  = 1

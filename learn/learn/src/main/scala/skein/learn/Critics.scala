@@ -3,8 +3,8 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** What an action is worth where something is seen: one network or several, of which the most cautious
-  * counts, and slow copies of them that tell what is worth reaching.
+/** The value of an action in a state: one network or several, of which the least value counts, and slowly
+  * following copies of them that give the target values.
   */
 private[learn] final class Critics(
     count: Int,
@@ -45,7 +45,7 @@ private[learn] final class Critics(
       other += 1
     value
 
-  /** The slow copies' values of what was reached. */
+  /** Values of the reached states by the slow copies. */
   def valueReached(
       reached: Array[Float],
       chosen: Array[Float],
@@ -57,7 +57,7 @@ private[learn] final class Critics(
     for (pass, target) <- passes.zip(targets) do pass.forward(target, from, until)
     for row <- from until until do into(row) = least(row)
 
-  /** Adds to the gradient of half the mean squared distance from what the values should have been. */
+  /** Adds the gradient of half the mean squared error of the values against `wanted`. */
   def criticise(batch: Transitions, wanted: Array[Float], part: Int, from: Int, until: Int): Unit =
     feed(batch.seen, batch.actions, from, until)
     for ((pass, network), gradient) <- passes.zip(networks).zip(gradients) do
@@ -73,7 +73,7 @@ private[learn] final class Critics(
       optimiser.step(network.parameters, gradient.sum())
       network.changed()
 
-  /** How the least value changes with the actions. */
+  /** Gradient of the least value with respect to the actions. */
   def slopes(seen: Array[Float], chosen: Array[Float], into: Array[Float], from: Int, until: Int): Unit =
     feed(seen, chosen, from, until)
     for (pass, network) <- passes.zip(networks) do pass.forward(network, from, until)
@@ -104,5 +104,5 @@ private[learn] final class Critics(
   def load(in: DataInput): Unit   = (networks ++ targets ++ optimisers).foreach(_.load(in))
 
 private[learn] object Critics:
-  /** The share by which slow copies follow at an update. */
+  /** The fraction by which slow copies follow at an update. */
   val Rate = 0.005f

@@ -1,7 +1,7 @@
 package skein.learn
 
-/** Deep deterministic policy gradient: one critic, a policy that follows its slope, slow copies of both; it
-  * tries out by normal noise. Source: Lillicrap, Hunt, Pritzel, Heess, Erez, Tassa, Silver, Wierstra,
+/** Deep deterministic policy gradient: one critic, a policy that ascends its gradient, slow copies of both;
+  * it explores with normal noise. Source: Lillicrap, Hunt, Pritzel, Heess, Erez, Tassa, Silver, Wierstra,
   * "Continuous control with deep reinforcement learning", arXiv:1509.02971; the noise has no memory, as in
   * Fujimoto, van Hoof, Meger, arXiv:1802.09477.
   */
@@ -66,8 +66,8 @@ final class Ddpg(
       at += 1
 
 private object Ddpg:
-  /** Of the noise. */
+  /** Standard deviation of the exploration noise. */
   val Deviation = 0.2
 
-  /** It begins in the middle, where the slope of tanh is steep. */
+  /** Scale of the last layer's initial weights: actions begin near the middle, where tanh is steep. */
   val LastScale = 0.01

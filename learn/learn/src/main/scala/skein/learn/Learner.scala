@@ -1,7 +1,7 @@
 package skein.learn
 
-/** Learns a policy from what comes of its actions. Learning has rounds: a learner draws from random numbers
-  * of the round, and between two rounds it is what [[Saved.save]] keeps.
+/** Learns a policy from the results of its actions. Learning has rounds: a learner draws random numbers of
+  * the round, and between two rounds its state is exactly what [[Saved.save]] writes.
   */
 trait Learner extends Saved:
   /** The policy: its first outputs, squashed by tanh, are the actions. */
@@ -9,17 +9,16 @@ trait Learner extends Saved:
 
   def begin(round: Long): Unit
 
-  /** Actions that try something out, from −1 to 1.
+  /** Chooses actions with exploration, from −1 to 1.
     *
-    * @param seen rows of what each environment shows
+    * @param seen a row of observations for each environment
     */
   def explore(seen: Array[Float], actions: Array[Float]): Unit
 
-  /** What came of the actions chosen last. */
+  /** Takes the results of the actions chosen last. */
   def learn(seen: Array[Float], actions: Array[Float], task: Task): Unit
 
-  /** Learns what is left of the round. */
+  /** Learns from the rest of the round's steps. */
   def end(): Unit = ()
 
-  /** Whether all numbers are. */
   def isFinite: Boolean

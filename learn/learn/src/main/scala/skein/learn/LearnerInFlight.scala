@@ -4,13 +4,13 @@ import skein.loop.learning.{FlownLearner, Transition}
 import skein.policy.{LearnedPolicy, Role}
 import skein.signal.SplitMix64
 
-/** Learns on from what one flight meets, by a learner that remembers. Rewards are those of [[SideTask]]: a
-  * small distance is the pursuer's, a great one the evader's. Equal transitions in equal lessons give equal
-  * weights.
+/** Continues learning from the transitions of one flight, with a replay learner. Rewards are those of
+  * [[SideTask]]: a small distance is the pursuer's, a great one the evader's. Equal transitions in equal
+  * lessons give equal weights.
   *
-  * @param bounds the most that its policies turn, as a [[LearnedPolicy]]'s last parameters
+  * @param bounds greatest turns of its policies, as a [[LearnedPolicy]]'s last parameters
   * @param updates for each transition
-  * @param transitionsPerVersion after which its policy is flown
+  * @param transitionsPerVersion after which the newest policy is used
   */
 final class LearnerInFlight private (
     learner: OffPolicy,
@@ -50,7 +50,7 @@ final class LearnerInFlight private (
 
 object LearnerInFlight:
 
-  /** What came of one decision, as a task's step. A flight is one episode, which its end does not terminate.
+  /** The result of one decision, as a task's step. A flight is one episode, which its end does not terminate.
     */
   private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
     def count: Int                               = 1
@@ -64,10 +64,10 @@ object LearnerInFlight:
     def step(acts: Array[Float]): Unit           = none
     private def none                             = throw UnsupportedOperationException("one step of a flight")
 
-  /** A learner as it was kept.
+  /** Restores a stored learner.
     *
-    * @param load fills it with what was kept, if anything was
-    * @return the parameters of its policy, and the learner; or why it cannot learn in flight
+    * @param load fills it with the stored state, if there is one
+    * @return the parameters of its policy, and the learner; Left states why it cannot learn in flight
     */
   def of(
       algorithm: Algorithm,

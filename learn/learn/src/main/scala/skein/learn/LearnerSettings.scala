@@ -1,14 +1,16 @@
 package skein.learn
 
-/** @param hidden widths of the hidden layers of all networks
-  * @param discount of a reward, for each step that it comes later
+/** Settings of a learner.
+  *
+  * @param hidden widths of the hidden layers of all networks
+  * @param discount of a reward, for each step of delay
   * @param rate of Adam
   * @param batch transitions of an update
-  * @param replay transitions that are remembered at most, by SAC and DDPG
+  * @param replay most transitions that SAC and DDPG remember
   * @param updatesPerStep of SAC and DDPG, for each step of one environment
-  * @param randomSteps of all environments together, before SAC and DDPG decide themselves
+  * @param randomSteps of all environments together, before SAC and DDPG use their policy
   * @param horizon steps of each environment between two of PPO's lessons
-  * @param epochs in which PPO goes through what it collected
+  * @param epochs number of times that PPO uses the collected steps
   */
 final case class LearnerSettings(
     hidden: Vector[Int] = Vector(64, 64),

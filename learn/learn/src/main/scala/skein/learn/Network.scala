@@ -3,7 +3,7 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** A dense network: hidden layers of rectifiers (what is negative becomes 0), and linear outputs. Mutable.
+/** A dense network: hidden layers with rectifiers (negative values become 0), and linear outputs. Mutable.
   *
   * @param widths inputs, hidden layers, outputs
   */
@@ -20,22 +20,20 @@ final class Network(val widths: Vector[Int]) extends Saved:
   private val starts =
     Vector.tabulate(layers)(layer => (widths(layer) + 1) * widths(layer + 1)).scanLeft(0)(_ + _)
 
-  /** Layer by layer: the weights, those of an input together, then the biases. [[changed]] is to be told of a
-    * change.
-    */
+  /** Layer by layer: the weights, grouped by input, then the biases. Call [[changed]] after changing them. */
   val parameters: Array[Float] = Array.ofDim(starts.last)
 
-  /** The weights of a layer but the first, those of an output together. */
+  /** The weights of each layer after the first, grouped by output. */
   private val turned = Vector.tabulate(layers)(layer => Array.ofDim[Float](widths(layer) * widths(layer + 1)))
 
-  /** Where the weight of the first input to the first neuron of a layer stands. */
+  /** Index of the weight of the first input to the first neuron of a layer. */
   def weightsAt(layer: Int): Int = starts(layer)
 
   def biasesAt(layer: Int): Int = starts(layer) + widths(layer) * widths(layer + 1)
 
   private[learn] def weightsByOutput(layer: Int): Array[Float] = turned(layer)
 
-  /** Parameters were changed. */
+  /** Must be called after the parameters were changed. */
   def changed(): Unit =
     for layer <- 0 until layers do
       val (into, ins, outs) = (turned(layer), widths(layer), widths(layer + 1))
@@ -48,9 +46,9 @@ final class Network(val widths: Vector[Int]) extends Saved:
           j += 1
         i += 1
 
-  /** Draws all parameters of a layer evenly from ± 1 / √inputs.
+  /** Draws all parameters of a layer uniformly from ± 1 / √inputs.
     *
-    * @param lastScale times so much for the last layer
+    * @param lastScale additional factor for the last layer
     */
   def draw(random: SplitMix64, lastScale: Double = 1): Network =
     for layer <- 0 until layers do
@@ -60,7 +58,7 @@ final class Network(val widths: Vector[Int]) extends Saved:
     changed()
     this
 
-  /** An input that nothing depends upon yet. */
+  /** Sets an input's weights to zero, so that nothing depends on it yet. */
   def ignore(input: Int): Unit =
     java.util.Arrays.fill(parameters, input * widths(1), (input + 1) * widths(1), 0f)
     changed()
@@ -69,7 +67,7 @@ final class Network(val widths: Vector[Int]) extends Saved:
     System.arraycopy(other.parameters, 0, parameters, 0, parameters.length)
     changed()
 
-  /** Goes the share `rate` of the way to another. */
+  /** Moves the parameters towards another network's by the fraction `rate`. */
   def follow(other: Network, rate: Float): Unit =
     val (own, its) = (parameters, other.parameters)
     var i          = 0
@@ -89,8 +87,8 @@ final class Network(val widths: Vector[Int]) extends Saved:
 object Network:
   val MostWidth = 1024
 
-/** What a network computes of some rows of inputs, and how errors go back through it. Different rows may be
-  * computed by different threads.
+/** Forward and backward computation of a network for some rows of inputs. Different rows may be computed by
+  * different threads.
   *
   * @param widths of the networks that use it
   */
@@ -99,23 +97,22 @@ final class Pass(widths: Vector[Int], val rows: Int):
   private val errors      = widths.map(width => Array.ofDim[Float](rows * width)).toArray
   private val layers      = widths.size - 1
 
-  /** Row by row. */
+  /** Inputs and outputs, row by row, to be set and read. */
   def input: Array[Float]  = activations(0)
   def output: Array[Float] = activations(layers)
 
-  /** Derivatives of what is made small by the outputs; to be set before going back. */
+  /** Derivatives of the loss with respect to the outputs; to be set before going backward. */
   def outputError: Array[Float] = errors(layers)
 
-  /** The same by the inputs, after [[backwardToInput]]. */
+  /** Derivatives with respect to the inputs, after [[backwardToInput]]. */
   def inputError: Array[Float] = errors(0)
 
-  /** Of rows of what is seen. */
+  /** Computes the outputs for rows of observations. */
   def forward(network: Network, seen: Array[Float], from: Int, until: Int): Unit =
     System.arraycopy(seen, from * widths(0), input, from * widths(0), (until - from) * widths(0))
     forward(network, from, until)
 
-  /** @param until rows; not included
-    */
+  /** @param until row after the last */
   def forward(network: Network, from: Int, until: Int): Unit =
     var layer = 0
     while layer < layers do
@@ -147,9 +144,9 @@ final class Pass(widths: Vector[Int], val rows: Int):
           i += 1
       layer += 1
 
-  /** After [[forward]].
+  /** Computes derivatives after [[forward]].
     *
-    * @param gradient as the network's parameters: the rows' derivatives are added
+    * @param gradient in the parameters' order: the rows' derivatives are added
     */
   def backward(network: Network, from: Int, until: Int, gradient: Array[Float]): Unit =
     back(network, from, until): layer =>
@@ -179,7 +176,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
           j += 1
         row += 1
 
-  /** The same for the inputs alone. */
+  /** Computes the derivatives of the inputs only. */
   def backwardToInput(network: Network, from: Int, until: Int): Unit =
     back(network, from, until)(_ => ())
     toInputs(network, 0, from, until)

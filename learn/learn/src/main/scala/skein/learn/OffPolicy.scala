@@ -3,8 +3,8 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** What learners have in common that learn from transitions of long ago: they remember them, and after each
-  * step make updates on batches of them.
+/** Common part of replay learners: they remember transitions, and after each step make updates with batches
+  * of them.
   */
 private[learn] abstract class OffPolicy(
     observations: Int,
@@ -21,13 +21,13 @@ private[learn] abstract class OffPolicy(
   private var updates                     = 0L
   private var deciding                    = Pass(Vector(1, 1), 1)
 
-  /** All that is learned, in a fixed order. */
+  /** All learned parts, in a fixed order for saving. */
   protected def learned: Vector[Saved]
 
-  /** One action by what the actor's row of outputs says, with something tried out. */
+  /** One action drawn from the actor's row of outputs, with exploration. */
   protected def tried(outputs: Array[Float], at: Int, action: Int): Float
 
-  /** On [[batch]], as it was drawn. */
+  /** Makes one update from the current [[batch]]. */
   private[learn] def update(): Unit
 
   def begin(round: Long): Unit = random = SplitMix64(SplitMix64.seedOf(seed, round))

@@ -5,8 +5,9 @@ import skein.signal.SplitMix64
 
 /** Proximal policy optimisation: collects steps by the newest policy, and learns from them as long as the
   * policy stays near the one that collected them. Source: Schulman, Wolski, Dhariwal, Radford, Klimov,
-  * arXiv:1707.06347, equation 7; advantages are normalised over a batch. The policy draws normally around
-  * tanh of the actor's outputs, as widely everywhere; environments take what is beyond ± 1 for the bound.
+  * arXiv:1707.06347, equation 7; advantages are normalised over a batch. The policy draws from a normal
+  * distribution around tanh of the actor's outputs, with one width for all states; environments clamp actions
+  * to ± 1.
   */
 final class Ppo(
     observations: Int,
@@ -24,7 +25,7 @@ final class Ppo(
   val actor: Network        = Network(actorWidths).draw(initial, LastScale)
   private[learn] val critic = Network(valueWidths).draw(initial)
 
-  /** Logarithms of how widely each number of an action is drawn. */
+  /** Logarithms of the standard deviations of an action's numbers. */
   private[learn] val widths         = Array.fill(actions)(StrictMath.log(FirstDeviation).toFloat)
   private val actorOptimiser        = Adam(actor.parameters.length, settings.rate)
   private val criticOptimiser       = Adam(critic.parameters.length, settings.rate)
@@ -83,7 +84,7 @@ final class Ppo(
       order(last) = order(other)
       order(other) = kept
 
-  /** Of one batch: rows of the rollout, from a place in an order of them. */
+  /** Updates from one batch: rows of the rollout, in this order from `first`. */
   private[learn] def update(order: Array[Int], first: Int): Unit =
     val count     = settings.batch
     val chosen    = order.slice(first, first + count)
@@ -113,8 +114,8 @@ final class Ppo(
     criticOptimiser.step(critic.parameters, criticGradient.of(0))
     critic.changed()
 
-  /** The errors of a row by the smaller of two products: ratio of likelihoods times advantage, with the ratio
-    * as it is, and held near 1.
+  /** Adds a row's gradient of the lesser of two products: advantage times the likelihood ratio, unclipped,
+    * and clipped near 1.
     */
   private def improve(row: Int, at: Int, advantage: Double, count: Int, byWidths: Array[Float]): Unit =
     var log = 0.0
@@ -131,12 +132,12 @@ final class Ppo(
         (by * off / StrictMath.exp(widths(action)) * (1 - squashed * squashed)).toFloat
       byWidths(action) += (by * (off * off - 1)).toFloat
 
-  /** How far what was done lies from the mean, in deviations. */
+  /** Distance of the action from the mean, in standard deviations. */
   private def offset(row: Int, at: Int, action: Int): Double =
     val mean = StrictMath.tanh(actorPass.output(row * actions + action))
     (rollout.actions(at * actions + action) - mean) / StrictMath.exp(widths(action))
 
-  /** Makes gradients shorter that are longer than [[MostLength]] together. */
+  /** Shortens gradients to a joint length of at most [[MostLength]]. */
   private def clipped(gradients: Array[Float]*): Double =
     val length = math.sqrt(gradients.iterator.flatten.map(by => by.toDouble * by).sum)
     if length > MostLength then

@@ -11,7 +11,7 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
 
   def size: Int = held
 
-  /** A row of each array. */
+  /** Adds a transition from a row of each array. */
   def add(seen: Array[Float], chosen: Array[Float], task: Task): Unit =
     var row = 0
     while row < task.count do
@@ -24,7 +24,7 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
       held = (held + 1).min(capacity)
       row += 1
 
-  /** Any of those held, as often as they are drawn. */
+  /** Draws transitions uniformly, with replacement. */
   def draw(into: Transitions, random: SplitMix64): Unit =
     var row = 0
     while row < into.count do
@@ -53,9 +53,9 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
     for part <- Seq(all.seen, all.actions, all.reached, all.rewards, all.goesOn) do
       Saved.readSome(in, part): Unit
 
-/** Rows of what was seen, done, earned and reached.
+/** Rows of observations, actions, rewards and reached observations.
   *
-  * @param goesOn 1, or 0 where nothing comes after
+  * @param goesOn 1, or 0 where the episode terminated
   */
 final class Transitions(observations: Int, acted: Int, val count: Int):
   val seen: Array[Float]    = Array.ofDim(count * observations)

@@ -1,6 +1,6 @@
 package skein.learn
 
-/** The newest steps of all environments in their order, and how much better than expected each turned out.
+/** The newest steps of all environments in order, and the advantage of each.
   *
   * @param steps of each environment that it holds
   */
@@ -11,11 +11,11 @@ private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: I
   val values: Array[Float]     = Array.ofDim(steps * count)
   val advantages: Array[Float] = Array.ofDim(steps * count)
 
-  /** What the values should have been. */
+  /** Target values of the states, by step and environment. */
   val returns: Array[Float] = Array.ofDim(steps * count)
   private val rewards       = Array.ofDim[Float](steps * count)
 
-  /** The value of what each step reached; 0 where nothing comes after. */
+  /** The value of each step's reached state; 0 where the episode terminated. */
   private val ahead   = Array.ofDim[Float](steps * count)
   private val chained = Array.ofDim[Boolean](steps * count)
   private var filled  = 0
@@ -24,8 +24,7 @@ private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: I
   def rows: Int       = filled * count
   def clear(): Unit   = filled = 0
 
-  /** @param reachedValues of what the step reached
-    */
+  /** @param reachedValues of the states that the step reached */
   def add(
       seenNow: Array[Float],
       chosen: Array[Float],

@@ -2,10 +2,10 @@ package skein.learn
 
 import java.io.{DataInput, DataOutput}
 
-/** Soft actor-critic: two critics, a policy that draws its actions and is paid for drawing widely, by a
-  * temperature that adapts. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel,
-  * Levine, "Soft actor-critic algorithms and applications", arXiv:1812.05905, with its wanted entropy of
-  * minus one a number of an action.
+/** Soft actor-critic: two critics, and a stochastic policy that is rewarded for its entropy, with an adaptive
+  * temperature. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel, Levine,
+  * "Soft actor-critic algorithms and applications", arXiv:1812.05905, with its target entropy of minus one
+  * for each number of an action.
   */
 final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: BatchThreads)
     extends OffPolicy(observations, actions, settings, seed):
@@ -47,7 +47,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
     temperature.step(logs, actions)
     critics.follow()
 
-  /** Draws actions where rows of what is seen lead, and how likely each was. */
+  /** Draws actions for rows of observations, with their log-likelihoods. */
   private def draw(seen: Array[Float], from: Int, until: Int): Unit =
     pass.forward(actor, seen, from, until)
     var row = from
@@ -65,7 +65,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
       logs(row) = log.toFloat
       row += 1
 
-  /** What the critics should have said of a part of the batch. */
+  /** Computes the critics' target values for a part of the batch. */
   private[learn] def want(from: Int, until: Int): Unit =
     draw(batch.reached, from, until)
     critics.valueReached(batch.reached, chosen, wanted, from, until)
@@ -76,7 +76,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
         settings.discount * batch.goesOn(row) * (wanted(row) - alpha * logs(row))).toFloat
       row += 1
 
-  /** The gradient of the temperature times the logarithm of the likelihood, minus the value. */
+  /** The gradient of temperature times log-likelihood, minus value. */
   private[learn] def improve(part: Int, from: Int, until: Int): Unit =
     draw(batch.seen, from, until)
     critics.slopes(batch.seen, chosen, slopes, from, until)
@@ -88,7 +88,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
         val at    = row * actions + action
         val mean  = row * 2 * actions + action
         val share = chosen(at).toDouble
-        // By the number before tanh: its logarithm of squashing has the slope −2 tanh.
+        // With respect to the number before tanh: the log of its derivative has the slope −2 tanh.
         val byRaw   = alpha * 2 * share - slopes(at) * (1 - share * share)
         val output  = pass.output(mean + actions)
         val byWidth = byRaw * StrictMath.exp(logDeviation(output)) * noise(at) - alpha
@@ -103,7 +103,7 @@ private[learn] object Sac:
   private val LeastLog   = -5.0
   private val MostLog    = 2.0
 
-  /** Between e⁻⁵ and e², whatever the network says. */
+  /** The log standard deviation, bounded to e⁻⁵ to e² for any output. */
   def logDeviation(output: Double): Double =
     LeastLog + 0.5 * (MostLog - LeastLog) * (StrictMath.tanh(output) + 1)
 
@@ -111,13 +111,13 @@ private[learn] object Sac:
     val squashed = StrictMath.tanh(output)
     0.5 * (MostLog - LeastLog) * (1 - squashed * squashed)
 
-  /** log(1 − tanh²), also where it is tiny. */
+  /** log(1 − tanh²), accurate where it is tiny. */
   def logSquash(raw: Double): Double =
     2 * (Log2 - raw - (if raw < -20 then -2 * raw else StrictMath.log1p(StrictMath.exp(-2 * raw))))
 
   private val Log2 = StrictMath.log(2)
 
-/** How much drawing widely is worth: it rises while the policy draws less widely than wanted. */
+/** The weight of entropy: it rises while the policy's entropy is below its target. */
 private[learn] final class Temperature(rate: Double) extends Saved:
   private val logarithm = Array(StrictMath.log(0.1).toFloat)
   private val optimiser = Adam(1, rate)
@@ -125,8 +125,7 @@ private[learn] final class Temperature(rate: Double) extends Saved:
   def log: Float    = logarithm(0)
   def value: Double = StrictMath.exp(log)
 
-  /** @param logs of the likelihoods of what was drawn
-    */
+  /** @param logs log-likelihoods of the drawn actions */
   def step(logs: Array[Float], actions: Int): Unit =
     var sum = 0.0
     for log <- logs do sum += log - actions

@@ -3,12 +3,11 @@ package skein.learn
 import java.io.{DataInput, DataOutput, IOException}
 import java.nio.ByteBuffer
 
-/** What a checkpoint keeps, so that learning goes on to the same bits. */
+/** The part of a checkpoint from which learning continues with identical bits. */
 trait Saved:
   def save(out: DataOutput): Unit
 
-  /** @throws IOException if what was saved is of another shape
-    */
+  /** @throws IOException if the saved data have another shape */
   def load(in: DataInput): Unit
 
 private[learn] object Saved:
@@ -20,7 +19,7 @@ private[learn] object Saved:
 
   def write(out: DataOutput, numbers: Array[Float]): Unit = write(out, numbers, numbers.length)
 
-  /** @return how many there were */
+  /** @return the number of values read */
   def readSome(in: DataInput, into: Array[Float]): Int =
     val count = in.readInt()
     if count < 0 || count > into.length then

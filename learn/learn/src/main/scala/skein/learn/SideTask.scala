@@ -7,12 +7,12 @@ import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
-/** A side of the duel or of another scenario, under the loop's timing. What is seen is scaled as
-  * [[LearnedPolicy]] scales it, and rewards so that what a policy earns in all, discounted, is of about 1. Of
-  * several vehicles of the side, one of each environment learns; the others fly what was learned before the
+/** A side of the duel or of another scenario as a learning task, under the loop's timing. Observations are
+  * scaled as [[LearnedPolicy]] scales them, and rewards so that a policy's discounted return is about 1. Of
+  * several vehicles of the side, one of each environment learns; the others use the policy from before the
   * round.
   *
-  * @param seed of where episodes begin and what befalls their messages
+  * @param seed of the initial positions and of the messages' delays
   */
 final class SideTask private (
     batch: EnvironmentBatch,
@@ -63,11 +63,11 @@ final class SideTask private (
 object SideTask:
   private val RewardScale = 0.1f
 
-  /** Of a distance, as environments reward it once a period. */
+  /** The reward of a metre of distance, which environments give once a period. */
   private[learn] val RewardPerM: Double = RewardScale / EnvironmentSettings.RewardM
 
   /** @param opponent of the other role; without one, as the settings name it
-    * @return or what was expected and came
+    * @return Left states what was expected and what was given
     */
   def of(
       settings: EnvironmentSettings,
@@ -87,8 +87,7 @@ object SideTask:
   private def bounds(settings: EnvironmentSettings) =
     settings.mostTurn(if settings.learners == "pursuer" then Role.Pursuer else Role.Evader)
 
-  /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron
-    * by neuron.
+  /** The parameters of a [[LearnedPolicy]] from an actor, whose first output is the turn: neuron by neuron.
     */
   def parameters(actor: Network): Vector[Double] =
     require(
@@ -105,5 +104,5 @@ object SideTask:
       weight <- weights :+ actor.parameters(actor.biasesAt(layer) + neuron)
     yield weight.toDouble
 
-  /** Of what is seen, how long ago things were: a learner that is shown no ages does not depend upon them. */
+  /** The observations that are ages: a learner that ignores ages does not use them. */
   val times: Range = 6 until 9

@@ -1,38 +1,35 @@
 package skein.learn
 
-/** What is learned: several environments side by side, stepped together. Numbers stand row by row, a row an
+/** A learning task: several environments that are stepped together. Arrays are row by row, a row for each
   * environment.
   */
 trait Task:
-  /** Environments. */
   def count: Int
 
-  /** Numbers that an environment shows, each of about −1 to 1. */
+  /** Number of observations of an environment, each of about −1 to 1. */
   def observations: Int
 
-  /** Numbers that it takes, from −1 to 1. */
+  /** Number of actions of an environment, each from −1 to 1. */
   def actions: Int
 
-  /** All episodes begin anew; equal rounds begin equally.
+  /** Starts all episodes; equal rounds start equally.
     *
-    * @param actor the policy so far, for those who share it
+    * @param actor the policy so far, for tasks in which others use it
     */
   def begin(round: Long, actor: Network): Unit
 
-  /** What is seen now. */
   def seen: Array[Float]
 
-  /** One step of every environment; where an episode ends, the next one begins. */
+  /** Advances every environment by one step; where an episode ends, the next one begins. */
   def step(actions: Array[Float]): Unit
 
-  /** Of the last step. */
   def rewards: Array[Float]
 
-  /** What was seen after the last step, also where an episode ended by it. */
+  /** The observations after the last step, also where it ended an episode. */
   def reached: Array[Float]
 
-  /** Whether the last step ended an episode for good: nothing would have come after. */
+  /** Whether the last step terminated an episode: no return could follow. */
   def terminated: Array[Boolean]
 
-  /** Whether the last step ended an episode at all. */
+  /** Whether the last step ended an episode, by termination or truncation. */
   def ended: Array[Boolean]

@@ -1,7 +1,7 @@
 package skein.learn
 
-/** Learning, round by round: in each, every environment begins anew and is stepped a fixed number of times.
-  * Between two rounds it can be saved and gone on with, to the same bits.
+/** Learning, round by round: in each, every environment is reset and makes a fixed number of steps. Between
+  * two rounds it can be saved and continued with identical bits.
   *
   * @param stepsPerRound of each environment
   */
@@ -11,8 +11,8 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
 
   def stepsOfRound: Long = stepsPerRound.toLong * task.count
 
-  /** @param isStopped asked at every step; what is left of the round is not learned then
-    * @return the mean reward of a step; or what is wrong; or nothing if it was stopped
+  /** @param isStopped checked at every step; the rest of the round is not learned then
+    * @return the mean reward of a step; Left states what is wrong; None if it was stopped
     */
   def round(number: Long, isStopped: () => Boolean = () => false): Either[String, Option[Double]] =
     learner.begin(number)
@@ -41,7 +41,7 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
   private def diverged(round: Long) =
     s"round ${round + 1}: the weights are not finite any more; a smaller learning rate may help"
 
-  /** What a task that comes to no number did, which would spoil all weights. */
+  /** Reports a task's reward that is not finite, which would corrupt all weights. */
   private def notRewarded(round: Long) = Option.unless(areFinite(task.rewards)):
     val environment = task.rewards.indexWhere(!_.isFinite)
     s"round ${round + 1}: expected a finite reward, came ${task.rewards(environment)} in environment $environment"

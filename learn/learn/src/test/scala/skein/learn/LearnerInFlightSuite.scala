@@ -12,7 +12,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
   private def begun(algorithm: Algorithm, updates: Double = 1, role: Role = Role.Pursuer) =
     LearnerInFlight.of(algorithm, settings, role, bounds, updates, 10, seed)(_ => Right(()))
 
-  /** To turn right brings the opponent near. */
+  /** Transitions in which turning right brings the opponent nearer. */
   private def transitions(count: Int, nearer: Double = 20): Vector[Transition] =
     val random = SplitMix64(seed)
     Vector.fill(count):
@@ -22,7 +22,8 @@ class LearnerInFlightSuite extends munit.FunSuite:
 
   for algorithm <- Seq(Algorithm.Sac, Algorithm.Ddpg) do
     test(
-      s"${algorithm.label}: a version after so many transitions, equal lessons to equal bits (seed $seed)"
+      s"${algorithm.label}: a version follows a number of transitions; equal lessons give equal bits " +
+        s"(seed $seed)"
     ):
       def versions =
         val (first, learner) = begun(algorithm).fold(fail(_), identity)
@@ -33,7 +34,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
       assert(made.forall(_.takeRight(2) == bounds))
       assertEquals(versions, made)
 
-    test(s"${algorithm.label}: it learns to do what earns more, either side its own (seed $seed)"):
+    test(s"${algorithm.label}: it learns actions with higher rewards, for either side (seed $seed)"):
       for (role, sign) <- Seq(Role.Pursuer -> 1, Role.Evader -> -1) do
         val (first, learner) = begun(algorithm, updates = 4, role).fold(fail(_), identity)
         val last = transitions(400, nearer = 1000).grouped(20).flatMap(learner.learn(_)).toVector.last
@@ -55,5 +56,5 @@ class LearnerInFlightSuite extends munit.FunSuite:
             .sum / 50
         assert(sign * mean(last) > sign * mean(first) + 0.1, s"$role: from ${mean(first)} to ${mean(last)}")
 
-  test("who learns from its newest steps alone does not learn in flight"):
+  test("an algorithm that learns only from its newest steps is refused in flight"):
     assert(begun(Algorithm.Ppo).left.exists(_.contains("expected sac or ddpg")))

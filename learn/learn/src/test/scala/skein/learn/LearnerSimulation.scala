@@ -38,8 +38,8 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
     pass.forward(learner.actor, 0, 1)
     math.tanh(pass.output(0))
 
-  test("a task that comes to no number, and weights that do, end the round with what it was"):
-    /** Shows or rewards what is no number at its last step. */
+  test("rewards or weights of NaN end the round with the reason"):
+    /** A task with an observation or reward of NaN at its last step. */
     final class Broken(reward: Float, shown: Float) extends SmallTask(4, 2, 1):
       private var steps                    = 0
       protected def start(row: Int): Unit  = ()
@@ -91,7 +91,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       assertEquals(weights(threads = 3, seed = 8), one)
       assertNotEquals(weights(threads = 1, seed = 9), one)
 
-    test(s"${algorithm.label}: saved between rounds it goes on as if nothing had been"):
+    test(s"${algorithm.label}: saved between rounds it continues as if uninterrupted"):
       val workers       = BatchThreads(1)
       def fresh()       = algorithm.learner(1, 1, 16, small, 4, workers)
       val (task, whole) = (Integrator(16, 4), fresh())
@@ -113,7 +113,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       val other = algorithm.learner(1, 1, 16, small.copy(hidden = Vector(8)), 4, workers)
       intercept[IOException](other.load(DataInputStream(ByteArrayInputStream(bytes.toByteArray)))): Unit
 
-  test("a learner whose weights are no numbers any more after the round says so"):
+  test("a learner whose weights become NaN after the round reports that"):
     final class Spoiling extends SmallTask(16, 1, 1):
       private var spoil                                     = () => ()
       override def begin(round: Long, actor: Network): Unit =
@@ -124,7 +124,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
     val training = Training(Spoiling(), Algorithm.Ddpg.learner(1, 1, 16, small, 4, BatchThreads(1)), 1)
     assert(clue(training.round(0)).left.exists(_.contains("the weights are not finite any more")))
 
-  test("settings out of bounds are told"):
+  test("settings out of bounds are refused"):
     assert(small.copy(discount = 1).mistake.exists(_.contains("discount")))
     assert(small.copy(rate = Double.NaN).mistake.exists(_.contains("learning rate")))
     assert(small.copy(hidden = Vector(0)).mistake.exists(_.contains("network")))

@@ -4,7 +4,7 @@ import skein.signal.SplitMix64
 
 class NetworkSuite extends munit.FunSuite:
 
-  /** The same in doubles, by the definition. */
+  /** The network's output in doubles, by its definition. */
   private def byHand(network: Network, input: Seq[Double]): Vector[Double] =
     (0 until network.layers).foldLeft(input.toVector): (seen, layer) =>
       val outs = network.widths(layer + 1)

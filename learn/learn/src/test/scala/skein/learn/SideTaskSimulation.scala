@@ -15,7 +15,7 @@ class SideTaskSimulation extends munit.FunSuite:
 
   private def drawn(hidden: Int*) = Network(LearnedPolicy.Inputs +: hidden.toVector :+ 2).draw(SplitMix64(3))
 
-  test("a policy made of an actor decides as the actor"):
+  test("a policy made from an actor makes the actor's decisions"):
     val actor  = drawn(16, 8)
     val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 8)), SideTask.parameters(actor), 1, 0)
     val seen   = PlanarObservation(3, 9, -4, 2, 0.7, -2, 0.1, 0.15, 0.2)
@@ -52,7 +52,7 @@ class SideTaskSimulation extends munit.FunSuite:
       val mean  = math.abs(reward) * 100 / 200
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
-  test("a learned policy flies by lanes as by the scalar reference"):
+  test("a learned policy with SIMD equals the scalar reference"):
     val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
     val duel   = Duel.paperAt(20, 20)
     val worlds = new DuelWorlds:

@@ -17,7 +17,7 @@ private[learn] abstract class SmallTask(val count: Int, val observations: Int, s
   protected def start(row: Int): Unit
   protected def drawn(): Float = (2 * random.nextDouble() - 1).toFloat
 
-/** One step: the best action is half of what is seen; every episode ends for good at once. */
+/** One step: the best action is half of the observation; every episode terminates immediately. */
 private[learn] final class HalfOfIt(count: Int, seed: Long) extends SmallTask(count, 1, seed):
   protected def start(row: Int): Unit = seen(row) = drawn()
 
@@ -30,8 +30,7 @@ private[learn] final class HalfOfIt(count: Int, seed: Long) extends SmallTask(co
       reached(row) = seen(row)
       start(row)
 
-/** An integrator to be brought to 0, in episodes of 20 steps that end for no reason of their own: x += 0.2 a.
-  */
+/** An integrator to be controlled to 0, in episodes of 20 steps that are truncated: x += 0.2 a. */
 private[learn] final class Integrator(count: Int, seed: Long) extends SmallTask(count, 1, seed):
   private val steps = Array.ofDim[Int](count)
 

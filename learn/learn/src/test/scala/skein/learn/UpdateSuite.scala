@@ -2,7 +2,7 @@ package skein.learn
 
 import skein.signal.SplitMix64
 
-/** What each learner's update goes by, against its definition computed otherwise. */
+/** Each learner's update, compared with an independent computation of its definition. */
 class UpdateSuite extends munit.FunSuite:
   private val settings =
     LearnerSettings(hidden = Vector(6), discount = 0.9, rate = 1e-2, batch = 4, replay = 16, randomSteps = 0)
@@ -40,7 +40,7 @@ class UpdateSuite extends munit.FunSuite:
       network.changed()
       assertEqualsDouble(gradient(at).toDouble, (above - below) / (2 * step), 4e-3, s"parameter $at")
 
-  test("SAC: critics are held to reward and discounted soft value of what was reached"):
+  test("SAC: critics' targets are the reward and the discounted soft value of the reached state"):
     val sac = Sac(2, 1, settings, 3, BatchThreads(1))
     drawn(sac.batch)
     Noise.fill(sac.noise, SplitMix64(5))
@@ -95,7 +95,7 @@ class UpdateSuite extends munit.FunSuite:
     assertEqualsDouble(Sac.logSquash(-40), 2 * math.log(2) - 80, 1e-9)
     assertEqualsDouble(Sac.logSquash(40), 2 * math.log(2) - 80, 1e-9)
 
-  test("critics: the gradient is that of half the mean squared distance from what was wanted"):
+  test("critics: the gradient is that of half the mean squared error"):
     val critics = Critics(1, 2, 1, settings, SplitMix64(2))
     val batch   = Transitions(2, 1, 4)
     drawn(batch)
@@ -103,7 +103,8 @@ class UpdateSuite extends munit.FunSuite:
     critics.clear()
     critics.criticise(batch, wanted, 0, 0, 4)
     val network = critics.networks.head
-    // A step against the gradient alone tells it: Adam's first step is the rate times its sign.
+    // A step against the gradient is visible only by sign: Adam's first step is the rate times the gradient's
+    // sign.
     val before = network.parameters.clone
     val loss   = () =>
       (0 until 4).map(at =>
@@ -142,7 +143,7 @@ class UpdateSuite extends munit.FunSuite:
     assertNotEquals(ddpg.actor.parameters.toVector, actor.toVector)
     assert(worth() > after - 1e-3, s"${worth()} and $after before")
 
-  test("PPO: advantages by hand, over an end for good and one for no reason of its own"):
+  test("PPO: advantages equal hand-computed ones, over terminations and truncations"):
     final class Three extends SmallTask(1, 1, 1):
       protected def start(row: Int): Unit  = ()
       def step(chosen: Array[Float]): Unit = ()
@@ -173,7 +174,7 @@ class UpdateSuite extends munit.FunSuite:
       val mean      = math.tanh(run(ppo.actor, row(ppo.rollout.seen, at, 2))(0))
       val deviation = math.exp(ppo.widths(0))
       -0.5 * math.pow((ppo.rollout.actions(at) - mean) / deviation, 2) - ppo.widths(0)
-    // One of them is far from the policy that collected: its part is clipped.
+    // One of them is far from the collecting policy: its part is clipped.
     for at <- 0 until 4 do ppo.rollout.logs(at) = (logs(at) + Seq(0.05, -1.0, 0.1, 1.0)(at)).toFloat
     val mean      = ppo.rollout.advantages.map(_.toDouble).sum / 4
     val deviation = math.sqrt(ppo.rollout.advantages.map(a => math.pow(a - mean, 2)).sum / 4)

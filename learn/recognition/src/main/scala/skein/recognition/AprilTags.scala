@@ -12,7 +12,7 @@ import skein.fusion.{Measurement, PolarMeasurement}
 import skein.signal.Stamped
 import skein.units.*
 
-/** A camera without distortion, as AirSim's are.
+/** A camera without distortion, like AirSim's.
   *
   * @param fieldOfView horizontal, AirSim's `FOV_Degrees`
   */
@@ -22,14 +22,14 @@ final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
     s"a camera has pixels and sees less than 180°: $this"
   )
 
-  /** Pixels that an object as wide as it is far appears wide. */
+  /** The focal length in pixels: the apparent width of an object as wide as its distance. */
   def focalPx: Double = width / 2.0 / StrictMath.tan(fieldOfView.value / 2)
 
-/** A tag that was found.
+/** A detected tag.
   *
   * @param positionFrd of its middle in the camera's frame (front, right, down), m
-  * @param facingFrd which way it faces: of unit length, away from what it is on
-  * @param deviationPx standard deviation with which its edges were found
+  * @param facingFrd direction that it faces: of unit length, away from its carrier
+  * @param deviationPx standard deviation of its edges
   */
 final case class Tag(
     id: Long,
@@ -40,8 +40,8 @@ final case class Tag(
     deviationPx: Double
 ):
 
-  /** Azimuth and elevation deviate as the edges do. The range deviates by the same share as the tag's
-    * apparent width.
+  /** The tag as bearing and range. Azimuth and elevation have the edges' standard deviation; the range has
+    * the relative deviation of the tag's apparent width.
     */
   def polar: PolarMeasurement =
     val angle   = Radians(deviationPx / camera.focalPx)
@@ -52,7 +52,7 @@ final case class Tag(
       (azimuth = angle, elevation = angle, range = Metres(range * deviationPx / widthPx))
     )
 
-  /** The tag's position at the exposure, by the camera's pose that the image carries. */
+  /** The tag's position at the exposure, from the camera pose in the image. */
   def measured(image: Stamped[Image]): Measurement =
     polar.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
 
@@ -80,7 +80,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     )
     made
 
-  /** All tags in an image; or why it is not one of this camera's. */
+  /** All tags in an image; Left states why it does not match the camera. */
   def find(image: Image): Either[String, Vector[Tag]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
@@ -104,7 +104,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     val (at, turned) = (inCamera.T, inCamera.R)
     val facing       = Vector3(turned.get(2, 2), turned.get(0, 2), turned.get(1, 2))
     val position     = Vector3(at.z, at.x, at.y)
-    // What is seen faces the camera.
+    // A visible tag faces the camera.
     val seen = facing.x * position.x + facing.y * position.y + facing.z * position.z < 0
     Tag(
       detector.getId(index),
@@ -122,7 +122,7 @@ object AprilTags:
 
   val DeviationPx: Double = 0.25
 
-  /** Luma of BT.601 in 8 bits. */
+  /** Converts pixels to the 8-bit luma of BT.601. */
   private def grayOf(bgr: ByteBuffer, gray: Array[Byte]): Unit =
     var pixel = 0
     var at    = 0

@@ -7,13 +7,13 @@ import skein.scenario.*
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** The paper's duel, but the pursuer knows the evader from its camera alone.
+/** The paper's duel, but the pursuer observes the evader only through its camera.
   *
-  * @param blind false: the same policy is given the evader's true position
+  * @param blind false: its policy receives the evader's true position
   * @param recogniser `tags`: finds AprilTags on the evader's sides; `detector`: the evader has no tags, and
   *   the detector that comes with this library looks for it; or the file of another ONNX detector, as
   *   [[VehicleDetector.load]] reads it
-  * @param takes how long recognition takes: a latency profile, such as `uniform:15ms..120ms`, or `file:PATH`
+  * @param takes duration of recognition: a latency profile, such as `uniform:15ms..120ms`, or `file:PATH`
   *   with measured times
   * @param everyMs period of the images
   * @param widthPx width of an image
@@ -99,7 +99,7 @@ final case class BlindPursuit(
       .map(_.message)
 
 object BlindPursuit:
-  /** Of the tags that vehicles bear in the scene `pursuit`. */
+  /** Side of the tags on vehicles in the scene `pursuit`. */
   val TagSide: Metres = Metres(1)
 
   private val Tags     = "tags"

@@ -3,8 +3,8 @@ package skein.recognition
 import java.nio.ByteBuffer
 import skein.airsim.{Image, Pixels}
 
-/** How an image becomes the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel of
-  * each place, (value − mean) · scale of each channel.
+/** Converts an image to the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel for
+  * each element, (value − mean) · scale for each channel.
   *
   * @param redFirst whether red is the first channel; else blue is
   * @param mean of each channel in the model's order, from 0 to 255

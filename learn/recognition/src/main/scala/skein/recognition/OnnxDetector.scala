@@ -3,26 +3,26 @@ package skein.recognition
 import java.nio.ByteBuffer
 import skein.airsim.{Image, Pixels}
 
-/** Something found in an image: the least box around it, in the image's pixels.
+/** An object detected in an image: its bounding box, in the image's pixels.
   *
-  * @param kind the number of what it is, in the model's order
+  * @param kind the number of the object's class, in the model's order
   * @param score from 0 to 1
   */
 final case class Box(left: Double, top: Double, right: Double, bottom: Double, kind: Int, score: Double):
   def width: Double  = right - left
   def height: Double = bottom - top
 
-  /** What both cover of what either covers, from 0 to 1. */
+  /** Area of the intersection over that of the union, from 0 to 1. */
   def overlap(other: Box): Double =
     val across = (math.min(right, other.right) - math.max(left, other.left)).max(0)
     val down   = (math.min(bottom, other.bottom) - math.max(top, other.top)).max(0)
     val both   = across * down
     if both == 0 then 0 else both / (width * height + other.width * other.height - both)
 
-/** How a detector's output tells its boxes, in pixels of its input. */
+/** The layout of boxes in a detector's output, in pixels of its input. */
 enum BoxForm:
   /** 1 × (4 + kinds) × boxes: each column is a box's middle, width and height, then a score of each kind:
-    * YOLOv8 and those after it. One object may have several boxes.
+    * YOLOv8 and its successors. One object may have several boxes.
     */
   case Columns
 
@@ -31,12 +31,13 @@ enum BoxForm:
     */
   case Rows
 
-/** Any detector of objects in ONNX form, by onnxruntime. Any thread, several at once.
+/** Any object detector in ONNX form, by onnxruntime. Thread-safe.
   *
-  * @param form what the model takes
-  * @param boxes what it gives
-  * @param leastScore of what counts as found
-  * @param mostOverlap of two boxes of one kind; of such that overlap more, the one of the higher score counts
+  * @param form the model's input
+  * @param boxes the layout of its output
+  * @param leastScore of a detection
+  * @param mostOverlap of two boxes of one kind; of boxes that overlap more, the one of the higher score
+  *   counts
   */
 final class OnnxDetector(
     model: OnnxModel,
@@ -45,7 +46,7 @@ final class OnnxDetector(
     leastScore: Double = 0.5,
     mostOverlap: Double = 0.45
 ):
-  /** What is in an image, the highest score first; or why it cannot be searched. */
+  /** The objects in an image, the highest score first; Left states why it cannot be searched. */
   def find(image: Image): Either[String, Vector[Box]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
@@ -93,7 +94,7 @@ object OnnxDetector:
         case BoxForm.Rows    => "1 × boxes × 6"
       Left(s"expected an output of $expected, came ${shape.mkString(" × ")}")
 
-  /** Of each object one box, the highest score first (greedy suppression of what is not the maximum). */
+  /** One box for each object, the highest score first (greedy non-maximum suppression). */
   private[recognition] def distinct(found: Vector[Box], mostOverlap: Double): Vector[Box] =
     found
       .sortBy(-_.score)

@@ -7,18 +7,17 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.airsim.Image
 
-/** What a model gave, by the names of its outputs: numbers, row by row, and their shape. */
+/** A model's outputs by name: numbers, row by row, and their shape. */
 type Outputs = Map[String, OnnxModel.Output]
 
-/** Any model in ONNX form with one input of floats, such as a detector of objects. Any thread, several at
-  * once.
+/** Any ONNX model with one input of floats, such as an object detector. Thread-safe.
   *
   * @param input shape of its input; −1 where it takes any size
   */
 final class OnnxModel private (session: OrtSession, inputName: String, val input: Vector[Int])
     extends AutoCloseable:
 
-  /** Runs the model on a tensor of the given shape. The error says what the model does not take. */
+  /** Runs the model on a tensor of the given shape. Left states what the model does not accept. */
   def run(tensor: Array[Float], shape: Vector[Int]): Either[String, Outputs] =
     if shape.map(_.toLong).product != tensor.length then
       Left(s"expected ${shape.mkString(" × ")} numbers, came ${tensor.length}")
@@ -38,28 +37,27 @@ final class OnnxModel private (session: OrtSession, inputName: String, val input
                   entry.getKey -> OnnxModel.outputOf(entry.getValue.asInstanceOf[OnnxTensor])
               .toMap
 
-  /** Runs it on an image, brought into the form that the model was trained on. */
+  /** Runs it on an image, converted to the form that the model was trained on. */
   def run(image: Image, form: InputForm): Either[String, Outputs] =
     form.tensor(image).flatMap(run(_, Vector(1, 3, form.height, form.width)))
 
   def close(): Unit = session.close()
 
 object OnnxModel:
-  /** @param values row by row; integers are given as floats
-    */
+  /** @param values row by row; integers are converted to floats */
   final case class Output(shape: Vector[Int], values: Array[Float])
 
   private lazy val environment = OrtEnvironment.getEnvironment()
 
-  /** @param threads that work on one image; several images at once (`Recognise`) need one each
-    * @return or why the file is no such model
+  /** @param threads that compute one image; several images at a time (`Recognise`) need one each
+    * @return Left states why the file is no such model
     */
   def load(file: Path, threads: Int = 1): Either[String, OnnxModel] =
     if !java.nio.file.Files.isReadable(file) then
       Left(s"$file: expected an ONNX model, there is no such file")
     else of(environment.createSession(file.toString, _), threads).left.map(reason => s"$file: $reason")
 
-  /** The same, from a model's bytes. */
+  /** Reads a model from its bytes, in the manner of `load`. */
   def read(model: Array[Byte], threads: Int = 1): Either[String, OnnxModel] =
     of(environment.createSession(model, _), threads)
 

@@ -1,8 +1,10 @@
 package skein.recognition
 
-/** Whether onnxruntime is there: it is larger than all else, and so whoever runs models adds it. */
+/** Whether onnxruntime is available: it is larger than all other libraries, so users of models add it
+  * themselves.
+  */
 private[recognition] object OnnxRuntime:
-  /** How it is got, and used; docs/guides/onnx.md has the same. */
+  /** Commands that download and use it; equal to those in docs/guides/onnx.md. */
   val Fetch =
     "mvn dependency:copy -Dartifact=com.microsoft.onnxruntime:onnxruntime:1.26.0 -DoutputDirectory=."
   val Use = "JAVA_OPTS=-Xbootclasspath/a:onnxruntime-1.26.0.jar"
@@ -11,7 +13,7 @@ private[recognition] object OnnxRuntime:
     try use
     catch case error: LinkageError => Left(why(error))
 
-  /** Of classes that are not there, and of those that are and do not start on this machine. */
+  /** Explains missing classes, and classes that cannot be initialised on this machine. */
   private[recognition] def why(error: LinkageError): String = error match
     case _: NoClassDefFoundError if error.getMessage.startsWith("ai/onnxruntime/") =>
       s"onnxruntime, which runs models, is not on the class path: get it by '$Fetch', and begin the " +

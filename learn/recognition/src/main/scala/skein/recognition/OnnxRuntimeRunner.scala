@@ -2,8 +2,8 @@ package skein.recognition
 
 import skein.policy.ModelRunner
 
-/** Runs policies that are ONNX models by onnxruntime, where that is on the class path; on one thread, so that
-  * equal questions have equal answers.
+/** Runs ONNX policies with onnxruntime, if it is on the class path; on one thread, so that equal inputs have
+  * equal outputs.
   */
 final class OnnxRuntimeRunner extends ModelRunner:
 

@@ -5,8 +5,8 @@ import skein.fusion.PolarMeasurement
 import skein.scenario.Recogniser
 import skein.units.*
 
-/** Finds a vehicle by the AprilTags on its four sides, as the built-in simulator's vehicles bear them: the
-  * vehicle's middle lies [[behindM]] behind each. Where two sides are seen, it is the mean of both.
+/** Detects a vehicle by the AprilTags on its four sides, as on the built-in simulator's vehicles: the
+  * vehicle's middle lies [[behindM]] behind each. Where two sides are visible, the result is their mean.
   *
   * @param id of its tags
   */
@@ -23,7 +23,7 @@ final class VehicleTags(camera: Pinhole, id: Long, size: Metres) extends Recogni
         PolarMeasurement.of(middle, own.minBy(_.positionFrd.norm).polar.deviation)
 
 object VehicleTags:
-  /** From a side's tag to the vehicle's middle, in sides of a tag: plates of 10 cells close to a cube, tags
-    * have 8.
+  /** Distance from a side's tag to the vehicle's middle, in sides of a tag: plates of 10 cells form a cube,
+    * tags have 8 cells.
     */
   private val BehindSides = 5.0 / 8

@@ -14,7 +14,10 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
   private def found(id: Int, positionFrd: Vector3, turned: Double): Vector[Tag] =
     tags.find(TagImage(camera, id, size, positionFrd, turned)).fold(fail(_), identity)
 
-  test("every tag at 2 to 8 m is found, its position within 2 % at the median, and as exact as it says"):
+  test(
+    "every tag at 2 to 8 m is found, its position within 2 % at the median and within its stated " +
+      "deviation"
+  ):
     val random = SplitMix64(1)
     val runs   = Vector.tabulate(36): i =>
       val range  = 2 + 6 * i / 35.0
@@ -36,7 +39,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
       math.abs(tag.positionFrd.norm - place.norm) / tag.polar.deviation.range.value
     assert(inDeviations.count(_ < 2) > 0.8 * runs.size, inDeviations.sorted)
 
-  test("a tag becomes a measurement at the image's exposure, seen from where the camera was"):
+  test("a tag becomes a measurement at the image's exposure, from the camera's position"):
     val image = TagImage(camera, 7, size, Vector3(4, 0, 0), 0).copy(
       positionNed = Vector3(10, 0, -20),
       orientation = Quaternion(math.sqrt(0.5), 0, 0, math.sqrt(0.5))
@@ -48,7 +51,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
     assert((measured.positionNed - Vector3(10, 4, -20)).norm < 0.08, measured)
     assert(measured.covariance.yy > measured.covariance.xx, "the range is less certain than the bearing")
 
-  test("nothing is found where there is nothing, and what is no image of this camera is told"):
+  test("nothing is found in an empty image, and an image of another camera is refused"):
     val grey  = TagImage(camera, 7, size, Vector3(-4, 0, 0), 0)
     val blank = grey.copy(pixels = Pixels.Bgr(Bytes(new Array[Byte](1280 * 720 * 3), 0, 1280 * 720 * 3)))
     assertEquals(tags.find(blank), Right(Vector.empty))

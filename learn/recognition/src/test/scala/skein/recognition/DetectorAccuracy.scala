@@ -3,12 +3,12 @@ package skein.recognition
 import java.nio.ByteBuffer
 import skein.units.*
 
-/** What a detector found in images of a range.
+/** A detector's results in images of a range.
   *
-  * @param plain images with a quadrotor that should be found
-  * @param bearingsDeg errors of what was found, ascending
+  * @param plain images with a quadrotor that should be detected
+  * @param bearingsDeg errors of the detections, ascending
   * @param ranges measured over true range, ascending
-  * @param inDeviations errors of the range over what the measurement says of itself, ascending
+  * @param inDeviations errors of the range over the measurement's own deviation, ascending
   */
 final case class DetectorAccuracy(
     plain: Int,
@@ -19,10 +19,10 @@ final case class DetectorAccuracy(
   def recall: Double = bearingsDeg.size.toDouble / plain
 
 object DetectorAccuracy:
-  /** Of the camera of `blind-pursuit`. */
   val Camera: Pinhole = Pinhole(800, 600, Radians(StrictMath.toRadians(100)))
 
-  /** Closer to a quadrotor's middle than this, or than half its box, a box is of it; px. */
+  /** A box whose middle is closer to a quadrotor's than this, or than half its size, counts as its box; px.
+    */
   private val NearPx = 8.0
 
   final case class Result(
@@ -79,8 +79,8 @@ object DetectorAccuracy:
     val true1    = at * (1 / at.norm)
     2 * StrictMath.asin((looked - true1).norm / 2)
 
-/** How well the shipped detector sees, by range, and how long it takes: `recognition/Test/runMain
-  * skein.recognition.measureDetector COUNT SEED`. Seed 1 drew what it was taught by.
+/** Accuracy of the shipped detector by range, and its duration: `recognition/Test/runMain
+  * skein.recognition.measureDetector COUNT SEED`. Seed 1 was used for its training.
   */
 @main def measureDetector(count: Int, seed: Long): Unit =
   val ranges = Seq((1.5, 3.0), (3.0, 6.0), (6.0, 10.0), (10.0, 15.0), (15.0, 20.0), (20.0, 30.0))

@@ -7,9 +7,9 @@ import java.nio.{ByteBuffer, ByteOrder}
 import scala.util.Using
 import skein.units.*
 
-/** Draws the images that `examples/onnx-detector` teaches the detector by, as NumPy's files:
-  * `recognition/Test/runMain skein.recognition.drawDetectorImages FOLDER COUNT SEED`. They are of every
-  * second pixel of a camera of 800×600 and 100°, cut to 160×120.
+/** Draws the images with which `examples/onnx-detector` trains the detector, as NumPy files:
+  * `recognition/Test/runMain skein.recognition.drawDetectorImages FOLDER COUNT SEED`. They are every second
+  * pixel of a camera of 800×600 and 100°, cut to 160×120.
   */
 @main def drawDetectorImages(folder: String, count: Int, seed: Long): Unit =
   val (width, height) = (160, 120)
@@ -32,7 +32,7 @@ import skein.units.*
       pixels.write(image.bgr)
       truths.write(row.array)
 
-/** The head of NumPy's format, version 1.0. */
+/** Writes the header of NumPy's format, version 1.0. */
 private def npy(file: Path, kind: String, shape: String): OutputStream =
   val out  = BufferedOutputStream(Files.newOutputStream(file), 1 << 16)
   val told = s"{'descr': '$kind', 'fortran_order': False, 'shape': $shape, }"

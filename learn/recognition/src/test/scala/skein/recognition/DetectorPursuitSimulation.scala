@@ -9,11 +9,11 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** A whole flight whose pursuer knows of its evader by the shipped detector alone, in virtual time. */
+/** A whole flight whose pursuer observes its evader only by the shipped detector, in virtual time. */
 class DetectorPursuitSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios(Vector(ScenarioKind(BlindPursuit())))
 
-  test("the detector finds an evader without tags, and the pursuer comes near"):
+  test("the detector finds an evader without tags, and the pursuer approaches it"):
     val settings = FlySettings(
       List(LoopKind.Predictive),
       List(LatencyProfile.direct),

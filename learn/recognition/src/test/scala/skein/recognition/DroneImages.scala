@@ -7,11 +7,11 @@ import skein.simulator.MultirotorBody
 import skein.units.*
 import skein.vehicle.Airframe
 
-/** What a camera sees of a quadrotor, and the truth of it.
+/** A camera's image of a quadrotor, and the truth about it.
   *
-  * @param positionFrd of the quadrotor in the camera's frame, m; absent where there is none
-  * @param box of all its pixels, were nothing before it
-  * @param visible what of that box shows it, from 0 to 1
+  * @param positionFrd of the quadrotor in the camera's frame, m; None without one
+  * @param box of all its pixels, without occlusion
+  * @param visible fraction of its pixels that are not occluded, from 0 to 1
   */
 final case class DroneImage(
     bgr: Array[Byte],
@@ -19,11 +19,11 @@ final case class DroneImage(
     box: Option[Extent],
     visible: Double
 ):
-  /** That a detector should find it: at least three pixels of it, at most half hidden. */
+  /** Whether a detector should find it: at least three pixels wide, and at most half hidden. */
   def isPlain: Boolean = box.exists(box => box.right - box.left >= 3) && visible >= 0.5
 
-/** Images of quadrotors in the shipped scenes, from any place and at any attitude: what the detector is
-  * taught by, and measured by with other seeds.
+/** Images of quadrotors in the shipped scenes, from any position and attitude: for training the detector, and
+  * with other seeds for measuring it.
   */
 final class DroneImages(camera: Pinhole, seed: Long):
   private val random   = SplitMix64(seed)
@@ -36,8 +36,8 @@ final class DroneImages(camera: Pinhole, seed: Long):
     deviation * math.sqrt(-2 * StrictMath.log(1 - random.nextDouble())) *
       StrictMath.cos(2 * math.Pi * random.nextDouble())
 
-  /** @param rangesM nearest and farthest, drawn evenly in the logarithm
-    * @param without share of images without a quadrotor
+  /** @param rangesM nearest and farthest, drawn uniformly in the logarithm
+    * @param without fraction of images without a quadrotor
     */
   def next(rangesM: (Double, Double) = (1.2, 30), without: Double = 0.15): DroneImage =
     val scene = scenes(random.nextInt(scenes.size))

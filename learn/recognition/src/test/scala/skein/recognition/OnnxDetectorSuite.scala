@@ -4,7 +4,7 @@ class OnnxDetectorSuite extends munit.FunSuite:
   private def box(left: Double, width: Double, score: Double, kind: Int = 0) =
     Box(left, 0, left + width, 10, kind, score)
 
-  test("of boxes that overlap the best counts, of each kind its own"):
+  test("of overlapping boxes of one kind only the best counts"):
     val found = Vector(box(0, 10, 0.6), box(1, 10, 0.9), box(1, 10, 0.7, kind = 1), box(30, 10, 0.55))
     assertEquals(
       OnnxDetector.distinct(found, 0.45),
@@ -25,7 +25,7 @@ class OnnxDetectorSuite extends munit.FunSuite:
       Right(Vector(Box(1, 2, 3, 4, 2, 0.8f.toDouble)))
     )
 
-  test("an output of another form is told, and what was expected"):
+  test("an output of another form is reported with what was expected"):
     val other = OnnxModel.Output(Vector(1, 3, 4), new Array[Float](12))
     assertEquals(
       OnnxDetector.read(other, BoxForm.Columns, 0.5).left.toOption,

@@ -12,7 +12,7 @@ class OnnxModelSuite extends munit.FunSuite:
 
   override def afterAll(): Unit = model.close()
 
-  /** Grey 10, and one pixel of the given blue, green, red. */
+  /** A grey image of value 10, with one pixel of the given blue, green, red. */
   private def image(blue: Int, green: Int, red: Int): Image =
     val bytes = Array.fill[Byte](8 * 4 * 3)(10)
     bytes(33) = blue.toByte
@@ -20,7 +20,7 @@ class OnnxModelSuite extends munit.FunSuite:
     bytes(35) = red.toByte
     Image(Shot("0"), 8, 4, Pixels.Bgr(Bytes(bytes, 0, bytes.length)), Vector3.Zero, Quaternion.Identity)
 
-  test("a model is run on an image, its channels in the order that it was trained on"):
+  test("a model is run on an image, with channels in the order of its training"):
     val form                       = InputForm(8, 4, scale = (1, 1, 1))
     def brightest(form: InputForm) = model.run(image(50, 100, 200), form).map(_("y").values.toSeq)
     assertEquals(brightest(form), Right(Seq(200f, 100f, 50f)))
@@ -31,12 +31,12 @@ class OnnxModelSuite extends munit.FunSuite:
     )
     assertEquals(model.run(image(1, 2, 3), form).map(_("y").shape), Right(Vector(1, 3, 1, 1)))
 
-  test("an image of another size is brought to the model's"):
+  test("an image of another size is scaled to the model's"):
     val small = InputForm(2, 2).tensor(image(0, 0, 0)).fold(fail(_), identity)
     assertEquals(small.length, 12)
     assertEquals(small.map(value => math.round(value * 255)).toSeq.distinct, Seq(10))
 
-  test("what is no model, and what a model does not take, is told"):
+  test("an invalid model, and an invalid input, are reported"):
     assert(OnnxModel.read(Array[Byte](1, 2, 3)).isLeft)
     assertEquals(
       OnnxModel.load(Path.of("missing.onnx")).left.map(identity),

@@ -12,10 +12,10 @@ import skein.signal.{LatencyProfile, SplitMix64}
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Policies of ONNX files beside onnxruntime's own evaluation, and those that only it runs. */
+/** Policies of ONNX files compared with onnxruntime's own evaluation, and those that only it can run. */
 class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
   for name <- Seq("learned:64x64", "learned:32tanhx32tanh:clip") do
-    folder.test(s"$name: onnxruntime answers what our network does, within 2e-6"): folder =>
+    folder.test(s"$name: onnxruntime's results equal our network's, within 2e-6"): folder =>
       val random = SplitMix64(seed)
       val family = PolicyFamily.parse(name).fold(fail(_), identity)
       val policy = family
@@ -49,7 +49,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     )
     VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
 
-  folder.test("a model of another kind flies by onnxruntime, and is known again by its bytes"): folder =>
+  folder.test("a model of another kind is run by onnxruntime, and recognised by its bytes"): folder =>
     val file   = written(folder, model("Erf"))
     val policy = PolicyFile.read(file).fold(fail(_), identity)
     assert(policy.name.startsWith("onnx:"), policy.name)
@@ -61,7 +61,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     written(folder, model("Sin")): Unit
     assert(PolicyFile.parse(policy.role, policy.text).left.exists(_.contains("came another")))
 
-  folder.test("one whose answer is no number ends the flight with that, and vehicles hover"): folder =>
+  folder.test("a model that returns NaN ends the flight with that reason, and vehicles hover"): folder =>
     // Tried before, where it has one: the evader stands ahead, the logarithm of its place to the right is
     // none.
     val policy = PolicyFile.read(written(folder, model("Acos"))).fold(fail(_), identity)

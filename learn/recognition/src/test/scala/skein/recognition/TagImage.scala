@@ -4,12 +4,12 @@ import skein.airsim.{Image, Pixels, Shot}
 import skein.rpc.Bytes
 import skein.units.*
 
-/** Draws a tag as a pinhole camera sees it, nine rays a pixel, on a ground of changing grey. */
+/** Draws a tag as a pinhole camera's image, nine rays a pixel, on a ground of varying grey. */
 object TagImage:
   private val patterns = AprilTags.dictionary()
 
   /** @param positionFrd of the tag's middle, m
-    * @param turned about its vertical axis; at 0 it faces against the camera's front
+    * @param turned about its vertical axis; at 0 it faces the camera
     */
   def apply(camera: Pinhole, id: Int, size: Double, positionFrd: Vector3, turned: Double): Image =
     val bytes = Array.tabulate(camera.width * camera.height * 3)(i =>
@@ -52,7 +52,7 @@ object TagImage:
       Quaternion.Identity
     )
 
-  /** By the place on the tag, −½ to ½ within its border. */
+  /** Brightness at a position on the tag, −½ to ½ within its border. */
   private def shade(id: Int, u: Double, v: Double): Option[Int] =
     val (column, row) = (math.floor((u + 0.5) * 8).toInt, math.floor((v + 0.5) * 8).toInt)
     if column < -1 || column > 8 || row < -1 || row > 8 then None

@@ -4,27 +4,26 @@ import java.nio.ByteBuffer
 import java.nio.file.Path
 import skein.testing.Optimised
 
-/** The shipped detector on images of a seed that it was not taught by. `measureDetector` has more of them. */
+/** The shipped detector on images of a seed that its training did not use. `measureDetector` uses more of
+  * them.
+  */
 class VehicleDetectorSuite extends munit.FunSuite, Optimised:
   private val camera = DetectorAccuracy.Camera
 
-  test("quadrotors at 2 to 15 m are found, hardly anything else is, and errors are as told"):
+  test("quadrotors at 2 to 15 m are found, with few false detections and errors of the stated size"):
     val seed   = 20261123L
     val result = DetectorAccuracy.measured(Seq((2.0, 6.0), (6.0, 15.0)), count = 25, seed)
     assert(result.recall > 0.85, s"seed $seed: recall ${result.recall}")
-    // Of some forty boxes; 0.94 of all, by 1200 images.
+    // For some forty boxes; 0.94 for all of 1200 images.
     assert(result.precision > 0.85, s"seed $seed: precision ${result.precision}")
-    // The nearer, the larger, and the less is the box's middle the quadrotor's.
+    // The nearer the larger, and the farther the box's middle from the quadrotor's.
     for ((range, row), mostDeg) <- result.byRange.zip(Seq(1.0, 0.4)) do
       val median = row.bearingsDeg(row.bearingsDeg.size / 2)
       assert(median < mostDeg, s"seed $seed: $range m: $median°")
       val within = row.inDeviations.count(math.abs(_) < 2).toDouble / row.inDeviations.size
       assert(within > 0.85, s"seed $seed: $range m: ${row.inDeviations}")
 
-  test(
-    "a box in the middle is ahead, one to the right and above is " +
-      "there, and what the border cuts is less certain"
-  ):
+  test("a box's position gives its bearing, and one cut by the border is less certain"):
     val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
     val ahead    = detector.polar(Box(380, 290, 420, 310, 0, 1))
     assertEqualsDouble(ahead.azimuth.value, 0, 1e-9)
@@ -34,7 +33,7 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
     val cut = detector.polar(Box(0, 290, 40, 310, 0, 1))
     assert(cut.deviation.range.value >= cut.range.value, cut)
 
-  test("what is no image of the camera, and what is no model, is told"):
+  test("an image of another camera, and an invalid model, are reported"):
     val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
     assertEquals(
       detector.find(640, 480, ByteBuffer.allocate(640 * 480 * 3)).left.toOption,

@@ -8,7 +8,7 @@ import scala.concurrent.Future
 import scala.util.{Failure, Success, Try}
 import skein.units.Span
 
-/** Runs policies. */
+/** Runs policies as stages of a stream. */
 object Decide:
 
   /** Runs a policy that has a memory. `policy(memory, observation)` gives the next memory and the decision;
@@ -20,16 +20,16 @@ object Decide:
   def withMemory[M, O, D](start: M)(policy: (M, O) => (M, D)): Flow[O, D, NotUsed] =
     Flow[O].statefulMap(() => start)(policy, _ => None)
 
-  /** Runs a policy that takes its time, such as a search or another process, and does not wait for it longer
-    * than `deadline`. One question is under way at a time: while a policy is late, observations are decided
-    * otherwise, at once. A late answer is not used, and the memory that comes with it is not kept.
+  /** Runs a slow policy, such as a search or another process, and waits for it at most `deadline`. One call
+    * is in progress at a time: while the policy is late, observations are decided by `otherwise` immediately.
+    * A late answer is discarded together with its memory.
     *
-    * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is
-    * under way, or downstream backpressures. '''Completes when''' upstream completes and the last decision
-    * was emitted. '''Cancels when''' downstream cancels.
+    * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is in
+    * progress, or downstream backpressures. '''Completes when''' upstream completes and the last decision was
+    * emitted. '''Cancels when''' downstream cancels.
     *
-    * @param asksAgain asks a policy that is late anew at every observation, for one that leaves an older
-    *   question for a newer one
+    * @param asksAgain calls a late policy again at every observation, for one that abandons an older
+    *   observation for a newer one
     */
   def within[M, O, D](deadline: Span, otherwise: OnOverrun[M, O, D], start: M, asksAgain: Boolean = false)(
       policy: (M, O) => Future[(M, D)]
@@ -52,8 +52,8 @@ object Decide:
         answered.map(turn.next(working, observation, _, otherwise))
       .collect(Function.unlift(_.result))
 
-  /** @param working completed when the policy may be asked again
-    * @param result of this turn; absent before the first
+  /** @param working completed when the policy may be called again
+    * @param result of this turn; None before the first
     */
   private final case class Turn[M, D](
       memory: M,

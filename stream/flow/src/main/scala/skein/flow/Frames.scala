@@ -4,40 +4,38 @@ import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.Future
 import skein.signal.Stamped
 
-/** A camera or a lidar as a source of frames, each with the moment of its exposure. */
+/** A camera or a lidar as a source of frames, each with its exposure time. */
 object Frames:
 
-  /** Why a frame was not emitted. */
+  /** The reasons why a frame was not emitted. */
   enum Skipped[+E, +A]:
-    /** So many were due while `inFlight` frames were still on their way. */
+    /** This many were due while `inFlight` frames had not arrived. */
     case Missed(frames: Int)
 
-    /** The call failed. */
     case Failed(error: E)
 
-    /** One exposed later has arrived before it. */
+    /** A frame with a later exposure arrived before it. */
     case Overtaken(frame: Stamped[A])
 
-    /** The sensor gave the exposure that it had given before. */
+    /** The sensor returned its previous exposure again. */
     case Repeated(frame: Stamped[A])
 
     /** A newer one arrived before downstream demanded. */
     case Replaced(frame: Stamped[A])
 
-  /** Asks for a frame at each element of `ticks`, which says how many were due since the last one, as
-    * [[Metronome]] does. A frame's `validAt` is its exposure; every emitted frame is newer than the one
+  /** Requests a frame at each element of `ticks`, the number of frames due since the last one, as
+    * [[Metronome]] emits it. A frame's `validAt` is its exposure; every emitted frame is newer than the one
     * before. One that fails never stops the source.
     *
-    *   - '''Emits when''' a frame has come that is newer than all before and downstream demands.
-    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the one that
-    *     waits.
-    *   - '''Completes when''' `ticks` has completed and all that was asked for has come.
+    *   - '''Emits when''' a frame has arrived that is newer than all before and downstream demands.
+    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the waiting one.
+    *   - '''Completes when''' `ticks` has completed and all requested frames have arrived.
     *   - '''Cancels when''' downstream cancels.
     *
-    * @param inFlight frames asked for that have not come, at most
-    * @param isNewer whether one frame is of a later moment than another: over a restart of the simulator
+    * @param inFlight most frames requested that have not arrived
+    * @param isNewer whether one frame was exposed later than another: over a restart of the simulator
     *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
-    * @param ask must end by itself, within its own timeout
+    * @param ask requests one frame; must complete within its own timeout
     * @param onSkip called for every frame that was due and is not emitted
     */
   def at[E, A, M](

@@ -8,14 +8,14 @@ import skein.fusion.{Belief, Fusion, FusionSettings, Measurement}
 object Fuse:
 
   /** Emits a vehicle's estimate after each measurement of it. A measurement counts at its valid time, even if
-    * newer ones have come before it: a detection at the exposure of its image, not when its recognition
+    * newer ones were received before it: a detection at the exposure of its image, not when its recognition
     * ended. The estimate is of the newest valid time; [[skein.fusion.Belief.carriedTo]] predicts it further.
     *
     * '''Emits when''' a measurement arrives that is not too old. '''Backpressures when''' downstream
     * backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream cancels.
     *
     * @tparam K identifies the vehicle; a filter is kept for each
-    * @param onTooOld called for every measurement that is older than all that are kept; it is not used
+    * @param onTooOld called for every measurement older than all that are kept; it is discarded
     */
   def apply[K](settings: FusionSettings = FusionSettings())(
       onTooOld: (K, Measurement) => Unit

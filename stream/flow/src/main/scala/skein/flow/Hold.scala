@@ -3,8 +3,8 @@ package skein.flow
 import java.util.concurrent.ConcurrentHashMap
 import java.util.concurrent.atomic.AtomicBoolean
 
-/** Whether vehicles hold their positions for now, whatever is decided: one switch for all that share it,
-  * thrown from any thread. [[Steer]] obeys it.
+/** Makes vehicles hold their positions, whatever is decided: one switch for all that share it, changed from
+  * any thread. [[Steer]] obeys it.
   */
 final class Hold:
   private val holding   = AtomicBoolean()
@@ -12,12 +12,10 @@ final class Hold:
 
   def isHeld: Boolean = holding.get
 
-  /** @return whether that was new
-    */
+  /** @return false if vehicles were already held */
   def hold(): Boolean = turn(to = true)
 
-  /** @return whether that was new
-    */
+  /** @return false if vehicles were not held */
   def release(): Boolean = turn(to = false)
 
   private def turn(to: Boolean): Boolean =
@@ -25,7 +23,7 @@ final class Hold:
     if isNew then listeners.forEach(_())
     isNew
 
-  /** Calls `listener` at every change, until what it returns is called. */
+  /** Calls `listener` at every change, until the returned function is called. */
   private[flow] def listen(listener: () => Unit): () => Unit =
     listeners.add(listener): Unit
     () => listeners.remove(listener): Unit

@@ -4,11 +4,11 @@ import org.apache.pekko.stream.stage.*
 import org.apache.pekko.stream.{Attributes, FlowShape, Inlet, Outlet}
 import skein.units.Span
 
-/** Joins many inputs, keeping the newest value of each key. It waits a little until every key has a new
-  * value, so that a decision does not mix new values of one key with old ones of another.
+/** Joins many inputs, keeping the newest value of each key. It waits up to `patience` for a new value of
+  * every key, so that a decision does not mix new values of one key with old ones of another.
   *
-  *   - '''Emits when''' every key has a value, and all were renewed since the last emission or `patience` is
-  *     over since the first of them was; and downstream demands. With no patience, at every newer value.
+  *   - '''Emits when''' every key has a value, all were renewed since the last emission or `patience` has
+  *     passed since the first renewal, and downstream demands. With no patience, at every newer value.
   *   - '''Backpressures when''' never; values are joined until downstream demands.
   *   - '''Completes when''' upstream completes.
   *   - '''Cancels when''' downstream cancels.

@@ -4,19 +4,19 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.Future
 
-/** Gives elements to a learner beside a stream. */
+/** Feeds a stream's elements to a learner beside the stream. */
 object Learn:
 
-  /** Gives what has come to `learn`, one lesson at a time; what comes meanwhile waits for the next lesson.
+  /** Passes the elements received so far to `learn`, one lesson at a time; elements received meanwhile wait
+    * for the next lesson.
     *
-    * '''Emits when''' a lesson has made something and downstream demands. '''Backpressures when''' never;
-    * beyond `most` elements that wait, the oldest is dropped, which is reported. '''Completes when'''
-    * upstream has completed and the last lesson is over. '''Cancels when''' downstream cancels. '''Fails
-    * when''' a lesson does.
+    * '''Emits when''' a lesson has a result and downstream demands. '''Backpressures when''' never; beyond
+    * `most` waiting elements, the oldest is dropped and reported. '''Completes when''' upstream has completed
+    * and the last lesson is over. '''Cancels when''' downstream cancels. '''Fails when''' a lesson does.
     *
     * @param most elements of a lesson
     * @param onDropped called for every element that is in no lesson
-    * @param learn from elements in the order in which they came; not on the stream's thread
+    * @param learn from elements in the order of arrival; not on the stream's thread
     */
   def apply[A, B](
       most: Int,

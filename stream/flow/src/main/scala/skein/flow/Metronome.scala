@@ -7,8 +7,8 @@ import skein.units.*
 /** Ticks at `first` and every `period` after it, by the clock: sources of one `first` stay in phase, however
   * long each took to start, and never drift.
   *
-  *   - '''Emits when''' a tick is due and downstream demands: how many have come due since the last element,
-  *     1 unless downstream was slow. Ticks that were due before the start are left out.
+  *   - '''Emits when''' a tick is due and downstream demands: how many were due since the last element, 1
+  *     unless downstream was slow. Ticks that were due before the start are left out.
   *   - '''Backpressures when''' never; ticks add up.
   *   - '''Completes when''' never.
   *   - '''Cancels when''' downstream cancels.

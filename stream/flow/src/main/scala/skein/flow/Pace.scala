@@ -8,11 +8,11 @@ import skein.units.*
   * which fetches an element and then lets it grow old for an interval, it chooses at the moment of emission.
   *
   * Where something else keeps the period, such as the ticks of [[Sense]], half of the period is a good
-  * interval: jitter of the arrivals then costs neither a turn nor freshness, and no delay of one turn is
-  * handed on to the next.
+  * interval: jitter of the arrivals then costs neither a turn nor freshness, and the delay of one turn is not
+  * passed on to the next.
   *
-  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission is
-  *     over.
+  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission has
+  *     passed.
   *   - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
   *   - '''Completes when''' upstream completes; an element still held is reported as replaced.
   *   - '''Cancels when''' downstream cancels.

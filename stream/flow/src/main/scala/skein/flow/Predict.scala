@@ -5,20 +5,20 @@ import org.apache.pekko.stream.scaladsl.Flow
 import skein.forecast.{Estimate, Forecast}
 import skein.units.*
 
-/** Predicts the states of vehicles for the moment at which a command sent now will act. */
+/** Predicts vehicles' states at the time when a command sent now will act. */
 object Predict:
 
   /** Joins to each element the estimates of [[Forecast.whenActing]], in the order of the vehicles, and
-    * compares earlier estimates with the readings that have come since.
+    * compares earlier estimates with the readings received since.
     *
-    * '''Emits when''' an element arrives by whose forecast every vehicle was seen. '''Backpressures when'''
-    * downstream backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream
+    * '''Emits when''' an element arrives whose forecast has a reading of every vehicle. '''Backpressures
+    * when''' downstream backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream
     * cancels.
     *
     * @param verified vehicles whose estimates are compared with readings
-    * @param lead how much later than the element's coming its command will be sent, or begin to act; asked
-    *   for at each element
-    * @param onVerified called for every prediction whose moment was read, with its error
+    * @param lead time from the element's arrival until its command is sent, or begins to act; evaluated at
+    *   each element
+    * @param onVerified called for every prediction that a later reading verifies, with its error
     */
   def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true, lead: => Span = Span.Zero)(
       onVerified: Verified => Unit
@@ -37,22 +37,21 @@ object Predict:
       )
       .collect { case Some(ahead) => ahead }
 
-/** A prediction and how far it was off, horizontally and vertically together. */
+/** A prediction and its error, in three dimensions. */
 final case class Verified(vehicle: Int, madeAt: Instant, estimate: Estimate, error: Metres)
 
-/** Predictions whose moment was not read yet; those that never can be are forgotten. */
+/** Predictions that no reading has verified yet; those that no longer can be are dropped. */
 final case class Unverified private (made: Vector[Unverified.Made]):
   import Unverified.*
 
-  /** @param of vehicles, by their place among the estimates
-    */
+  /** @param of vehicles, by their index among the estimates */
   def withMade(at: Instant, estimates: Vector[Estimate], of: Int => Boolean): Unverified =
     val more =
       for (estimate, vehicle) <- estimates.zipWithIndex if of(vehicle)
       yield Made(vehicle, at, estimate)
     Unverified((made ++ more).takeRight(Limit * estimates.size))
 
-  /** What is left, and the predictions that a forecast's readings verify. */
+  /** Compares predictions with a forecast's readings; returns the remaining ones and the verified ones. */
   def heldAgainst(forecast: Forecast): (Unverified, Vector[Verified]) =
     val (waiting, due) = made.partition(one =>
       forecast.tracks(one.vehicle).forall(_.newest.validAt < one.estimate.predictedFor)
@@ -68,7 +67,7 @@ final case class Unverified private (made: Vector[Unverified.Made]):
 object Unverified:
   val none: Unverified = Unverified(Vector.empty)
 
-  /** Predictions of one vehicle that may wait. */
+  /** Most unverified predictions of one vehicle. */
   val Limit = 32
 
   final case class Made private[Unverified] (vehicle: Int, at: Instant, estimate: Estimate)

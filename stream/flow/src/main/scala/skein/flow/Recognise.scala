@@ -13,39 +13,38 @@ import skein.units.*
   *
   * @param found with the frame's times: valid at its exposure
   * @param startedAt when recognition began, on the controller's clock
-  * @param took how long it lasted
+  * @param took its duration
   */
 final case class Recognised[+B](found: Stamped[B], startedAt: Instant, took: Span)
 
-/** Why a frame has no result. */
+/** The reasons why a frame has no result. */
 enum Unrecognised[+A]:
   /** Recognition had not ended at its deadline. */
   case Late(frame: Stamped[A])
 
-  /** It failed. */
   case Failed(frame: Stamped[A], cause: Throwable)
 
-  /** A frame that was exposed later was begun or emitted before it. */
+  /** A frame with a later exposure was begun or emitted before it. */
   case Overtaken(frame: Stamped[A])
 
 /** Runs recognition on frames, several at a time: the next one is begun before the last is done.
   *
-  * A late worker goes on and gets no new frame until it has ended, so at most `workers` frames are worked on.
-  * A worker that never ends is lost.
+  * A late worker continues and gets no new frame until it has ended, so at most `workers` frames are in
+  * progress. A worker that never ends is lost.
   *
   *   - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of
-  *     exposure, once all frames before it have ended or are late; or, with `newestFirst`, at once, and
-  *     frames exposed before it are not emitted.
+  *     exposure, once all frames before it have ended or are late; or, with `newestFirst`, immediately, and
+  *     frames with earlier exposures are not emitted.
   *   - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
   *   - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param workers most frames worked on at the same time
+  * @param workers most frames in progress at a time
   * @param isNewer whether one frame was exposed later than another; where the simulator may restart, use
   *   [[skein.signal.ClockAlignment.isNewer]]
-  * @param deadline of each frame, from when it is begun
-  * @param recognise begins work on a frame. No two calls with the same `worker`, from 0, overlap, so each may
-  *   have an object that is not thread-safe. The future must complete by itself, and the work must not be
+  * @param deadline for each frame, from its begin
+  * @param recognise begins work on a frame. Calls with equal `worker`, from 0, never overlap, so each worker
+  *   may have an object that is not thread-safe. The future must complete by itself, and the work must not be
   *   done on the caller's thread
   * @param onSkip called for every frame without an emitted result
   */
@@ -69,7 +68,7 @@ final class Recognise[A, B](
 
   val shape: FlowShape[Stamped[A], Recognised[B]] = FlowShape(in, out)
 
-  /** A frame that was begun and not yet emitted or skipped. */
+  /** A frame in progress, begun and not yet emitted or skipped. */
   private final class Begun(val frame: Stamped[A], val worker: Int, val startedAt: Instant):
     var result: Option[Recognised[B]] = None
 
@@ -136,17 +135,17 @@ final class Recognise[A, B](
         if isClosed(in) then { if line.isEmpty then completeStage() }
         else if idle.nonEmpty && line.sizeIs < 2 * workers && !hasBeenPulled(in) then pull(in)
 
-      /** A later exposure has ended before it. */
+      /** Skips a frame that a later exposure has overtaken. */
       private def skip(begun: Begun): Unit =
         cancelTimer(begun)
         onSkip(Unrecognised.Overtaken(begun.frame))
 
 object Recognise:
 
-  /** Recognition by functions that work on a thread until they are done: one worker for each. A function is
-    * never called by two threads at once.
+  /** Runs recognition functions on threads: one worker for each function. A function is never called
+    * concurrently.
     *
-    * @param threads where they work; at least as many as functions, and not those of the streams
+    * @param threads to run on; at least as many as functions, and not those of the streams
     */
   def by[A, B](functions: IndexedSeq[A => B], threads: ExecutionContext)(
       worker: Int,

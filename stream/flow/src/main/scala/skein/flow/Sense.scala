@@ -5,30 +5,31 @@ import org.apache.pekko.stream.scaladsl.Source
 import scala.concurrent.Future
 import skein.units.Span
 
-/** Asks periodically and emits the answers in the order of the questions. */
+/** Sends requests periodically and emits the answers in the order of the requests. */
 object Sense:
 
-  /** What to do with an answer that comes before the answer to an older question. */
+  /** What to do with an answer that arrives before the answer to an older request. */
   enum Early:
-    /** Emit it at once; the older one, when it comes, is overtaken and skipped, unless it tells of a later
-      * moment.
+    /** Emit it immediately; the older one is skipped as overtaken when it arrives, unless it is valid at a
+      * later time.
       */
     case Overtakes
 
-    /** Keep it until the older one has come or failed, as the paper's `ask` does. */
+    /** Keep it until the older one has arrived or failed, as the paper's `ask` does. */
     case Waits
 
-  /** One question per `period`, the first after `offset`; up to `window` may be unanswered at once. An answer
-    * that is an error (a timeout, most often) is skipped, so that one lost answer never stops the stream.
+  /** Sends one request per `period`, the first after `offset`; up to `window` may be unanswered at a time. An
+    * answer that is an error (a timeout, most often) is skipped, so that one lost answer never stops the
+    * stream.
     *
-    *   - '''Emits when''' a question is answered with a value, in order (see [[Early]]), and downstream
+    *   - '''Emits when''' a request is answered with a value, in order (see [[Early]]), and downstream
     *     demands.
     *   - '''Backpressures when''' never towards the clock: a tick that finds the window full, or downstream
     *     slow, is missed and counted.
-    *   - '''Completes when''' the materialised `Cancellable` is cancelled and what was asked is answered.
+    *   - '''Completes when''' the materialised `Cancellable` is cancelled and all requests are answered.
     *   - '''Cancels when''' downstream cancels.
     *
-    * @param ask must end by itself, within its own timeout
+    * @param ask sends one request; must complete within its own timeout
     * @param onSkip called for every answer skipped: the error, or the value overtaken
     * @param onMissed called with the number of ticks that were missed
     */
@@ -41,11 +42,11 @@ object Sense:
       early
     )(ask)(onSkip, onMissed)
 
-  /** The same at each element of `ticks`, which says how many questions were due since the last one, as
-    * [[Metronome]] does. Completes when `ticks` has completed and what was asked is answered.
+  /** Sends a request at each element of `ticks`, the number of requests due since the last one, as
+    * [[Metronome]] emits it. Completes when `ticks` has completed and all requests are answered.
     *
-    * @param isNewer whether the answer to an older question tells of a later moment than the answer emitted
-    *   last: questions, too, overtake each other on their way
+    * @param isNewer whether the answer to an older request is valid at a later time than the last emitted
+    *   answer: requests may overtake each other, too
     */
   def at[E, A, M](
       ticks: Source[Int, M],

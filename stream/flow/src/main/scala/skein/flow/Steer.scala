@@ -9,9 +9,8 @@ import scala.util.control.NonFatal
 import skein.port.Moves
 import skein.units.*
 
-/** What happened to a command: every one is `Sent` and later `Ended`, once each. */
+/** The fate of a command: each is `Sent` and later `Ended`, once each. */
 enum Steered[+C, +R]:
-  /** The command left. */
   case Sent(command: C, at: Instant)
 
   /** The vehicle's answer, or the failure of the call. */
@@ -21,15 +20,15 @@ enum Steered[+C, +R]:
   *
   * AirSim's move calls answer when the move ends, and each holds one of the server's workers until then; a
   * burst of moves freezes the server, and executes out of order. So at most two are outstanding, the one that
-  * flies and the one that replaces it. The next is *asked for* only when the oldest has answered and the rate
-  * cap allows it: upstream then decides with what it knows at that moment ([[Pace]] keeps it the newest),
-  * instead of a decision growing old here.
+  * flies and the one that replaces it. The next is *pulled* only when the oldest has answered and the rate
+  * cap allows it: upstream then decides on its newest knowledge ([[Pace]] keeps it the newest), instead of a
+  * decision that ages here.
   *
-  * A command whose answer is lost with its connection may fly on, and is not counted any more: with the next
-  * two it would be three at the simulator. So the vehicle is parked first, and again until it says so; then
-  * it is known what flies. What is on its way from upstream meanwhile is the first to be sent.
+  * A command whose answer is lost with its connection may fly on, and is no longer counted: with the next two
+  * it would make three at the simulator. So the vehicle is parked first, repeatedly until it confirms; then
+  * the executing command is known. A command that upstream emits meanwhile is sent first.
   *
-  * While it is held, the vehicle is parked and what comes from upstream is not sent.
+  * While it is held, the vehicle is parked and upstream's commands are not sent.
   *
   *   - '''Emits when''' a command is sent or has ended, and downstream demands.
   *   - '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while
@@ -42,14 +41,14 @@ enum Steered[+C, +R]:
   * @param minInterval between two commands sent: the rate cap
   * @param mostOutstanding commands that may be unanswered. More than [[Moves.MostOutstanding]] let a link of
   *   a long round trip carry more commands than one a round trip; only for links that never deliver several
-  *   at once
+  *   in a burst
   * @param send one command; the future ends when the move ends
-  * @param park makes the vehicle hover, so that the outstanding moves are answered; sent at the end, as the
-  *   last command, and where an answer was lost
-  * @param isCertain whether a result says that its command neither flies nor is on its way: the vehicle's own
-  *   answer, or that it was never sent. A future that fails never says so
+  * @param park makes the vehicle hover, so that the outstanding moves are answered; sent as the last command,
+  *   and after a lost answer
+  * @param isCertain whether a result proves that its command neither executes nor is in transit: the
+  *   vehicle's own answer, or that it was never sent. A failed future never proves it
   * @param onUnsent called for a command that waited for the vehicle to be parked when upstream completed, or
-  *   came while it was held
+  *   arrived while it was held
   * @param hold parks the vehicle for as long as it is held
   */
 final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Moves.MostOutstanding)(
@@ -137,7 +136,7 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
           else if held.isDefined then held.foreach(sendNow)
           else if !hasBeenPulled(in) && events.size < Steer.EventLimit then from(nextAt)(pull(in))
 
-      /** Acts now, or sees to it that it is tried again when it is time. */
+      /** Acts now, or schedules another attempt for this time. */
       private def from(time: Instant)(act: => Unit): Unit =
         val now = clock.now()
         if now >= time then act
@@ -166,13 +165,13 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
       setHandlers(in, out, this)
 
 object Steer:
-  /** Events that may wait for downstream before no more commands are taken. */
+  /** Most events that wait for downstream; beyond it no more commands are taken. */
   val EventLimit = 64
 
-  /** Pause before a vehicle that could not be parked is told again. */
+  /** Pause before parking a vehicle is attempted again. */
   val ParkAgain: Span = Span.ofMillis(100)
 
-  /** How often a vehicle is told to park at the end, at most. */
+  /** Most attempts to park a vehicle at the end. */
   val LastAttempts = 10
 
   private case object Later

@@ -6,7 +6,8 @@ import org.apache.pekko.stream.scaladsl.Flow
 /** Copies the elements of a stream to a function. */
 object Tap:
 
-  /** Gives every element to `take`, which must not block, and passes it on. Unlike `wireTap` it never drops.
+  /** Calls `take`, which must not block, with every element, and passes the element on. Unlike `wireTap` it
+    * never drops.
     *
     * '''Emits when''' an element arrives. '''Backpressures when''' downstream backpressures. '''Completes
     * when''' upstream completes. '''Cancels when''' downstream cancels.

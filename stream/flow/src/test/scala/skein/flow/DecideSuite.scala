@@ -11,8 +11,8 @@ import skein.vtime.VirtualTime
 class DecideSuite extends munit.FunSuite:
   private val failure = RuntimeException("no plan")
 
-  /** Each decision with its time in ms, of a policy that answers observation n with 10 n and how many
-    * decisions came before, after its delay; a negative one makes it throw.
+  /** Decisions with their times in ms, of a policy that answers observation n with 10 n and the number of
+    * decisions before it, after a delay; a negative delay makes it throw.
     */
   private def decided(otherwise: OnOverrun[Int, Int, Int], delaysMs: Int*): Seq[(Long, DeadlineResult[Int])] =
     decidedBy(otherwise, asksAgain = false, delaysMs)
@@ -40,7 +40,10 @@ class DecideSuite extends munit.FunSuite:
   test("a policy that answers in time decides"):
     assertEquals(decided(OnOverrun.Hold(), 0, 39), Seq(0L -> Decided(0), 139L -> Decided(11)))
 
-  test("a late policy is not waited for, nor asked again until it has answered; its late answer is not used"):
+  test(
+    "a late policy is not waited for, nor called again until it has answered; its late answer is " +
+      "discarded"
+  ):
     assertEquals(
       decided(OnOverrun.Hold(), 10, 250, 10, 10, 10),
       Seq(
@@ -52,7 +55,7 @@ class DecideSuite extends munit.FunSuite:
       )
     )
 
-  test("a late policy that leaves an older question for a newer one is asked anew"):
+  test("a late policy that abandons an older observation is called again"):
     assertEquals(
       decidedBy(OnOverrun.Hold(), asksAgain = true, Seq(10, 250, 10, 10, 10)),
       Seq(
@@ -70,13 +73,13 @@ class DecideSuite extends munit.FunSuite:
       Seq(Missed(Overrun.Late, None), Decided(10), Missed(Overrun.Late, Some(10)), Decided(31))
     )
 
-  test("the other policy decides on the observation that was missed, with the same memory"):
+  test("the fallback policy decides on the missed observation, with the shared memory"):
     assertEquals(
       decided(OnOverrun.Ask((count, n) => (count + 1, -n)), 10, 150, 10, 10).map(_._2),
       Seq(Decided(0), Missed(Overrun.Late, Some(-1)), Missed(Overrun.Busy, Some(-2)), Decided(33))
     )
 
-  test("a policy that fails, or throws, has missed too, and the flow goes on"):
+  test("a policy that fails, or throws, counts as missed, and the flow continues"):
     assertEquals(
       decided(OnOverrun.Repeat(), 10, -1, 10),
       Seq(10L -> Decided(0), 100L -> Missed(Overrun.Failed(failure), Some(0)), 210L -> Decided(21))

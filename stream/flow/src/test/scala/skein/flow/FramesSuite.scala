@@ -14,8 +14,8 @@ class FramesSuite extends munit.FunSuite:
 
   private def ms(instant: Instant): Long = instant.toNanos / 1_000_000
 
-  /** A frame is asked for each 10 ms; `frames` gives each one's exposure and the delay of its answer, ms, or
-    * a failure.
+  /** Requests a frame each 10 ms; `frames` has each one's exposure and the delay of its answer, ms, or a
+    * failure.
     */
   private def taken(
       slow: FiniteDuration = Duration.Zero,
@@ -51,27 +51,27 @@ class FramesSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (came.value, skipped)
 
-  test("frames come stamped with their exposure, in its order"):
+  test("frames are stamped with their exposure, and emitted in its order"):
     assertEquals(taken()(Right(1, 5), Right(11, 5), Right(21, 5)), (Seq(1L, 11L, 21L), Vector.empty))
 
-  test("a lost frame is told and stops nothing"):
+  test("a lost frame is reported and stops nothing"):
     assertEquals(taken()(Right(1, 5), Left("lost"), Right(21, 5)), (Seq(1L, 21L), Vector("lost")))
 
-  test("a frame that comes after a newer one is overtaken"):
+  test("a frame that arrives after a newer one is overtaken"):
     assertEquals(taken()(Right(1, 15), Right(11, 1), Right(21, 1)), (Seq(11L, 21L), Vector("overtaken 1")))
 
-  test("the same exposure twice is one frame: a LIDAR gives its last scan until the next"):
+  test("an exposure received twice is one frame: a LIDAR returns its last scan until the next"):
     assertEquals(taken()(Right(1, 1), Right(1, 1), Right(21, 1)), (Seq(1L, 21L), Vector("repeated 1")))
 
-  test("no more than so many are asked for at a time, and the ticks missed are counted"):
+  test("the number of open requests is bounded, and missed ticks are counted"):
     val (came, skipped) = taken()(Right(1, 35), Right(11, 35), Right(41, 15), Right(51, 1))
     assertEquals(came, Seq(1L, 11L, 41L))
     assertEquals(skipped, Vector("missed 1"))
 
-  test("a slow consumer gets the newest, and those that it never saw are told"):
+  test("a slow consumer gets the newest, and the replaced ones are reported"):
     val (came, skipped) = taken(slow = 33.millis)((0 until 10).map(i => Right((10 * i, 1)))*)
     assertEquals(came, Seq(0L, 30L, 60L, 90L))
     assertEquals(skipped, Vector(10, 20, 40, 50, 70, 80).map(i => s"replaced $i"))
 
-  test("a simulator that starts again with an earlier clock is followed"):
+  test("after a simulator restarts with an earlier clock, its frames are emitted"):
     assertEquals(taken()(Right(1000, 1), Right(5, 1), Right(15, 1)), (Seq(1000L, 5L, 15L), Vector.empty))

@@ -9,7 +9,7 @@ import skein.vtime.VirtualTime
 class FuseSuite extends munit.FunSuite:
   private def at(ms: Int): Instant = Instant.Epoch + Span.ofMillis(ms)
 
-  /** On its way north at 8 m/s. */
+  /** A measurement of a vehicle that flies north at 8 m/s. */
   private def measured(ms: Int, variance: Double = 0.01) =
     Measurement(at(ms), Vector3(0.008 * ms, 0, 0), Matrix3.diagonal(variance))
 
@@ -22,12 +22,12 @@ class FuseSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (beliefs.value, tooOld)
 
-  test("a detection joins at its exposure though newer readings have come"):
+  test("a detection counts at its exposure even after newer readings"):
     val inOrder = (0 to 10).map(i => "evader" -> measured(i * 50))
     val late    = inOrder.patch(4, Nil, 1) :+ inOrder(4)
     assertEquals(fused(late*)._1.last, fused(inOrder*)._1.last)
 
-  test("taken for new, a late detection throws the estimate off by the way flown meanwhile"):
+  test("a late detection treated as new would shift the estimate by the distance flown meanwhile"):
     val readings                     = (0 to 10).map(i => "evader" -> measured(i * 50))
     val seen                         = measured(350, variance = 0.0025)
     def offM(detection: Measurement) =
@@ -36,7 +36,7 @@ class FuseSuite extends munit.FunSuite:
     assert(offM(seen) < 0.01, offM(seen))
     assert(offM(seen.copy(validAt = at(500))) > 0.5, offM(seen.copy(validAt = at(500))))
 
-  test("vehicles are kept apart, and what is too old is told and stops nothing"):
+  test("each vehicle has its own estimate, and too old measurements are reported and stop nothing"):
     val (beliefs, tooOld) =
       fused("a" -> measured(1000), "b" -> measured(100), "a" -> measured(200), "b" -> measured(300))
     assertEquals(

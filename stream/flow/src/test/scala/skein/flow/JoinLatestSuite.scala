@@ -10,7 +10,7 @@ import skein.vtime.VirtualTime
 
 class JoinLatestSuite extends munit.FunSuite:
 
-  /** What is emitted, with its time in ms, for arrivals at times in ms; and what was stale. */
+  /** Emissions with their times in ms, for arrivals at times in ms; and the stale values. */
   private def joined(patienceMs: Double)(arrivals: (Int, (String, Int))*) =
     var stale = Vector.empty[(String, Int)]
     val run   = VirtualTime.run(seed = 1): system =>
@@ -33,7 +33,7 @@ class JoinLatestSuite extends munit.FunSuite:
       joined(patienceMs = 50)(0 -> ("a", 1), 10 -> ("b", 1), 100 -> ("a", 2), 130 -> ("b", 2))
     assertEquals(emitted, Seq(10L -> Map("a" -> 1, "b" -> 1), 130L -> Map("a" -> 2, "b" -> 2)))
 
-  test("when its patience is over it emits what has come"):
+  test("when its patience is over it emits the values received"):
     val (emitted, _) =
       joined(patienceMs = 50)(0 -> ("a", 1), 10 -> ("b", 1), 100 -> ("a", 2), 170 -> ("b", 2))
     assertEquals(
@@ -51,7 +51,7 @@ class JoinLatestSuite extends munit.FunSuite:
     assertEquals(emitted, Seq(10L -> Map("a" -> 2, "b" -> 5), 30L -> Map("a" -> 3, "b" -> 5)))
     assertEquals(stale, Vector("b" -> 4))
 
-  test("without patience it does not wait for what comes at the same moment either"):
+  test("without patience it does not wait for simultaneous values either"):
     val (emitted, _) = joined(patienceMs = 0)(0 -> ("a", 1), 0 -> ("b", 1), 10 -> ("a", 2), 10 -> ("b", 2))
     assertEquals(
       emitted,

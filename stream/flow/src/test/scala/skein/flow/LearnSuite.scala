@@ -10,8 +10,8 @@ import skein.vtime.VirtualTime
 class LearnSuite extends munit.FunSuite:
 
   test(
-    "lessons follow one another, each with what came meanwhile; " +
-      "beyond the bound the oldest are dropped and told"
+    "each lesson has the elements received during the previous one; beyond the bound the oldest are " +
+      "dropped and reported"
   ):
     var dropped = Vector.empty[Int]
     val lessons = VirtualTime.run(seed = 1): system =>
@@ -26,7 +26,7 @@ class LearnSuite extends munit.FunSuite:
     assertEquals(dropped.head, 2)
     assertEquals((lessons.value.flatten ++ dropped).sorted, (2 to 12).toVector)
 
-  test("it never holds up what comes, also where a lesson hangs"):
+  test("it never backpressures, even if a lesson hangs"):
     val passed = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       val passed        = Source(1 to 50)
@@ -36,7 +36,7 @@ class LearnSuite extends munit.FunSuite:
       passed
     assertEquals(passed.value, (1 to 50).toVector)
 
-  test("a lesson that fails fails it"):
+  test("a failing lesson fails the stage"):
     val ended = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher

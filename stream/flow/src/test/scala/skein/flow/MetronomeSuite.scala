@@ -10,8 +10,8 @@ import skein.vtime.VirtualTime
 
 class MetronomeSuite extends munit.FunSuite:
 
-  /** When ticks came, in ms, and how many at once, to a source that starts `startsAt` after the first was due
-    * and takes `slow` for each.
+  /** Times of emissions in ms, with their numbers of ticks, for a source that starts `startsAt` after the
+    * first was due and takes `slow` for each.
     */
   private def ticked(startsAt: FiniteDuration, slow: FiniteDuration): Seq[(Long, Int)] =
     VirtualTime
@@ -29,7 +29,7 @@ class MetronomeSuite extends munit.FunSuite:
             .runWith(Sink.seq)
       .value
 
-  test("ticks come at whole periods after the first, whenever the source started"):
+  test("ticks are at whole periods after the first, whenever the source started"):
     assertEquals(ticked(0.millis, Duration.Zero), Seq(0L -> 1, 100L -> 1, 200L -> 1, 300L -> 1))
     assertEquals(ticked(37.millis, Duration.Zero), Seq(100L -> 1, 200L -> 1, 300L -> 1, 400L -> 1))
     assertEquals(ticked(200.millis, Duration.Zero), Seq(200L -> 1, 300L -> 1, 400L -> 1, 500L -> 1))
@@ -38,5 +38,5 @@ class MetronomeSuite extends munit.FunSuite:
   test("ticks that find downstream slow add up"):
     assertEquals(ticked(0.millis, 260.millis), Seq(0L -> 1, 260L -> 2, 520L -> 3, 780L -> 2))
 
-  test("a period that is none is refused"):
+  test("an invalid period is refused"):
     intercept[IllegalArgumentException](Metronome(Instant.Epoch, Span.Zero, Clock.ofNanos(() => 0L))): Unit

@@ -13,7 +13,7 @@ class PredictSuite extends munit.FunSuite:
   private val skew   = Span.ofSeconds(-77)
   private val oneWay = Span.ofMillis(30)
 
-  /** Of a vehicle on an accelerating course north, 2 m/s²; the other one rests. */
+  /** The motion of a vehicle that accelerates north, 2 m/s²; the other one rests. */
   private def north(t: Span) =
     Kinematics(
       Vector3(t.toSeconds * t.toSeconds, 0, 0),
@@ -22,7 +22,7 @@ class PredictSuite extends munit.FunSuite:
       Vector3.Zero
     )
 
-  /** Estimates made upon readings every 100 ms, and what became of them. */
+  /** Estimates from readings every 100 ms, and their verified errors. */
   private def predicted(lead: Span = Span.Zero): (Seq[Vector[Estimate]], Seq[Verified]) =
     var verified = Vector.empty[Verified]
     val run      = VirtualTime.run(seed = 1): system =>
@@ -50,17 +50,17 @@ class PredictSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (run.value, verified)
 
-  test("every vehicle is carried over both ways of the link, once all were seen"):
+  test("every vehicle is predicted over the round trip of the link, once all were read"):
     val (estimates, _) = predicted()
     assertEquals(estimates.size, 10)
     for vehicles <- estimates do assertEquals(vehicles.map(_.age), Vector(oneWay * 2, oneWay * 2))
 
-  test("what is sent later is foreseen so much further ahead"):
+  test("commands sent later are predicted for a later time"):
     val (estimates, _) = predicted(lead = Span.ofMillis(25))
     for vehicles <- estimates do
       assertEquals(vehicles.map(_.age), Vector.fill(2)(oneWay * 2 + Span.ofMillis(25)))
 
-  test("a prediction is held against a reading of its very moment"):
+  test("a prediction is compared with a reading of its exact time"):
     val at       = Instant.Epoch + Span.ofSeconds(1)
     val forecast = Seq(at - Span.ofMillis(50), at).foldLeft(Forecast(Vector(ConstantVelocity))):
       (known, read) =>
@@ -69,24 +69,22 @@ class PredictSuite extends munit.FunSuite:
     val (left, verified) = waiting.heldAgainst(forecast)
     assertEquals((left.made, verified.map(_.error)), (Vector.empty, Vector(Metres(4))))
 
-  test("each prediction is held against the readings around its moment, and its error told"):
+  test("each prediction is compared with the readings around its time, and its error reported"):
     val (_, verified)     = predicted()
     val (moving, resting) = verified.partition(_.vehicle == 0)
     // Constant velocity is off by ½ a t² = ½ · 2 m/s² · (60 ms)².
     for one <- moving do assertEqualsDouble(one.error.value, 0.0036, 1e-9)
     for one <- resting do assertEquals(one.error.value, 0.0)
-    // The last one's moment was never read.
+    // The last prediction's time has no reading.
     assertEquals((moving.size, resting.size), (9, 9))
 
-  test("a prediction of a vehicle of which nothing was heard waits"):
+  test("a prediction of a vehicle without newer readings waits"):
     val start   = Instant.Epoch
     val waiting = Unverified.none.withMade(start, Vector(Estimate(north(Span.Zero), start, start)), _ => true)
     val (left, verified) = waiting.heldAgainst(Forecast(Vector(ConstantVelocity)))
     assertEquals((left, verified), (waiting, Vector.empty))
 
-  test(
-    "of the predictions that wait to be held against readings the newest are kept, so many of each vehicle"
-  ):
+  test("the newest unverified predictions are kept, a bounded number for each vehicle"):
     val here     = north(Span.Zero)
     val start    = Instant.Epoch
     val estimate = Estimate(here, start, start)

@@ -18,8 +18,7 @@ class RecogniseSuite extends munit.FunSuite:
       mostAtOnce: Int
   )
 
-  /** Frames as often as a camera takes them, the newest of which waits; each takes as long as `tookMs` says.
-    */
+  /** Frames at a camera's rate, the newest of which waits; recognition of each takes `tookMs`. */
   private def run(
       perSecond: Int,
       count: Int,
@@ -79,7 +78,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEqualsDouble(one.emitted.size, 500, 2)
     assert(one.emitted.forall(_.ageMs < 20 + 1000.0 / 90 + 0.01), one.emitted.map(_.ageMs).max)
 
-  test("results come in the order of exposure however long each takes"):
+  test("results are in the order of exposure however long each takes"):
     val random = SplitMix64(1)
     val tookMs = Vector.fill(300)(5 + 80 * random.nextDouble())
     val mixed  = run(perSecond = 60, count = 300, workers = 3)(tookMs)
@@ -92,17 +91,18 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(held.emitted.map(_.frame), Seq(0, 1, 2, 3) ++ (50 until 80))
     assertEquals((held.replaced, held.skipped), (46, Vector.empty))
 
-  test("the newest first: a result is emitted when it is there, and older ones no more"):
+  test("newest first: a result is emitted immediately, and older ones no more"):
     val newest = run(perSecond = 100, count = 4, workers = 4, newestFirst = true)(Vector(50, 5, 45, 5))
     assertEquals(newest.emitted.map(_.frame), Seq(1, 3))
     assertEquals(newest.skipped.toSet, Set("overtaken 0", "overtaken 2"))
     assert(newest.emitted.forall(_.ageMs < 5.001))
-    // A later one that is still worked on has overtaken nobody.
+    // A later frame still in progress has overtaken none.
     val both = run(perSecond = 100, count = 2, workers = 2, newestFirst = true)(Vector(15, 50))
     assertEquals((both.emitted.map(_.frame), both.skipped), (Seq(0, 1), Vector.empty))
 
   test(
-    "late and failed frames are told at once and stop nothing, and a late worker gets nothing until it ends"
+    "late and failed frames are reported immediately and stop nothing, and a late worker gets no frame " +
+      "until it ends"
   ):
     val tookMs = Vector(10.0, 500.0, -10.0) ++ Vector.fill(20)(10.0)
     val faulty = run(perSecond = 50, count = 20, workers = 2, deadlineMs = 60)(tookMs)
@@ -110,10 +110,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(faulty.skipped, Vector("blurred 2", "late 1"))
     assertEquals(faulty.mostAtOnce, 2)
 
-  test(
-    "while nobody takes results, no more than twice as many " +
-      "frames as workers wait; each one taken lets one in"
-  ):
+  test("without demand, no more than twice as many frames as workers wait; each one taken admits one more"):
     val begun = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -136,16 +133,16 @@ class RecogniseSuite extends munit.FunSuite:
       yield
         results.cancel()
         (atFirst, then_)
-    // One is held for whoever takes it, four wait behind it.
+    // One is held for downstream, four wait behind it.
     assertEquals(begun.value, (5, 6))
 
-  test("frames are compared as one says: a later run of a simulator whose clock is behind is newer"):
+  test("frames are compared by the given function: a restarted simulator with an earlier clock is newer"):
     val emitted = VirtualTime.run(seed = 1): system =>
       given ActorSystem                  = system
       val clock                          = Clock.ofNanos(VirtualTime.clock(system))
       def frame(run: Int, validAt: Long) =
         Stamped(run, Instant.ofNanos(validAt), Instant.Epoch, Instant.ofNanos(1000))
-      // All were asked for together, so that two alone do not tell.
+      // All were requested together, so two alone are not conclusive.
       Source(Vector(frame(0, 500), frame(1, 10), frame(0, 600)))
         .via(Recognise[Int, Int](
           1,
@@ -157,7 +154,7 @@ class RecogniseSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     assertEquals(emitted.value, Seq(500L, 10L))
 
-  test("no workers and no time are refused"):
+  test("zero workers and a zero deadline are refused"):
     for (workers, deadlineMs) <- Seq((0, 40.0), (1, 0.0)) do
       intercept[IllegalArgumentException](
         Recognise[Int, Int](workers, Span.ofMillis(deadlineMs), Clock.ofNanos(() => 0L))((_, _) =>
@@ -165,7 +162,7 @@ class RecogniseSuite extends munit.FunSuite:
         )(_ => ())
       )
 
-  test("a flow that ends waits for what is under way, until its deadline"):
+  test("a completing flow waits for frames in progress, until their deadline"):
     val ending = run(perSecond = 100, count = 2, workers = 2, deadlineMs = 40)(Vector(10, 5000))
     assertEquals(ending.emitted.map(_.frame), Seq(0))
     assertEquals(ending.skipped, Vector("late 1"))

@@ -10,7 +10,7 @@ import skein.vtime.VirtualTime
 
 class SenseSuite extends munit.FunSuite:
 
-  /** Answers with the question's number after its delay; over 500 ms with an error at 500 ms. */
+  /** Answers with the request's number after its delay; above 500 ms with an error at 500 ms. */
   private def sensed(window: Int, early: Sense.Early, isNewer: Option[(Int, Int) => Boolean] = None)(
       delaysMs: Long*
   ) =
@@ -43,12 +43,15 @@ class SenseSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (emitted.value, skipped, missed)
 
-  test("waiting, answers come in the order of the questions, each when it and all before it have come"):
+  test(
+    "with Waits, answers are emitted in the order of the requests, each when it and all before it have " +
+      "arrived"
+  ):
     val (emitted, skipped, missed) = sensed(4, Sense.Early.Waits)(10, 250, 10, 10)
     assertEquals(emitted, Seq(60L -> 0, 400L -> 1, 400L -> 2, 400L -> 3, 460L -> 4, 560L -> 5))
     assertEquals((skipped, missed), (Vector.empty, 0))
 
-  test("a lost answer is skipped and counted, and those after it go on"):
+  test("a lost answer is skipped and counted, and later ones are emitted"):
     val (emitted, skipped, _) = sensed(8, Sense.Early.Waits)(10, 9999, 10, 10, 10, 10, 10)
     assertEquals(emitted.map(_._2), Seq(0, 2, 3, 4, 5, 6))
     assertEquals(emitted(1)._1, 650L)
@@ -60,19 +63,22 @@ class SenseSuite extends munit.FunSuite:
     assertEquals(emitted(1)._1, 500L)
     assertEquals(missed, 2)
 
-  test("overtaking, an answer comes at once, and the older one that it overtook is skipped and counted"):
+  test(
+    "with Overtakes, an answer is emitted immediately, and the older one it overtook is skipped and " +
+      "counted"
+  ):
     val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes)(10, 250, 10, 10)
     assertEquals(emitted.map(_._2), Seq(0, 2, 3, 4, 5, 6))
     assertEquals(emitted(1), 260L -> 2)
     assertEquals(skipped, Vector(Right(1)))
 
-  test("overtaking, the answer to an older question that tells of a later moment is emitted when it comes"):
+  test("with Overtakes, an answer to an older request is emitted if it is valid at a later time"):
     val later                 = (one: Int, other: Int) => one == 1 && other == 2
     val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes, Some(later))(10, 250, 10, 240, 10)
     assertEquals(emitted.map(_._2), Seq(0, 2, 1, 4, 5, 6))
     assertEquals(skipped, Vector(Right(3)))
 
-  test("an older question's newer answer does not let those in that were overtaken before"):
+  test("a newer answer to an older request does not admit answers overtaken before"):
     val later                 = (one: Int, other: Int) => one == 1 && other == 3
     val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes, Some(later))(10, 250, 200, 10, 10)
     assertEquals(emitted.map(_._2), Seq(0, 3, 1, 4, 5, 6))

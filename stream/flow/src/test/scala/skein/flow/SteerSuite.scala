@@ -39,8 +39,8 @@ class SteerSuite extends munit.FunSuite:
       flying.foreach(_.success("superseded"))
       flying = next
 
-  /** What came of ten commands over a link: events in order, with their times in ms from the start; how many
-    * calls were outstanding at most; and which commands were replaced before they were sent.
+  /** Results of ten commands over a link: events in order, with their times in ms from the start; the
+    * greatest number of outstanding calls; and the commands that were replaced before they were sent.
     */
   private def steered(oneWay: FiniteDuration, every: FiniteDuration, minInterval: Span) =
     var replaced = Vector.empty[Int]
@@ -66,7 +66,7 @@ class SteerSuite extends munit.FunSuite:
     val ended = events.collect { case (_, Ended(command, _, _)) => command }
     assertEquals((ended ++ replaced).sorted, (0 until 10).toSeq)
 
-  test("over a fast link every command is sent at once and ends when the next arrives"):
+  test("over a fast link every command is sent immediately and ends when the next arrives"):
     val (events, most, replaced) = steered(oneWay = 18.millis, every = 100.millis, minInterval = Span.Zero)
     assertEquals(
       events.collect { case (at, Sent(command, _)) => (at, command) },
@@ -89,7 +89,7 @@ class SteerSuite extends munit.FunSuite:
     assertEquals(replaced, Vector(2, 3, 5, 6, 7))
     endsOnce(events, replaced)
 
-  test("the rate cap holds back a burst, and the newest of it is sent"):
+  test("the rate cap delays a burst, and its newest command is sent"):
     val (events, _, replaced) = steered(oneWay = 1.milli, every = 10.millis, minInterval = Span.ofMillis(55))
     assertEquals(
       events.collect { case (at, Sent(command, _)) => (at, command) },
@@ -97,12 +97,12 @@ class SteerSuite extends munit.FunSuite:
     )
     endsOnce(events, replaced)
 
-  test("at the end the vehicle is parked, so that the last move is answered too"):
+  test("at the end the vehicle is parked, so that the last move is answered, too"):
     val (events, _, _) = steered(oneWay = 18.millis, every = 100.millis, minInterval = Span.Zero)
     val last           = events.collect { case (at, Ended(9, _, result)) => (at, result) }
     assertEquals(last, Seq(972L -> Success("9 superseded")))
 
-  test("a move whose answer comes after that of parking is told before the end"):
+  test("a move answered after parking is reported before the end"):
     val run = VirtualTime.run(seed = 1): system =>
       given ActorSystem                                = system
       val clock                                        = Clock.ofNanos(VirtualTime.clock(system))
@@ -119,7 +119,7 @@ class SteerSuite extends munit.FunSuite:
       Seq((1, Success("superseded")))
     )
 
-  test("where nothing else is under way, the next is asked for at the moment at which the last has ended"):
+  test("without a command in progress, the next is pulled when the last has ended"):
     val sent = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem = system
@@ -135,7 +135,7 @@ class SteerSuite extends munit.FunSuite:
       .value
     assertEquals(sent, Seq(0L, 10_000L, 20_000L))
 
-  test("while nobody takes its events, it asks for no more once there are as many as may wait"):
+  test("without demand for events, no more commands are pulled once the bound of waiting events is reached"):
     val sent = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
@@ -151,15 +151,15 @@ class SteerSuite extends munit.FunSuite:
             (_: Int) => send(),
             () => Future.successful("hovering")
           ))
-          // Takes what comes of the first command, and no more.
+          // Takes the events of the first command, and no more.
           .mapAsync(2)(_ => Future.never)
           .runWith(Sink.ignore)
         after(1.second)(Future(commands))
       .value
-    // Each command comes to two events, that it was sent and that it has ended.
+    // Each command has two events: sent, and ended.
     assertEquals(sent, 1 + Steer.EventLimit / 2)
 
-  test("where the last command has ended, the next is sent as soon as it comes"):
+  test("after the last command has ended, the next is sent on arrival"):
     val sent = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem        = system
@@ -177,13 +177,13 @@ class SteerSuite extends munit.FunSuite:
       .value
     assertEquals(sent, Seq(0 -> 0L, 1 -> 10_200L, 2 -> 20_400L, 3 -> 30_600L))
 
-  /** What reached a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail `failures`
-    * times.
+  /** Commands received by a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail
+    * `failures` times.
     */
   private def afterLoss(failures: Int, every: FiniteDuration = 200.millis): Vector[(Long, String)] =
     afterLossUs(failures, every).map((us, what) => (us / 1000, what))
 
-  /** The same with times in µs. */
+  /** Commands received by such a vehicle, with times in µs. */
   private def afterLossUs(failures: Int, every: FiniteDuration): Vector[(Long, String)] =
     VirtualTime
       .run(seed = 1): system =>
@@ -233,7 +233,7 @@ class SteerSuite extends munit.FunSuite:
       )
     )
 
-  test("it is told again until it answers, and what came meanwhile is sent then"):
+  test("parking is repeated until it is answered, and the waiting command is sent then"):
     assertEquals(
       afterLoss(failures = 2).take(6),
       Vector(
@@ -246,17 +246,17 @@ class SteerSuite extends munit.FunSuite:
       )
     )
 
-  test("at the end a vehicle that cannot be parked is told ten times, and then given up"):
+  test("at the end parking is attempted ten times, and then given up"):
     val heard = afterLoss(failures = 99)
     assertEquals(heard.filter(_._1 >= 700).map(_._2), Vector.fill(10)("hover") :+ "unsent 1")
 
-  test("while another move is outstanding, the vehicle has a moment to let it begin before it is parked"):
+  test("while another move is outstanding, parking waits for it to begin"):
     assertEquals(
       afterLossUs(failures = 0, every = 100.millis).take(4),
       Vector(0L -> "move 0", 100_000L -> "move 1", 150_500L -> "hover", 200_000L -> "move 2")
     )
 
-  test("while it is held the vehicle is parked until it says so, and what comes is not sent"):
+  test("while it is held the vehicle is parked until it confirms, and commands are not sent"):
     val heard = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
@@ -303,7 +303,7 @@ class SteerSuite extends munit.FunSuite:
       )
     )
 
-  test("a vehicle that is held from the beginning is parked, and once is enough"):
+  test("a vehicle that is held from the beginning is parked exactly once"):
     val parked = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system

@@ -14,19 +14,17 @@ import scala.compiletime.{constValue, erasedValue, summonInline}
 import scala.deriving.Mirror
 import skein.units.*
 
-/** How values are written as bytes, and read back to the bit: numbers big-endian, texts in UTF-8 behind their
-  * length in bytes, lists behind their length, what may be absent behind a byte that says whether it is
-  * there; a case class by its fields in their order; an enum by a byte for the case, from 1, then that case's
-  * fields.
+/** Encodes values as bytes, and decodes them exactly: numbers big-endian, texts in UTF-8 after their length
+  * in bytes, lists after their length, optional values after a byte that states whether they exist; a case
+  * class by its fields in order; an enum by a byte for the case, from 1, then that case's fields.
   */
 trait Codec[A]:
   def write(value: A, out: DataOutputStream): Unit
 
-  /** @throws IOException where something else comes; no length is believed that is more than the bytes left
-    */
+  /** @throws IOException if the bytes are something else; a length beyond the bytes left is refused */
   def read(in: DataInputStream): A
 
-  /** The same bytes for another type. */
+  /** A codec of another type with these bytes. */
   final def imap[B](to: A => B)(from: B => A): Codec[B] =
     Codec.of[B]((value, out) => write(from(value), out))(in => to(read(in)))
 
@@ -42,9 +40,9 @@ object Codec:
     codec.write(value, DataOutputStream(into))
     into.toByteArray
 
-  /** A message that is all of the bytes.
+  /** Decodes a message that fills the bytes.
     *
-    * @return or what was expected, and what came
+    * @return Left states what was expected and what was received
     */
   def message[A](bytes: Array[Byte])(using codec: Codec[A]): Either[String, A] =
     val in = DataInputStream(ByteArrayInputStream(bytes))
@@ -55,16 +53,16 @@ object Codec:
       case _: EOFException    => Left(s"the message is cut off after ${bytes.length} bytes")
       case wrong: IOException => Left(wrong.getMessage)
 
-  /** How many come: no more than there are bytes left. */
+  /** Reads a length, which must not exceed the bytes left. */
   def length(in: DataInputStream, atMost: Int = Int.MaxValue): Int =
     val came = in.readInt()
     val most = atMost.min(in.available)
     if came < 0 || came > most then throw IOException(s"expected a length of 0 to $most, came $came")
     came
 
-  /** Bytes behind their length.
+  /** A byte array after its length.
     *
-    * @throws IllegalArgumentException where more are to be written
+    * @throws IllegalArgumentException when writing more than `most`
     */
   def blob(most: Int): Codec[Array[Byte]] = of[Array[Byte]]((value, out) =>
     require(value.length <= most, s"a part of a message has ${value.length} bytes, at most $most go")
@@ -102,11 +100,11 @@ object Codec:
 
   given either[A, B](using Codec[A], Codec[B]): Codec[Either[A, B]] = derived
 
-  /** A tuple is itself with names and without. */
+  /** A named tuple, encoded as the tuple without names. */
   given named[N <: Tuple, V <: Tuple](using codec: Codec[V]): Codec[NamedTuple.NamedTuple[N, V]] =
     codec.asInstanceOf[Codec[NamedTuple.NamedTuple[N, V]]]
 
-  /** Of a case class or an enum, whose fields have codecs. */
+  /** The codec of a case class or an enum, whose fields have codecs. */
   inline def derived[A](using mirror: Mirror.Of[A]): Codec[A] = inline mirror match
     case product: Mirror.ProductOf[A] => ofFields(product, fields[product.MirroredElemTypes])
     case sum: Mirror.SumOf[A]         =>

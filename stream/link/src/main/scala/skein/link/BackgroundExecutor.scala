@@ -3,8 +3,8 @@ package skein.link
 import java.util.concurrent.{ConcurrentLinkedQueue, Executor, ThreadFactory}
 import skein.units.Span
 
-/** Runs what it is given, in order, on a [[BackgroundThread]]: each is a slice of it, so it should take
-  * milliseconds. Who gives it work bounds how much waits.
+/** Runs tasks in order on a [[BackgroundThread]]: each is a slice of it, so it should take milliseconds.
+  * Callers bound how many wait.
   */
 final class BackgroundExecutor(
     factory: ThreadFactory,
@@ -22,7 +22,7 @@ final class BackgroundExecutor(
     val _ = waiting.add(work)
     thread.wake()
 
-  /** Runs nothing more, and interrupts what runs. */
+  /** Runs nothing more, and interrupts the current task. */
   def close(): Unit = thread.interrupt()
 
 object BackgroundExecutor:

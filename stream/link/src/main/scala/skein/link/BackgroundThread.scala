@@ -6,17 +6,17 @@ import java.util.concurrent.atomic.AtomicInteger
 import java.util.concurrent.locks.LockSupport
 import skein.units.Span
 
-/** Works on a thread that gives way to all others of the user's session, slice by slice.
+/** Runs slices of work on a thread that yields the processor to all others of the user's session.
   *
   * It does so by Linux's [[SchedulingPolicy.Idle]]. Where other programs of the session keep all processors
-  * busy, such a thread hardly runs, and the JVM, which stops all threads now and then, waits for one that is
-  * ready to run. So one that was kept from the processor for more than `patience` in one slice is replaced by
-  * a usual one, since Linux lets no thread leave that class. One that sleeps or waits in a slice counts as
-  * kept from it.
+  * busy, such a thread hardly runs, and the JVM, which stops all threads from time to time, waits for one
+  * that is ready to run. So a thread that did not get the processor for more than `patience` in one slice is
+  * replaced by an ordinary one, since Linux lets no thread leave that class. Sleeping or waiting in a slice
+  * counts as not getting it.
   *
-  * @param factory of a thread that gives way
-  * @param usual of one that does not
-  * @param slice works for milliseconds, on one thread at a time; whether there was anything to do
+  * @param factory makes threads with idle priority
+  * @param usual makes ordinary threads
+  * @param slice works for milliseconds, on one thread at a time; returns whether there was anything to do
   */
 final class BackgroundThread(
     factory: ThreadFactory,
@@ -28,15 +28,15 @@ final class BackgroundThread(
   @volatile private var thread   = factory.newThread(() => work(givesWay = true))
   thread.start()
 
-  /** There is something to do. Never blocks. */
+  /** Wakes the thread for new work. Never blocks. */
   def wake(): Unit = LockSupport.unpark(thread)
 
-  /** Ends the thread after the slice that it works on. */
+  /** Ends the thread after the current slice. */
   def close(): Unit =
     isClosed = true
     wake()
 
-  /** Ends it also within a slice that waits for something. */
+  /** Ends the thread, even in a slice that waits. */
   def interrupt(): Unit =
     isClosed = true
     thread.interrupt()
@@ -55,16 +55,16 @@ final class BackgroundThread(
       thread.start()
 
 object BackgroundThread:
-  /** Less than the silence of a simulator that is told. */
+  /** Shorter than the silence after which a simulator is reported as silent. */
   val Patience: Span = Span.ofMillis(300)
 
   private val meter = ManagementFactory.getThreadMXBean
 
-  /** What the calling thread has had of the processors; 0 where the system does not tell. */
+  /** Processor time of the calling thread; 0 where the system does not report it. */
   private def ranNanos: Long =
     if meter.isCurrentThreadCpuTimeSupported then meter.getCurrentThreadCpuTime.max(0) else 0
 
-  /** Daemon threads that give way. */
+  /** A factory of daemon threads with idle priority. */
   def factory(name: String): ThreadFactory =
     val count = AtomicInteger()
     (work: Runnable) =>
@@ -79,16 +79,16 @@ object BackgroundThread:
       thread.setPriority(Thread.MIN_PRIORITY)
       thread
 
-  /** Daemon threads that do not. */
+  /** A factory of daemon threads with ordinary priority. */
   def usual(name: String): ThreadFactory = Thread.ofPlatform().daemon().name(s"$name-usual-", 1).factory()
 
   /** Lowers the JVM's compiler threads to the scheduler's idle class. Call it after a warm-up, when most of
     * the program is compiled.
     *
-    * @return how many the system made do so
+    * @return the number of threads that the system lowered
     */
   def compilersGiveWay(): Int =
     SchedulingPolicy.threadsNamed(CompilerNames*).count(SchedulingPolicy.Idle.schedule)
 
-  /** As HotSpot calls its compiler threads. */
+  /** Name prefixes of HotSpot's compiler threads. */
   private val CompilerNames = Vector("C1 Comp", "C2 Comp")

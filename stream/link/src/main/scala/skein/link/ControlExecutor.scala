@@ -25,7 +25,7 @@ final class ControlExecutor(config: Config, prerequisites: DispatcherPrerequisit
 
 private object ControlExecutor:
 
-  /** One that has others take its place while it blocks, as Pekko's own do. */
+  /** A worker that is replaced while it blocks, as Pekko's own are. */
   final class Worker(pool: ForkJoinPool) extends ForkJoinWorkerThread(pool), BlockContext:
     override def onStart(): Unit =
       super.onStart()

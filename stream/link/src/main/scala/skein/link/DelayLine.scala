@@ -7,25 +7,25 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import skein.units.*
 
-/** One direction of one connection over an emulated link: bytes, the end of sending and failures come out as
-  * late as a [[Delivery]] decides, in order. What is due at once comes out as one segment, as from a socket.
-  * Datagrams stay as they are, and come out when each is due, whichever entered first.
+/** One direction of one connection over an emulated link: bytes, the end of sending and failures come out in
+  * order, with the delay of a [[Delivery]]. Bytes that are due together come out as one segment, as from a
+  * socket. Datagrams are not joined, and come out when each is due, in any order.
   *
   *   - '''Emits when''' downstream pulls and the oldest bytes are due.
-  *   - '''Backpressures when''' `maxBytes` or more are under way.
-  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due
+  *   - '''Backpressures when''' `maxBytes` or more are in transit.
+  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due,
   *     too.
   *   - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
   *   - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely
-  *     takes no more is not told to the sender, as with a socket: what still comes is discarded until
-  *     upstream ends.
+  *     cancels is not reported to the sender, as with a socket: further bytes are discarded until upstream
+  *     ends.
   *
-  * Where a bottleneck lies before it, bytes enter it piece by piece, as the bottleneck has room, and are as
-  * late as it makes them besides.
+  * With a bottleneck before it, bytes enter piece by piece, as the bottleneck has room, and have its delay in
+  * addition.
   *
-  * What a silence swallows is counted as lost; neither side learns of it before the link breaks.
+  * Bytes sent into a silence count as lost; neither side learns of it before the link breaks.
   *
-  * @param open the delivery of a line that opens at this moment
+  * @param open makes the delivery of a line that opens at this time
   * @param sinceStart time since the link's start
   * @param broken the error that both sides get when the link breaks
   */
@@ -76,16 +76,16 @@ private[link] final class DelayLine(
             send(held = false)
           deliver()
 
-      /** Bytes leave their sender's side. */
+      /** Takes bytes that leave their sender's side. */
       private def enter(waiting: Waiting, leave: Span): Unit = delivery.due(leave, waiting.delay) match
         case Some(due) =>
-          // All but a datagram is due after what entered before.
+          // Anything but a datagram is due after earlier bytes.
           underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(waiting.bytes, due))
         case None =>
           bytesUnderWay -= waiting.bytes.size
           counts.bytesLost.add(waiting.bytes.size)
 
-      /** Hands the bottleneck what it has room for.
+      /** Hands the bottleneck the bytes that it has room for.
         *
         * @param held whether there was no room before
         */
@@ -109,7 +109,7 @@ private[link] final class DelayLine(
             ending = None
             end = dueWithLine().map(End(failure, _))
 
-      /** When what enters now without taking time on the line comes out. */
+      /** When bytes that enter now would come out, with no time on the line. */
       private def dueWithLine(): Option[Span] =
         val now = sinceStart()
         delivery.due(bottleneck.fold(now)(_.free(now)), delivery.delay(now))
@@ -151,7 +151,7 @@ private[link] final class DelayLine(
           send(held = false)
           deliver()
 
-      /** Hands on what is due and sees to it that it is called again when the next is. */
+      /** Emits what is due and schedules the next delivery. */
       private def deliver(): Unit =
         val now = sinceStart()
         if isAvailable(out) && underWay.headOption.exists(_.due <= now) then
@@ -178,10 +178,10 @@ private[link] final class DelayLine(
 private object DelayLine:
   private final case class Segment(bytes: ByteString, due: Span)
 
-  /** Bytes that were sent at a moment and have yet to leave, with the delay that they will have then. */
+  /** Bytes sent at a time that have not left yet, with their delay once they leave. */
   private final case class Waiting(bytes: ByteString, since: Span, delay: Span)
 
-  /** The end of sending, with its failure if it was one. */
+  /** The end of sending, with its failure if there was one. */
   private final case class End(failure: Option[Throwable], due: Span)
 
   private enum Timer:

@@ -4,14 +4,14 @@ import java.util.concurrent.atomic.LongAdder
 import skein.signal.LatencySampler
 import skein.units.*
 
-/** Decides when what enters one direction of one connection comes out at its far end. All times count from
-  * the link's start. Holds mutable state (what entered before delays what enters after), one per direction
-  * and connection; reads no clock.
+/** Decides when bytes that enter one direction of one connection come out at its far end. All times count
+  * from the link's start. Holds mutable state (earlier bytes delay later ones), one per direction and
+  * connection; reads no clock.
   *
   * @param stalls in the order of their beginnings
   * @param break the reset or silence that ends this connection
-  * @param stallsMet counts the stalls that held something up
-  * @param isInOrder whether what enters first comes out first
+  * @param stallsMet counts the stalls that delayed something
+  * @param isInOrder whether the order of entry is kept
   */
 private[link] final class Delivery(
     sampler: LatencySampler,
@@ -22,16 +22,16 @@ private[link] final class Delivery(
 ):
   private val upcomingStalls = stalls.buffered
   private var lastDue        = Span.Zero
-  // What leaves from now on may still fall into these.
+  // Bytes that leave from now on may still fall into these.
   private var met = Vector.empty[(from: Span, until: Span)]
 
-  /** The delay of what enters now, sampled.
+  /** Samples the delay of bytes that enter now.
     *
-    * @param now never smaller than at the call before
+    * @param now never smaller than in the previous call
     */
   def delay(now: Span): Span = sampler.oneWay(now)
 
-  /** When bytes come out that leave at a moment: a delay later, and never within a stall. None if they are
+  /** When bytes that leave at a time come out: a delay later, and never within a stall. None if they are
     * lost.
     */
   def due(leave: Span, delay: Span): Option[Span] =
@@ -40,10 +40,10 @@ private[link] final class Delivery(
     lastDue = lastDue.max(due)
     Option.unless(lossBegins.exists(_ <= due))(due)
 
-  /** When bytes come out that enter and leave now. */
+  /** When bytes that enter and leave now come out. */
   def due(now: Span): Option[Span] = due(now, delay(now))
 
-  /** When the connection breaks and both sides are told. */
+  /** When the connection breaks, with an error on both sides. */
   val breaksAt: Option[Span] = break.map:
     case TimedFault(at, Fault.Silence(lasts)) => at + lasts
     case TimedFault(at, _)                    => at

@@ -7,14 +7,13 @@ import org.apache.pekko.util.ByteString
 import skein.signal.{LatencyProfile, LatencySampler, SplitMix64}
 import skein.units.*
 
-/** A link between clients and a server that behaves as a profile says, whatever bytes cross it. Its faults'
-  * times count from `start`.
+/** A link between clients and a server that behaves as a profile specifies, whatever bytes cross it. Its
+  * faults' times count from `start`.
   *
-  * The same seed, clock and order of connections give the same delays and faults.
+  * Equal seeds, clocks and orders of connections give equal delays and faults.
   */
 final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, start: Instant):
 
-  /** Starts now. */
   def this(profile: LinkProfile, seed: Long, clock: Clock) = this(profile, seed, clock, clock.now())
 
   private val stateSeed   = SplitMix64.seedOf(seed, 0)
@@ -33,7 +32,7 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
   private val toServer = Direction(profile.toServer, bytesToServer)
   private val toClient = Direction(profile.toClient, bytesToClient)
 
-  /** What all connections share of one direction. */
+  /** The state of one direction that all connections share. */
   private final class Direction(val latency: LatencyProfile, val delivered: LongAdder):
     val bottleneck: Option[Bottleneck] = latency match
       case LatencyProfile.Limited(_, _, rate) => Some(Bottleneck(rate))
@@ -54,8 +53,8 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     * materialised once.
     *
     * @param broken the error that both sides get when the link breaks the connection
-    * @param isDatagrams whether each piece is a datagram: it comes out as it went in, never joined to
-    *   another, each after a delay of its own, so a later one may come first
+    * @param isDatagrams whether each piece is a datagram: datagrams are never joined, and have independent
+    *   delays, so a later one may arrive first
     */
   def connection(
       broken: TransportError,
@@ -85,8 +84,8 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
       line(toClient, index + 1)
     )
 
-  /** How long it takes until a client that connects now is heard of at the server's side, and from then until
-    * the client has the answer. None if one of the two is lost.
+  /** Time until the request of a client that connects now reaches the server's side, and from then until the
+    * answer reaches the client. None if one of the two is lost.
     */
   def handshake(): Option[(toServer: Span, toClient: Span)] =
     val index     = 2 * attempts.getAndIncrement()

@@ -3,25 +3,25 @@ package skein.link
 import skein.signal.SplitMix64
 import skein.units.*
 
-/** Something that goes wrong on a link. It concerns all connections of the link and both directions. */
+/** A failure of a link. It affects all connections of the link and both directions. */
 enum Fault:
 
   /** For this long nothing arrives; then everything that was sent meanwhile does, in order. */
   case Stall(lasts: Span)
 
-  /** Every open connection breaks at once, with an error on both sides. New ones may be opened. */
+  /** Every open connection breaks immediately, with an error on both sides. New ones may be opened. */
   case Reset
 
-  /** The other side is gone without a word: for this long whatever is sent, or under way, is lost and nobody
-    * is told (half-open connections); attempts to connect get no answer. Then the other side is back and
-    * resets what was open. A length beyond the flight's leaves the connections half-open for good.
+  /** The other side vanishes without an error: for this long everything sent, or in transit, is lost without
+    * a report (half-open connections); attempts to connect get no answer. Then the other side is back and
+    * resets open connections. A duration beyond the flight's leaves the connections half-open for good.
     */
   case Silence(lasts: Span)
 
-/** `at` counts from the link's start. */
+/** A fault at a time; `at` counts from the link's start. */
 final case class TimedFault(at: Span, fault: Fault)
 
-/** What goes wrong on a link over its life: what a schedule says, and what happens at random.
+/** The faults of a link over its life: those of a schedule, and random ones.
   *
   * @param schedule in any order
   * @param stallEvery mean time from a random stall's start to the next's (a Poisson process)
@@ -39,7 +39,7 @@ final case class Faults(
     s"faults need time between them: $this"
   )
 
-  /** All stalls in the order of their beginnings, without end where some come at random. */
+  /** All stalls in the order of their beginnings; infinite if there are random ones. */
   private[link] def stalls(seed: Long): Iterator[(from: Span, until: Span)] =
     val random    = SplitMix64(SplitMix64.seedOf(seed, 1))
     val scheduled = schedule.collect { case TimedFault(at, Fault.Stall(lasts)) =>
@@ -49,8 +49,8 @@ final case class Faults(
       (from = at, until = at + Span.ofSeconds(random.nextExponential(stallLasts.toSeconds)))
     merge(scheduled.sortBy(_.from).iterator, atRandom)(_.from)
 
-  /** What ends a connection that is opened at a moment: the silence that reigns then, or else the first reset
-    * or silence after it.
+  /** The fault that ends a connection opened at a time: a current silence, or else the first reset or silence
+    * after it.
     */
   private[link] def breakOf(opened: Span, seed: Long): Option[TimedFault] =
     val random    = SplitMix64(SplitMix64.seedOf(seed, 2))

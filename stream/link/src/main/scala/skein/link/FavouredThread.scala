@@ -5,14 +5,13 @@ import java.util.concurrent.ThreadFactory
 import java.util.concurrent.atomic.AtomicInteger
 import scala.util.Try
 
-/** Threads that go before all others but [[ControlThreads]], where the system allows it: for work that takes
-  * milliseconds and must not wait for a busy machine, such as writing a recording. They have the largest
-  * share of a processor that Linux gives by niceness, see setpriority(2). It takes the right to: root,
-  * `CAP_SYS_NICE`, or a limit of `ulimit -e 40`.
+/** Threads that take precedence over all others except [[ControlThreads]], where the system allows it: for
+  * work that takes milliseconds and must not wait for a busy machine, such as writing a recording. They have
+  * the largest share of a processor that Linux grants by niceness, see setpriority(2). It needs a privilege:
+  * root, `CAP_SYS_NICE`, or a limit of `ulimit -e 40`.
   */
 object FavouredThread:
 
-  /** Daemon threads. */
   def factory(name: String): ThreadFactory =
     val count = AtomicInteger()
     (work: Runnable) =>
@@ -26,7 +25,7 @@ object FavouredThread:
       thread.setDaemon(true)
       thread
 
-  /** @param thread as the system numbers them; what it starts has its niceness, too
+  /** @param thread the system's number; threads that it starts inherit its niceness
     * @return whether the system did so
     */
   private def favour(thread: Int): Boolean = Try:

@@ -5,27 +5,28 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 
-/** Who speaks at the other end of a new connection, told by its first bytes. A browser opens connections to
-  * any port for any page; what it sends begins as HTTP or as TLS does, with bytes of the page's choice behind
-  * that. Such a connection is closed before anything that it says is obeyed.
+/** Recognises the protocol of a new connection's peer by its first bytes. A browser opens connections to any
+  * port for any page; its data begin as HTTP or TLS, followed by bytes of the page's choice. Such a
+  * connection is closed before any of its data are obeyed.
   */
 enum FirstBytes:
-  /** Nothing is against it: the rest may be read. */
+  /** The bytes fit the port's own protocol: the rest may be read. */
   case Own
 
-  /** So far as a request of HTTP begins: the next bytes decide, and until then nothing is to be obeyed. */
+  /** The bytes so far could begin an HTTP request: the next ones decide, and until then nothing may be
+    * obeyed.
+    */
   case Undecided
 
-  /** @param what it is, for a person: "came …"
-    */
+  /** @param what a description for a person: "came …" */
   case Foreign(what: String)
 
 object FirstBytes:
-  /** Pure; to be asked again with all bytes so far while it is [[Undecided]].
+  /** Pure; while it is [[Undecided]], to be called again with all bytes so far.
     *
     * @param bytes of the connection, from its beginning
-    * @param own the first bytes that the port's protocol knows, 0 to 255; empty: any that is not another
-    *   protocol's
+    * @param own the first bytes of the port's protocol, 0 to 255; empty: any that do not begin another
+    *   protocol
     */
   def verdict(bytes: ByteString, own: Set[Int] = Set.empty): FirstBytes = bytes.headOption match
     case None        => Undecided
@@ -36,12 +37,13 @@ object FirstBytes:
           Foreign(s"an HTTP request (${word.utf8String.trim})")
         case Some(_) if own.isEmpty || own(first & 0xff) => Undecided
         case _ if first == Handshake && !own(Handshake)  => Foreign("a greeting of TLS")
-        case _ if own.nonEmpty && !own(first & 0xff)     => Foreign(s"a first byte of 0x${Integer.toHexString(first & 0xff | 0x100).drop(1)}")
-        case _                                           => Own
+        case _ if own.nonEmpty && !own(first & 0xff)     =>
+          Foreign(s"a first byte of 0x${Integer.toHexString(first & 0xff | 0x100).drop(1)}")
+        case _ => Own
 
-  /** Lets a connection's bytes through once its first ones are its own protocol's.
+  /** Passes a connection's bytes on once its first ones are its own protocol's.
     *
-    *   - '''Emits when''' bytes come that are decided upon.
+    *   - '''Emits when''' bytes arrive and the protocol is decided.
     *   - '''Backpressures when''' downstream does.
     *   - '''Completes when''' upstream has completed.
     *   - '''Fails when''' the first bytes are foreign, with [[TransportError.Foreign]].
@@ -63,11 +65,10 @@ object FirstBytes:
       _ => None
     ).filter(_.nonEmpty)
 
-  /** All that a page may send without being allowed to by the answer to an OPTIONS, and what programs send.
-    */
+  /** The methods that a page may send without a permission by OPTIONS, and those that programs send. */
   private val Methods =
     Vector("GET", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "CONNECT", "TRACE", "PATCH", "PRI")
       .map(word => ByteString(s"$word ".getBytes(US_ASCII)))
 
-  /** RFC 8446, 5.1: the type of a record of the handshake. */
+  /** The record type of a TLS handshake: RFC 8446, 5.1. */
   private val Handshake = 22

@@ -6,14 +6,14 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Success, Try}
 import skein.units.{Clock, Span}
 
-/** Measures round trips through anything that answers. */
+/** Measures round trips to any peer that answers. */
 object LatencyProbe:
 
-  /** Sends a request each `period`, whether or not the one before has been answered, and gives each one's
-    * round trip in the order of sending; a request that failed gives its failure.
+  /** Sends a request each `period`, whether or not the one before has been answered, and emits the round
+    * trips in the order of sending; for a failed request its failure.
     *
-    * @param request sends one and completes when its answer is there; it has a timeout of its own
-    * @param maxUnanswered requests under way; while there are so many none is sent
+    * @param request sends one and completes with its answer; it has a timeout of its own
+    * @param maxUnanswered most requests in progress; at this number none is sent
     */
   def roundTrips(
       request: () => Future[?],

@@ -3,15 +3,15 @@ package skein.link
 import java.util.concurrent.atomic.{LongAccumulator, LongAdder}
 import skein.units.*
 
-/** What a link has done so far.
+/** Counts of a link since its start.
   *
   * @param connections opened over it
-  * @param bytesToServer that came out at the server's side
-  * @param bytesToClient that came out at the client's side
-  * @param bytesLost swallowed by a silence, or under way when the link broke
+  * @param bytesToServer delivered to the server
+  * @param bytesToClient delivered to the client
+  * @param bytesLost lost in a silence, or in transit when the link broke
   * @param stalls a stall counts once for each direction of each connection that it held up
   * @param disconnects connections that the link broke
-  * @param bytesHeldBack that waited at their senders, because the queue of a line with a rate was full
+  * @param bytesHeldBack that waited at their senders because the queue of a line with a rate was full
   * @param longestWait of any bytes, from their sending until a line with a rate had sent them
   */
 final case class LinkCounts(
@@ -25,7 +25,7 @@ final case class LinkCounts(
     longestWait: Span
 )
 
-/** Where the lines of a link count. */
+/** The counters that a link's lines share. */
 private[link] final class LineCounters(
     val bytesDelivered: LongAdder,
     val bytesLost: LongAdder,

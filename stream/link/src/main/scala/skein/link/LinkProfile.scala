@@ -2,14 +2,14 @@ package skein.link
 
 import skein.signal.LatencyProfile
 
-/** Everything that a link does to what crosses it.
+/** The properties of a link.
   *
-  * @param toServer delays towards the server; the rate that it may name ([[LatencyProfile.Limited]]) is that
-  *   of a line which all connections share
-  * @param toClient the same on the way back, where a line of its own lies
-  * @param maxBytesInFlight what one direction of a connection holds at most (besides the segment that exceeds
-  *   it); then the sender waits, as with TCP's window
-  * @param cutsSegments whether bytes arrive in segments that are cut anywhere, for tests of what reads them
+  * @param toServer delays towards the server; a rate in it ([[LatencyProfile.Limited]]) is that of one line
+  *   for all connections
+  * @param toClient delays in the opposite direction, which has a line of its own
+  * @param maxBytesInFlight most bytes that one direction of a connection holds (besides the segment that
+  *   exceeds it); then the sender waits, as with TCP's window
+  * @param cutsSegments whether bytes arrive in segments that are cut anywhere, for tests of their readers
   */
 final case class LinkProfile(
     toServer: LatencyProfile,
@@ -22,7 +22,7 @@ final case class LinkProfile(
 
 object LinkProfile:
 
-  /** The same profile in both directions, and no faults. */
+  /** A profile with equal delays in both directions, and no faults. */
   def symmetric(latency: LatencyProfile): LinkProfile = LinkProfile(latency, latency)
 
   val none: LinkProfile = symmetric(LatencyProfile.none)

@@ -10,21 +10,21 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.units.Span
 
 /** Puts an emulated link between clients and a server: it listens, and forwards each connection that it
-  * accepts to the server's address, over the link in both directions. A client that gets through here while
-  * the server does not listen sees its connection break.
+  * accepts to the server's address, over the link in both directions. A client that connects while the server
+  * does not listen sees its connection break.
   *
-  * A connection is accepted without delay; only what crosses it is delayed. By datagrams, whoever is heard is
-  * a connection. A stream that begins as HTTP or TLS does is closed, and nothing of it is forwarded
-  * ([[FirstBytes]]): a browser reaches nobody through the link.
+  * A connection is accepted without delay; only its data are delayed. With datagrams, every sender is a
+  * connection. A stream that begins as HTTP or TLS is closed, and nothing of it is forwarded
+  * ([[FirstBytes]]): a browser cannot reach the server through the link.
   */
 final class LinkProxy private (listening: Listening, link: EmulatedLink, switch: SharedKillSwitch):
 
-  /** Where clients connect to, with the actual port. */
+  /** The address that clients connect to, with the actual port. */
   def address: Address = listening.address
 
   def counts: LinkCounts = link.counts
 
-  /** Accepts no more and closes the open connections. */
+  /** Stops accepting and closes the open connections. */
   def close(): Future[Done] =
     switch.shutdown()
     listening.close()
@@ -33,10 +33,9 @@ object LinkProxy:
 
   /** Starts listening. Fails with a [[TransportError]] where that is not possible.
     *
-    * @param maxConnections open at the same time. One more takes the place of the first over which nothing
-    *   has come yet, or of the one that has been silent for longest, if that is at least 5 s; else it is
-    *   closed
-    * @param unreachable told why, when an accepted connection is not continued to the server
+    * @param maxConnections open at a time. One more takes the place of the first without any data yet, or of
+    *   the one that has been silent for longest, if that is at least 5 s; else it is closed
+    * @param unreachable called with the reason when the server of an accepted connection cannot be reached
     * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
     */
   def start(
@@ -85,12 +84,11 @@ object LinkProxy:
 
   private val Silence = Span.ofSeconds(5)
 
-  /** A connection over the link. */
   private final class Crossing(switch: SharedKillSwitch) extends Places.Guest:
     @volatile private var crossedNs = System.nanoTime()
     @volatile private var crossed   = false
 
-    /** Notes what comes from either side. */
+    /** Records when data arrive from either side. */
     def noting: Flow[ByteString, ByteString, NotUsed] = Flow[ByteString]
       .via(switch.flow)
       .map: bytes =>

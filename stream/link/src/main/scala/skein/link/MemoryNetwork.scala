@@ -18,11 +18,11 @@ import skein.units.*
   * as well.
   *
   * A host's name serves as its address; `127.0.0.1` and `localhost` mean the host itself. Connecting takes a
-  * round trip of the link. As with TCP, each direction of a connection closes for itself; a side that fails
+  * round trip of the link. As with TCP, each direction of a connection closes separately; a failing side
   * breaks both; while a host is silent, connections stay open without an error, and attempts to connect end
   * with [[TransportError.NoAnswer]].
   *
-  * On one thread everything follows from the seed.
+  * On one thread the seed determines everything.
   *
   * @param connectTimeout after this long an attempt to connect that is not answered fails
   * @param backlog connections that may wait to be accepted by one listener; further attempts are not answered
@@ -41,10 +41,10 @@ final class MemoryNetwork(
   private val links = ConcurrentHashMap[(String, String), EmulatedLink]()
   private val hosts = ConcurrentHashMap[String, Host]()
 
-  /** The transport of the programs on this host. */
+  /** The transport for programs on this host. */
   def host(name: String): Transport = hosts.computeIfAbsent(name, Host(_))
 
-  /** What the link from one host to another has done so far. */
+  /** Counts of the link from one host to another. */
   def counts(client: String, server: String): LinkCounts = link(client, server).counts
 
   private def link(client: String, server: String): EmulatedLink =
@@ -69,7 +69,7 @@ final class MemoryNetwork(
           val connection = establish(to)
           Flow
             .futureFlow(connection)
-            // A client that gives up while it connects closes the connection once it is there.
+            // A client that cancels while it connects closes the connection once it is open.
             .withAttributes(Attributes(PropagateToNested))
             .mapMaterializedValue(_ => connection.map(_ => Done))
         .mapMaterializedValue(_.flatten)
@@ -125,7 +125,7 @@ final class MemoryNetwork(
     private def noAnswer(to: Address, after: Span): Future[Nothing] =
       afterwards(after)(Future.failed(TransportError.NoAnswer(to, connectTimeout)))
 
-    /** Ports of outgoing connections and of listeners that do not care, in turn. */
+    /** The next free port, for outgoing connections and for listeners on port 0. */
     private def nextPort(): Int = freePorts(Math.floorMod(portsGiven.getAndIncrement(), freePorts.size))
 
     private def isSelf(address: String) = address == name || loopback.contains(address)
@@ -137,7 +137,7 @@ final class MemoryNetwork(
       queue.fail(error)
       Future.failed(error)
 
-  /** Starts a connection: its client's and its server's end. */
+  /** Makes a connection's two ends: the client's and the server's. */
   private def open(link: EmulatedLink, client: Address, server: Address) =
     val port = Flow.fromSinkAndSourceMat(
       Sink.asPublisher[ByteString](fanout = false),
@@ -161,7 +161,7 @@ object MemoryNetwork:
         if !queue.isCompleted then queue.complete()
         Future.successful(Done)
 
-  /** One end of a connection. What resets the direction towards it ends the other one too. */
+  /** One end of a connection. A reset of the direction towards it also ends the other direction. */
   private def end(
       peer: Address,
       received: Publisher[ByteString],

@@ -1,6 +1,6 @@
 package skein.link
 
-/** Which links a fault concerns. */
+/** The links that a fault affects. */
 enum Where:
   case Everywhere
 
@@ -9,14 +9,14 @@ enum Where:
 
   case Link(client: String, server: String)
 
-/** A fault of a network: where, when, and for how long. */
+/** A fault of a network: its links, its time, and its duration. */
 final case class NetworkFault(where: Where, timed: TimedFault)
 
-/** What lies between the hosts of a [[MemoryNetwork]].
+/** The links between the hosts of a [[MemoryNetwork]].
   *
-  * @param link between any two hosts for which `links` says nothing
+  * @param link between any two hosts without an entry in `links`
   * @param links by client's and server's host
-  * @param faults besides those that the links' own profiles name
+  * @param faults in addition to those of the links' own profiles
   */
 final case class NetworkPlan(
     link: LinkProfile = LinkProfile.none,
@@ -24,7 +24,7 @@ final case class NetworkPlan(
     faults: Seq[NetworkFault] = Nil
 ):
 
-  /** The link from a client's host to a server's, with all faults that concern it. A host reaches itself
+  /** The link from a client's host to a server's, with all faults that affect it. A host reaches itself
     * without delay or fault.
     */
   private[link] def between(client: String, server: String): LinkProfile =

@@ -5,24 +5,23 @@ import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
 import skein.units.*
 
-/** Who has one of a port's limited places. When all are taken, one more gets the place of the guest that came
-  * first of those who have said nothing of the port's protocol yet; else of the one that has been silent for
-  * the longest time, if that is at least `silence`; else it is turned away. So whoever only holds a place
-  * makes room at once for those who speak. Safe from any thread.
+/** Allocates a port's limited places. When all are taken, a new guest gets the place of the earliest guest
+  * that has not yet sent a message of the port's protocol; else of the one that has been silent for the
+  * longest time, if that is at least `silence`; else it is refused. So guests that only hold a place make
+  * room immediately for others. Safe from any thread.
   */
 private[skein] class Places(most: Int, silence: Span):
   private val guests = ConcurrentHashMap[Long, Places.Guest]()
   private val taken  = AtomicInteger()
 
-  /** Whether one more may come; it has a place then, until it has [[left]]. */
+  /** Whether one more guest is admitted; it has a place then, until it has [[left]]. */
   def admit(): Boolean = synchronized:
     val free = taken.incrementAndGet() <= most || vacate()
     if !free then
       val _ = taken.decrementAndGet()
     free
 
-  /** @param number counts guests in the order in which they come
-    */
+  /** @param number counts guests in the order of arrival */
   def entered(number: Long, guest: Places.Guest): Unit =
     val _ = guests.put(number, guest)
 
@@ -42,13 +41,13 @@ private[skein] class Places(most: Int, silence: Span):
     leaving.isDefined
 
 private[skein] object Places:
-  /** Asked from any thread. */
+  /** A holder of a place; called from any thread. */
   trait Guest:
-    /** Whether a message of the port's protocol has come of it. */
+    /** Whether it has sent a message of the port's protocol. */
     def hasSpoken: Boolean
 
-    /** For how long it has asked nothing and waited for nothing. */
+    /** How long it has neither sent a request nor waited for an answer. */
     def silentFor: Span
 
-    /** It is to close. */
+    /** Closes it: another guest gets its place. */
     def leave(): Unit

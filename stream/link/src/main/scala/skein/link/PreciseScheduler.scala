@@ -41,7 +41,7 @@ final class PreciseScheduler(
 
   private val onClose = ConcurrentHashMap.newKeySet[Once]()
 
-  /** Tasks start at most this often, per second and timer. */
+  /** Most executions of one repeating task per second. */
   def maxFrequency: Double = 10_000
 
   def scheduleOnce(delay: FiniteDuration, runnable: Runnable)(using executor: ExecutionContext): Cancellable =
@@ -107,7 +107,7 @@ final class PreciseScheduler(
       if first && runnable.isInstanceOf[Scheduler.TaskRunOnClose] then onClose.remove(this): Unit
       first
 
-  /** Runs again and again until cancelled or until the task throws; `nextDelayNanos` is asked after each run.
+  /** Runs repeatedly until cancelled or until the task throws; `nextDelayNanos` is evaluated after each run.
     */
   private final class Repeating(
       runnable: Runnable,
@@ -117,7 +117,7 @@ final class PreciseScheduler(
   ) extends Runnable
       with Cancellable:
     private val stopped = AtomicBoolean()
-    // Cancelling what is pending only frees its memory sooner: `stopped` alone decides.
+    // Cancelling the pending task only frees its memory earlier: `stopped` alone decides.
     @volatile private var pending = scheduleOnce(initialDelay, this)
 
     def run(): Unit =

@@ -6,27 +6,27 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
 
-/** How Linux chooses between threads that could run, see sched(7). Java's priorities have no effect there,
-  * and niceness has none on how soon a thread runs that wakes up: it waits until the one on its processor has
-  * used up its slice, some 3 to 5 ms. Other systems know no such policies.
+/** Linux's policies for choosing between threads that could run, see sched(7). Java's priorities have no
+  * effect there, and niceness has none on how soon a thread runs that wakes up: it waits until the one on its
+  * processor has used up its slice, some 3 to 5 ms. Other systems have no such policies.
   *
   * @param number in linux/sched.h
-  * @param priority among threads of the same policy
+  * @param priority among threads of one policy
   */
 enum SchedulingPolicy(private val number: Int, priority: Int):
 
-  /** Runs when no other thread of the user's session wants the processor, and gives it back at once. Any
-    * process may choose it, and may not go back.
+  /** Runs when no other thread of the user's session needs the processor, and yields it immediately. Any
+    * process may choose it, and may not leave it.
     */
   case Idle extends SchedulingPolicy(5, 0)
 
-  /** Takes the processor at once from every thread without it. It takes the right to: root, `CAP_SYS_NICE`,
-    * or a limit of `ulimit -r 1`. What such a thread starts has the usual policy. The system leaves other
-    * threads a twentieth of the time.
+  /** Preempts every other thread immediately. Needs a privilege: root, `CAP_SYS_NICE`, or a limit of `ulimit
+    * -r 1`. Threads that it starts have the ordinary policy. The system reserves a twentieth of the time for
+    * other threads.
     */
   case RealTime extends SchedulingPolicy(2, 1)
 
-  /** Schedules one of this process's threads like that.
+  /** Applies this policy to one of this process's threads.
     *
     * @param thread as the system numbers them
     * @return whether the system did so
@@ -43,10 +43,10 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
 object SchedulingPolicy:
   private val isLinux = System.getProperty("os.name") == "Linux"
 
-  /** `SCHED_RESET_ON_FORK` in linux/sched.h. */
+  /** The flag `SCHED_RESET_ON_FORK` in linux/sched.h. */
   private val ResetOnFork = 0x40000000
 
-  /** sched_setscheduler(2); to link it takes milliseconds, which no thread of control should spend twice. */
+  /** sched_setscheduler(2); linking it takes milliseconds, which no control thread should spend twice. */
   private lazy val setScheduler: MethodHandle =
     val linker = Linker.nativeLinker()
     linker.downcallHandle(
@@ -59,14 +59,14 @@ object SchedulingPolicy:
       )
     )
 
-  /** The calling thread's number; none where the system tells none. */
+  /** The calling thread's number; None where the system does not report it. */
   def thisThread: Option[Int] =
     if isLinux then
       Try(Files.readSymbolicLink(Path.of("/proc/thread-self")).getFileName.toString.toInt).toOption
     else None
 
-  /** This process's threads whose names begin so; the system knows 15 characters of a name. None where it
-    * tells none.
+  /** This process's threads whose names begin with one of these; the system keeps 15 characters of a name.
+    * Empty where the system does not list them.
     */
   def threadsNamed(beginnings: String*): Vector[Int] =
     if isLinux then
@@ -76,5 +76,5 @@ object SchedulingPolicy:
         .map(_.getFileName.toString.toInt)
     else Vector.empty
 
-  /** Empty where the thread has ended since it was listed. */
+  /** A thread's name; empty if it has ended since it was listed. */
   private def nameOf(task: Path): String = Try(Files.readString(task.resolve("comm"))).getOrElse("")

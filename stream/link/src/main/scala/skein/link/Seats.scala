@@ -3,10 +3,10 @@ package skein.link
 import java.util.concurrent.atomic.AtomicLong
 import skein.units.{Clock, Instant, Span}
 
-/** A port's [[Places]], shared by its connections, for protocols in which whoever is there speaks now and
-  * then. From any thread.
+/** A port's [[Places]], shared by its connections, for protocols in which every peer sends from time to time.
+  * From any thread.
   *
-  * @param most connections at once
+  * @param most open connections
   */
 private[skein] final class Seats(most: Int, private val clock: Clock):
   private val places             = Places(most, Seats.Silent)
@@ -14,17 +14,17 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
   private val seated             = AtomicLong()
   private val displaced, refused = AtomicLong()
 
-  /** Connections that gave up their place. */
+  /** Connections that lost their place to another. */
   def displacedConnections: Long = displaced.get
 
-  /** Connections for which there was no place. */
+  /** Connections that were refused for lack of a place. */
   def refusedConnections: Long = refused.get
 
   def taken: Int = seated.get.toInt
 
-  /** A seat for one more connection, or none, where it is to be closed at once.
+  /** A seat for one more connection; None if it must be closed immediately.
     *
-    * @param leave closes it when another gets its place; called once at most, on that other's thread
+    * @param leave closes it when another gets its place; called at most once, on the other's thread
     */
   def enter(leave: () => Unit): Option[Seats.Seat] =
     if places.admit() then
@@ -37,10 +37,10 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
       None
 
 private[skein] object Seats:
-  /** A connection that has spoken may be silent for so long before another gets its place. */
+  /** Silence after which a connection may lose its place to another. */
   val Silent: Span = Span.ofSeconds(5)
 
-  /** One connection's. */
+  /** One connection's seat, until it has `left`. */
   final class Seat private[Seats] (seats: Seats, private[Seats] val number: Long, close: () => Unit)
       extends Places.Guest:
     @volatile private var spokeAt = Option.empty[Instant]
@@ -53,10 +53,10 @@ private[skein] object Seats:
       seats.displaced.incrementAndGet(): Unit
       close()
 
-    /** It has said something of use. */
+    /** Records a valid message of the connection. */
     def spoke(): Unit = spokeAt = Some(seats.clock.now())
 
-    /** Its connection has ended; to be called once. */
+    /** Frees the seat of a closed connection; to be called once. */
     def left(): Unit =
       seats.seated.decrementAndGet(): Unit
       seats.places.left(number)

@@ -5,12 +5,10 @@ import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import skein.signal.SplitMix64
 
-/** Where a byte stream is cut into segments. TCP promises nothing about it, and what reads from it must not
-  * care.
-  */
+/** Cuts a byte stream into segments. TCP guarantees no boundaries, and readers must not depend on them. */
 private[link] object Segments:
 
-  /** Cuts what comes at up to three places anywhere, decided by the seed. */
+  /** Cuts each segment at up to three places, determined by the seed. */
   def cut(seed: Long): Flow[ByteString, ByteString, NotUsed] = Flow[ByteString].statefulMapConcat: () =>
     val random = SplitMix64(seed)
     bytes => pieces(bytes, random)

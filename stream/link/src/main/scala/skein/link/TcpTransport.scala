@@ -15,12 +15,12 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Success
 import skein.units.Span
 
-/** Real sockets. Small messages leave at once (no Nagle).
+/** Real sockets. Small messages are sent immediately (no Nagle).
   *
-  * Without certificates each direction closes for itself: a side that has finished sending still receives
-  * what is on its way. With them a connection is TLS 1.3, both sides show theirs, and the host that is
-  * connected to must be named in its own; a connection that is open may prove not to be trusted with its
-  * first bytes, and whichever side ends, ends it.
+  * Without certificates each direction closes separately: a side that has finished sending still receives
+  * data in transit. With them a connection is TLS 1.3, both sides present theirs, and the server's must name
+  * its host; an open connection may turn out not to be trusted with its first bytes, and either side's end
+  * closes both directions.
   *
   * @param connectTimeout after this long without an answer a connection fails with
   *   [[TransportError.NoAnswer]]
@@ -94,7 +94,7 @@ object TcpTransport:
     engine.setUseClientMode(true)
     val asked = engine.getSSLParameters
     asked.setProtocols(Protocols)
-    // The name is verified as a browser does.
+    // The name is verified by the rules of browsers.
     asked.setEndpointIdentificationAlgorithm("HTTPS")
     engine.setSSLParameters(asked)
     TlsEngine(engine)
@@ -110,7 +110,7 @@ object TcpTransport:
 
   private[link] type Explain = PartialFunction[Throwable, Throwable]
 
-  /** What a connection's failure means, in the words of [[TransportError]]. */
+  /** Converts a connection's failure to a [[TransportError]]. */
   private[link] def connectError(to: Address, timeout: Span): Explain =
     case e: StreamTcpException => e.getCause match
         case c: ConnectException if c.getMessage.startsWith("Connect timeout") =>
@@ -118,7 +118,7 @@ object TcpTransport:
         case _: ConnectException                                  => TransportError.NobodyListens(to)
         case null                                                 => TransportError.Lost(to, e.getMessage)
         case c if rootCause(c).isInstanceOf[UnknownHostException] => TransportError.UnknownHost(to)
-        // The other side may accept and reset before this one has seen that it is connected.
+        // The peer may accept and reset before this side has seen that it is connected.
         case c: IOException if Option(c.getMessage).exists(_.startsWith("Connection reset")) =>
           TransportError.Lost(to, c.getMessage)
         case c => TransportError.Failed(to, c)

@@ -3,20 +3,19 @@ package skein.link
 import java.nio.ByteBuffer
 import javax.net.ssl.{SSLEngine, SSLEngineResult, SSLException, SSLParameters, SSLSession}
 
-/** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the
-  * whole of a record, however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for
-  * 18, and so tries for ever.
+/** A TLS engine that checks each record's header before the JDK's engine reads it. The JDK's waits for a
+  * whole record of any stated length, in a format older than TLS up to 32 KiB; Pekko has room for 18, and so
+  * retries for ever.
   *
-  * @param failed told why a connection is not trusted
+  * @param failed called with the reason why a connection is not trusted
   */
 private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Unit = _ => ())
     extends SSLEngine:
   import TlsEngine.*
 
-  /** @param source begins with a record, since a call takes whole ones
-    */
+  /** @param source begins with a record, since a call consumes whole ones */
   def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
-    // What is no record it refuses by itself, once, and is closed then.
+    // The JDK's engine refuses anything but a record by itself, once, and is closed then.
     telling(own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count))
 
   def wrap(sources: Array[ByteBuffer], from: Int, count: Int, into: ByteBuffer): SSLEngineResult =
@@ -68,12 +67,12 @@ private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Uni
   }
 
 private[skein] object TlsEngine:
-  /** From `change_cipher_spec` to `application_data`: RFC 8446, 5.1. */
+  /** Record types from `change_cipher_spec` to `application_data`: RFC 8446, 5.1. */
   private val Types = 20 to 23
 
   private val Header = 5
 
   private val NoRecord = ByteBuffer.wrap("no record".getBytes("US-ASCII"))
 
-  /** Of an encrypted record: RFC 8446, 5.2. */
+  /** Greatest length of an encrypted record: RFC 8446, 5.2. */
   private val Most = (1 << 14) + 256

@@ -7,26 +7,26 @@ import javax.net.ssl.SSLContext
 import scala.util.Using
 import skein.units.Span
 
-/** Whether who listens somewhere speaks TLS. */
+/** Finds out whether the listener at an address speaks TLS. */
 private[skein] object TlsProbe:
   // RFC 8446, 5.1: a record's type, which is an alert or of a handshake, and the version's first byte.
   private val Alert     = 21
   private val Handshake = 22
   private val Version   = 3
 
-  /** To connect, and so long again for an answer, where a person waits for what is wrong. */
+  /** Bound on connecting, and again on the answer, while a person waits for the diagnosis. */
   val Within: Span = Span.ofSeconds(2)
 
-  /** Greets by TLS, and sees whether the answer is TLS too, whatever it says. Blocks for `within` to connect,
-    * and so long again for the answer.
+  /** Sends a TLS ClientHello, and returns whether the answer is TLS, whatever its content. Blocks for
+    * `within` to connect, and as long again for the answer.
     */
   def answers(at: Address, within: Span = Within): Boolean =
     tried(at, within)(greeted).exists: answer =>
       answer.length == 2 && (answer(0) == Alert || answer(0) == Handshake) && answer(1) == Version
 
-  /** Whether who listens there ends a connection that begins by TLS, and none that says nothing yet: so does
-    * who waits for other words. A link whose other side is not there ends both, or none. Blocks for three
-    * times `within` at most.
+  /** Whether the listener closes a connection that begins with TLS, but not one that sends nothing: so does a
+    * server of another protocol. A link whose far side is down closes both, or none. Blocks for at most three
+    * times `within`.
     */
   def isRefused(at: Address, within: Span = Within): Boolean =
     tried(at, within)(greeted).exists(_.isEmpty) && tried(at, within): socket =>
@@ -37,7 +37,7 @@ private[skein] object TlsProbe:
   private def greeted(socket: Socket): Array[Byte] =
     socket.getOutputStream.write(greeting)
     try socket.getInputStream.readNBytes(2)
-    // The other side may end it before it has read all.
+    // The peer may close it before it has read everything.
     catch case _: SocketException => Array.emptyByteArray
 
   private def tried[A](at: Address, within: Span)(ask: Socket => A): Option[A] =

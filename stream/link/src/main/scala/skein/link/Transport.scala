@@ -9,22 +9,21 @@ import scala.util.Try
 
 /** A host and port.
   *
-  * @param host a name, or an address, of IPv6 without brackets
+  * @param host a name, or an address; IPv6 without brackets
   */
 final case class Address(host: String, port: Int):
-  /** As [[Address.parse]] reads it. */
   override def toString: String = s"$uriHost:$port"
 
-  /** As a URI has it: an IPv6 address in brackets. */
+  /** The host in a URI's form: an IPv6 address in brackets. */
   def uriHost: String = if host.contains(':') then s"[$host]" else host
 
 object Address:
   private val Plain = raw"([^:\[\]]+):(\d{1,5})".r
   private val IPv6  = raw"\[([^\[\]]*:[^\[\]]*)\]:(\d{1,5})".r
 
-  /** `HOST:PORT`, of an IPv6 address `[ADDRESS]:PORT`.
+  /** Parses `HOST:PORT`, or for an IPv6 address `[ADDRESS]:PORT`.
     *
-    * @return or what was expected and came
+    * @return Left states what was expected and what was given
     */
   def parse(text: String): Either[String, Address] = text match
     case Plain(_, port) if port.toInt > MostPort => Left(s"expected a port up to $MostPort, came '$text'")
@@ -37,8 +36,8 @@ object Address:
 
   private val MostPort = 65535
 
-/** Where connections come from: TCP in live flight, the in-memory network in virtual time. Everything above
-  * it works on byte streams and is the same for both.
+/** Opens connections: TCP in live flight, the in-memory network in virtual time. Everything above it works on
+  * byte streams and does not depend on which.
   */
 trait Transport:
 
@@ -56,8 +55,8 @@ final case class Incoming(from: Address, flow: Flow[ByteString, ByteString, NotU
 
 /** A port that accepts connections until it is closed. */
 trait Listening:
-  /** Where it listens, with the actual port. */
+  /** The listening address, with the actual port. */
   def address: Address
 
-  /** Accepts no more; connections already open go on. */
+  /** Stops accepting; open connections stay open. */
   def close(): Future[Done]

@@ -4,11 +4,11 @@ import skein.units.Decimals.fixed
 import skein.units.Span
 
 /** Why there is no connection, or no listener. Futures and streams of a [[Transport]] fail with one of these;
-  * the message says what was wanted, where, and what to do.
+  * the message states what was attempted, where, and what to do.
   */
 enum TransportError(message: String, cause: Throwable | Null = null) extends RuntimeException(message, cause):
 
-  /** The host answers, and no program listens at that port. */
+  /** The host answers, but no program listens at that port. */
   case NobodyListens(at: Address)
       extends TransportError(s"nobody listens at $at; is the program there started?")
 
@@ -18,10 +18,8 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
       after: Span
   ) extends TransportError(s"no answer from $at after ${after.toSeconds.fixed(1)} s; is the host reachable?")
 
-  /** The host's name has no address. */
   case UnknownHost(at: Address) extends TransportError(s"unknown host ${at.host}; check its name")
 
-  /** Another program listens there already. */
   case PortTaken(at: Address)
       extends TransportError(
         s"port ${at.port} of ${at.host} is taken; stop the other program or choose another port"
@@ -31,10 +29,10 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
     */
   case CannotListen(at: Address, reason: String) extends TransportError(s"cannot listen at $at: $reason")
 
-  /** The connection was there and broke: reset by the other side, or by the network. */
+  /** An open connection broke: reset by the other side, or by the network. */
   case Lost(to: Address, reason: String) extends TransportError(s"connection to $to lost: $reason")
 
-  /** One side does not trust the other, or shows nothing to be trusted by. */
+  /** One side does not trust the other's certificate, or the other presents none. */
   case NotTrusted(at: Address, reason: Throwable)
       extends TransportError(
         s"no trusted connection to $at, ${TransportError.whoRefuses(reason)}: " +
@@ -42,16 +40,15 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
         reason
       )
 
-  /** Who connects speaks another protocol: see [[FirstBytes]]. */
+  /** The connecting peer speaks another protocol: see [[FirstBytes]]. */
   case Foreign(from: Address, what: String)
       extends TransportError(s"connection from $from closed: expected this port's own protocol, came $what")
 
-  /** Anything else on the way to a connection. */
   case Failed(to: Address, reason: Throwable)
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)
 
 object TransportError:
-  /** By how the JDK's TLS words it. */
+  /** Which side refuses, by the wording of the JDK's TLS. */
   private def whoRefuses(reason: Throwable): String =
     def says(words: String) = s"${reason.getMessage}".contains(words)
     if says("Received fatal alert") then "which refuses what this side shows"

@@ -22,12 +22,12 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.units.Span
 
-/** Datagrams as connections: whoever is heard at a port is one, until nothing was heard of it for `idle`.
-  * Nobody is told of the other side's end, what is lost is lost, and what does not fit into a datagram is
-  * cut. For protocols that find the beginning of a message by themselves, such as MAVLink.
+/** Datagrams as connections: every sender at a port is one, until it was silent for `idle`. The other side's
+  * end is not reported, lost datagrams stay lost, and a message too large for a datagram is split. For
+  * protocols that find the beginning of a message by themselves, such as MAVLink.
   *
   * @param mostPeers at one port. One more takes the place of the one that has been silent for longest, if
-  *   that is at least [[UdpSocket.Silence]]; else what it sends is dropped
+  *   that is at least [[UdpSocket.Silence]]; else its datagrams are dropped
   */
 final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem)
     extends Transport:
@@ -62,11 +62,11 @@ final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(u
                 Future.successful(Done))
         )
 
-/** An open UDP port, with a thread of its own that receives.
+/** An open UDP port, with a receiving thread of its own.
   *
-  * @param speaks whether a datagram is of the port's protocol: others make nobody a peer
-  * @param dropped datagrams of peers beyond the limit, or of another protocol, or for which nobody was quick
-  *   enough
+  * @param speaks whether a datagram belongs to the port's protocol: only such ones make their sender a peer
+  * @param dropped datagrams of peers beyond the limit, of another protocol, or that arrived faster than they
+  *   were handled
   */
 final class UdpSocket private (
     socket: DatagramSocket,
@@ -81,13 +81,13 @@ final class UdpSocket private (
   private val peers             = ConcurrentHashMap[InetSocketAddress, Peer]()
   @volatile private var tellNew = Option.empty[Incoming => Unit]
 
-  /** With the actual port. */
   val address: Address = Address(socket.getLocalAddress.getHostAddress, socket.getLocalPort)
 
-  /** From now on, is given everybody who is heard and was not known. */
+  /** Sets the function that is called with every new peer. */
   def onPeer(tell: Incoming => Unit): Unit = tellNew = Some(tell)
 
-  /** What is sent to an address and comes from there; to be materialised once. */
+  /** A flow to an address: sends datagrams to it and emits those received from it; to be materialised once.
+    */
   def peer(to: Address, onEnd: () => Unit = () => ()): Flow[ByteString, ByteString, NotUsed] =
     open(resolved(to), isLasting = true, onEnd).flow
 
@@ -101,7 +101,7 @@ final class UdpSocket private (
       Source.queue[ByteString](Waiting).preMaterialize()
     @volatile private var heardNs = System.nanoTime()
 
-    /** For how long nothing was heard of it; of a lasting one, no time. */
+    /** How long nothing was received from it; zero for a lasting peer. */
     def silentFor: Span = if isLasting then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
 
     def heard(bytes: ByteString): Unit =
@@ -115,14 +115,14 @@ final class UdpSocket private (
         Sink
           .foreach[ByteString](bytes => bytes.grouped(MostBytes).foreach(send(at, _)))
           .mapMaterializedValue(_.onComplete: _ =>
-            // By then another may have come from there.
+            // By then another datagram may have been received from it.
             peers.remove(at, this)
             onEnd()),
         source
       )
 
   private def send(to: InetSocketAddress, bytes: ByteString): Unit =
-    // Nobody need listen there, and the line may be full: that is what datagrams are.
+    // There may be no receiver, and the line may be full: datagrams guarantee nothing.
     try socket.send(DatagramPacket(bytes.toArrayUnsafe(), bytes.size, to))
     catch case _: java.io.IOException => dropped.increment()
 
@@ -154,7 +154,7 @@ final class UdpSocket private (
   private def forgetIdle(): Unit = peers.forEach: (at, peer) =>
     if peer.silentFor > idle then forget(at, peer)
 
-  /** Whether somebody who was silent for long has made room. */
+  /** Whether a peer that was silent for long has made room. */
   private def vacated(): Boolean =
     val silent = peers.asScala.maxByOption(_._2.silentFor).filter(_._2.silentFor >= Silence)
     silent.foreach(forget)
@@ -165,7 +165,7 @@ final class UdpSocket private (
     peer.end()
 
 object UdpSocket:
-  /** Fails with a [[TransportError]]. */
+  /** Opens the port; fails with a [[TransportError]]. */
   def bind(
       at: Address,
       mostPeers: Int = 64,
@@ -186,11 +186,11 @@ object UdpSocket:
     try InetSocketAddress(InetAddress.getByName(at.host), at.port)
     catch case _: UnknownHostException => throw TransportError.UnknownHost(at)
 
-  /** Who was not heard for so long makes room for others. */
+  /** A peer that was silent for this long makes room for others. */
   val Silence: Span = Span.ofSeconds(2)
 
-  /** Of a datagram that is sent: fits into an Ethernet frame. */
+  /** Most bytes of a sent datagram: fits into an Ethernet frame. */
   private val MostBytes = 1400
 
-  /** Datagrams of one peer that may wait. */
+  /** Most received datagrams of one peer that wait. */
   private val Waiting = 256

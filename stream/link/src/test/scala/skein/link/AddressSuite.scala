@@ -2,7 +2,7 @@ package skein.link
 
 class AddressSuite extends munit.FunSuite:
 
-  test("a host and a port are read, of an IPv6 address in brackets, and told likewise"):
+  test("a host and a port are parsed and printed, an IPv6 address in brackets"):
     for
       (text, host) <- Seq(
         "127.0.0.1:41451"   -> "127.0.0.1",
@@ -15,7 +15,7 @@ class AddressSuite extends munit.FunSuite:
       assertEquals(read, Right(Address(host, 41451)))
       assertEquals(read.map(_.toString), Right(text))
 
-  test("what is none is refused, and an IPv6 address without brackets is told how it is written"):
+  test("an invalid address is refused, and for IPv6 without brackets the correct form is shown"):
     for text <-
         Seq("", "here", ":80", "here:", "here:-1", "[here]:80", "here:80 ")
     do

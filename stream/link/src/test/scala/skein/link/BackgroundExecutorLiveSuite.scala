@@ -4,7 +4,7 @@ import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch, ThreadFactor
 import scala.jdk.CollectionConverters.*
 import skein.units.Span
 
-/** On threads. */
+/** Runs tasks on real threads. */
 class BackgroundExecutorLiveSuite extends munit.FunSuite:
 
   private def made(threads: ConcurrentLinkedQueue[Thread]): ThreadFactory = work =>
@@ -19,7 +19,7 @@ class BackgroundExecutorLiveSuite extends munit.FunSuite:
     background.clear()
     usual.clear()
 
-  /** The threads on which work ran that is given so, in its order. */
+  /** The threads on which 100 tasks ran, in order. */
   private def ran(patience: Span): Vector[Thread] =
     val on       = ConcurrentLinkedQueue[(Int, Thread)]()
     val all      = CountDownLatch(100)
@@ -34,18 +34,18 @@ class BackgroundExecutorLiveSuite extends munit.FunSuite:
       on.asScala.map(_._2).toVector
     finally executor.close()
 
-  test("a thread that was kept from the processor in a slice is replaced by a usual one, which goes on"):
+  test("a thread that did not get the processor in a slice is replaced by an ordinary one, which continues"):
     val on = ran(Span.ofSeconds(-1))
     background.forEach(_.join(60_000))
     assert(!background.asScala.exists(_.isAlive))
     assertEquals((background.size, usual.size), (1, 1))
     assertEquals(on, background.peek +: Vector.fill(99)(usual.peek))
 
-  test("one that had the processor stays"):
+  test("a thread that had the processor stays"):
     assertEquals(ran(Span.ofSeconds(3600)), Vector.fill(100)(background.peek))
     assertEquals((background.size, usual.size), (1, 0))
 
-  test("what waits for ever ends when nothing more is wanted"):
+  test("a task that waits for ever is interrupted on close"):
     val executor = new BackgroundExecutor(made(background), made(usual))
     val began    = CountDownLatch(1)
     executor.execute: () =>

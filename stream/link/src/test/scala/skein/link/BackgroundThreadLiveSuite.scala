@@ -3,7 +3,7 @@ package skein.link
 import java.nio.file.Path
 import skein.testing.{Lengthy, Optimised}
 
-/** Asks the system itself. */
+/** Reads the thread's policy from the system. */
 class BackgroundThreadLiveSuite extends munit.FunSuite, Lengthy, Optimised:
 
   private def onLinux(name: String)(body: => Unit): Unit =

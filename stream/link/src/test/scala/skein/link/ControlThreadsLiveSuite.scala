@@ -10,7 +10,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.jdk.CollectionConverters.*
 
-/** Asks Linux how it schedules the threads of this JVM, which keep that for good. */
+/** Reads from Linux how it schedules the threads of this JVM, which keep their policy for good. */
 class ControlThreadsLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("control-threads", PreciseScheduler.config)
   private given ExecutionContext    = ExecutionContext.parasitic
@@ -21,7 +21,10 @@ class ControlThreadsLiveSuite extends munit.FunSuite:
 
   private val (usual, roundRobin) = (0, 2)
 
-  test("they take the lead, also those that start later; who blocks, and what they start, does not"):
+  test(
+    "control threads get the real-time policy, also later ones; blocking threads and their children do " +
+      "not"
+  ):
     val before  = policyOnControl(using system.dispatcher)
     val mayLead =
       before.flatMap: policy =>
@@ -44,7 +47,7 @@ class ControlThreadsLiveSuite extends munit.FunSuite:
   private def policyOnControl(using ExecutionContext): Future[Int] =
     Future(ThreadPolicy.of(Path.of("/proc/thread-self")))
 
-  /** Of the thread that timers run on. */
+  /** The policy of the thread that runs timers. */
   private def onTimer(): Future[Int] =
     val found = Promise[Int]()
     system.scheduler.scheduleOnce(1.milli)(
@@ -61,7 +64,7 @@ class ControlThreadsLiveSuite extends munit.FunSuite:
     thread.join()
     found.asScala.head
 
-  /** Bytes to a socket and back, so that its threads have run. */
+  /** Sends bytes to a socket and back, so that its threads have run. */
   private def echoed(): Future[ByteString] =
     for
       bound <- Tcp().bind("127.0.0.1", 0).to(Sink.foreach(_.handleWith(Flow[ByteString]): Unit)).run()

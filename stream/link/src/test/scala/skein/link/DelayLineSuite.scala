@@ -64,19 +64,19 @@ class DelayLineSuite extends munit.FunSuite:
   ): Future[Seq[(String, Double)]] =
     source.via(line.flow).map(bytes => bytes.utf8String -> line.ms()).runWith(Sink.seq)
 
-  test("bytes come out after exactly the delay, and so does the end"):
+  test("bytes and the end come out after exactly the delay"):
     val (came, ended) = over(quarterSecond): line =>
       for came <- arrivals(every(100, 3), line) yield (came, line.ms())
     assertEquals(came, Seq("0;" -> 250.0, "1;" -> 350.0, "2;" -> 450.0))
     assertEquals(ended, 450.0)
 
-  test("bytes keep their order, and those that are due at once come out as one segment"):
+  test("bytes keep their order, and those that are due together come out as one segment"):
     val came = over(LatencyProfile.vpn)(line => arrivals(every(1, 500), line))
     assertEquals(came.map(_._1).mkString, (0 until 500).map(i => s"$i;").mkString)
     assert(came.sizeIs < 250, came.size)
     assert(came.map(_._2).sliding(2).forall(pair => pair(0) < pair(1)))
 
-  test("datagrams come out as they went in, each after its own delay, so later ones overtake"):
+  test("datagrams are not joined and have independent delays, so later ones overtake"):
     val sent                                = 500
     def delays(came: Seq[(String, Double)]) = came.map((text, ms) => ms - text.stripSuffix(";").toInt)
     val came = over(LatencyProfile.vpn, isDatagrams = true)(line => arrivals(every(1, sent), line))
@@ -84,12 +84,12 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(came.size, sent)
     assertNotEquals(came.map(_._1).toVector, (0 until sent).map(i => s"$i;").toVector)
     assertEquals(came.map(_._2), came.map(_._2).sorted)
-    // None waits for one before it: the delays are those that the profile draws.
+    // No message waits for an earlier one: the delays are those drawn from the profile.
     val inOrder = over(LatencyProfile.vpn)(line => arrivals(every(1, sent), line))
       .flatMap((text, ms) => text.split(';').map(_ -> ms))
     assert(delays(came).sum < 0.8 * delays(inOrder).sum, s"${delays(came).sum} ${delays(inOrder).sum}")
 
-  test("a stall holds datagrams, too, those that would have come before it began excepted"):
+  test("a stall delays datagrams, too, except those due before it began"):
     val stalls = Faults(stallEvery = Some(Span.ofSeconds(1)), stallLasts = Span.ofMillis(500))
     val free   = over(LatencyProfile.vpn, isDatagrams = true)(line => arrivals(every(5, 800), line)).toMap
     val came   = over(LatencyProfile.vpn, stalls, isDatagrams = true)(line => arrivals(every(5, 800), line))
@@ -99,7 +99,7 @@ class DelayLineSuite extends munit.FunSuite:
     for (text, ms) <- came do
       assert(!during.exists(one => one.from.toMillis <= ms && ms < one.until.toMillis), s"$text at $ms")
 
-  test("the same seed gives the same times, to the nanosecond"):
+  test("equal seeds give equal times, to the nanosecond"):
     def once = over(LatencyProfile.vpn)(line => arrivals(every(7, 300), line))
     assertEquals(once, once)
 
@@ -114,7 +114,7 @@ class DelayLineSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     assertEquals(sentAt, Seq(6 -> 250.0, 6 -> 500.0, 6 -> 750.0))
 
-  test("a receiver that does not take its bytes holds them, and loses none"):
+  test("a receiver without demand delays its bytes, and loses none"):
     val came = over(constant(20)): line =>
       every(10, 50)
         .via(line.flow)
@@ -122,12 +122,12 @@ class DelayLineSuite extends munit.FunSuite:
         .runFold("")(_ + _.utf8String)
     assertEquals(came, (0 until 50).map(i => s"$i;").mkString)
 
-  test("a stall holds bytes and the end back until it is over"):
+  test("a stall delays bytes and the end until it is over"):
     val faults = Faults(List(TimedFault(Span.ofMillis(300), Fault.Stall(Span.ofMillis(1000)))))
     val came   = over(quarterSecond, faults)(line => arrivals(every(100, 5), line))
     assertEquals(came, Seq("0;" -> 250.0, "1;2;3;4;" -> 1300.0))
 
-  test("a reset fails both sides at its time, and counts what was under way as lost"):
+  test("a reset fails both sides at its time, and counts bytes in transit as lost"):
     val faults = Faults(List(TimedFault(Span.ofMillis(420), Fault.Reset)))
     val (sender, senderAt, receiver, receiverAt, bytesLost) = over(quarterSecond, faults): line =>
       val (sending, receiving) = every(100, 100)
@@ -147,7 +147,7 @@ class DelayLineSuite extends munit.FunSuite:
   private def ended(done: Future[Done], line: Line): Future[(Try[Done], Double)] =
     done.transform(result => util.Success((result, line.ms())))
 
-  test("in a silence bytes and the end are lost and nobody is told until it is over"):
+  test("in a silence bytes and the end are lost without a report until it is over"):
     val faults              = Faults(List(TimedFault(Span.ofMillis(300), Fault.Silence(Span.ofSeconds(9)))))
     val (came, failure, at) = over(quarterSecond, faults): line =>
       val came = StringBuilder()
@@ -180,7 +180,7 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(result, Failure(crash))
     assertEquals(at, 500.0)
 
-  test("a receiver that takes no more is not told to the sender, whose bytes are discarded"):
+  test("a receiver's cancellation is not reported to the sender, whose bytes are discarded"):
     val (result, at) = over(quarterSecond): line =>
       ended(every(100, 20).watchTermination()(Keep.right).via(line.flow).to(Sink.head).run(), line)
     assertEquals(result, util.Success(Done))
@@ -216,15 +216,15 @@ class DelayLineSuite extends munit.FunSuite:
     .value
 
   test(
-    "over a line with a rate, a command waits for an image on " +
-      "its own connection, and hardly for one on another"
+    "over a line with a rate, a command waits for an image on its own connection, and little for one on " +
+      "another"
   ):
     val image = 1280 * 720 * 3 // 442 ms at 50 Mbit/s
     assertEqualsDouble(longestDelayMs(0, apart = false), 10, 0.01)
     assert(longestDelayMs(image, apart = false) > 400)
     assert(longestDelayMs(image, apart = true) < 10 + 5 + 1)
 
-  test("behind a rate no byte is lost or moved, and the end comes last"):
+  test("with a rate no byte is lost or reordered, and the end is last"):
     val text = (0 until 2000).map(i => s"$i;").mkString
     val came = VirtualTime.run(1): system =>
       given ActorSystem = system

@@ -38,24 +38,24 @@ class DeliverySuite extends munit.FunSuite:
       assertEquals(due, before.max(now + sampler.oneWay(now)))
       before = due
 
-  test("what is due within a stall comes out at its end, what is due before or after is untouched"):
+  test("bytes due within a stall come out at its end, others are unaffected"):
     val stalls = LongAdder()
     val line   = delivery(faults = Faults(List(stall(1000, 200))), stalls = stalls)
     val dues   = List(400, 500, 650, 699, 700, 900).map(now => line.due(ms(now)).get)
     assertEquals(dues, List(900, 1200, 1200, 1200, 1200, 1400).map(ms(_)))
     assertEquals(stalls.sum, 1L)
 
-  test("stalls that overlap or follow one another hold back until the last has ended"):
+  test("overlapping or consecutive stalls delay until the last has ended"):
     val line = delivery(faults = Faults(List(stall(1000, 200), stall(1100, 50), stall(1200, 100))))
     assertEquals(line.due(ms(600)), Some(ms(1300)))
 
-  test("what is not out when the link resets is lost, and the connection breaks then"):
+  test("bytes in transit when the link resets are lost, and the connection breaks then"):
     val line = delivery(faults = Faults(List(TimedFault(ms(1000), Fault.Reset))))
     assertEquals(line.due(ms(499)), Some(ms(999)))
     assertEquals(line.due(ms(500)), None)
     assertEquals(line.breaksAt, Some(ms(1000)))
 
-  test("a silence swallows at once and breaks the connection at its end"):
+  test("a silence loses bytes immediately and breaks the connection at its end"):
     val line = delivery(faults = Faults(List(TimedFault(ms(1000), Fault.Silence(ms(300))))))
     assertEquals(line.due(ms(600)), None)
     assertEquals(line.breaksAt, Some(ms(1300)))
@@ -73,7 +73,7 @@ class DeliverySuite extends munit.FunSuite:
     assertEquals(line.breaksAt, Some(ms(1300)))
     assertEquals(delivery(faults = faults, opened = ms(1300)).breaksAt, Some(ms(2000)))
 
-  test("random stalls come in order, as often and as long as asked, and the same for the same seed"):
+  test("random stalls are in order, with the requested frequency and length, and equal for equal seeds"):
     val faults = Faults(stallEvery = Some(Span.ofSeconds(10)), stallLasts = Span.ofSeconds(2))
     val stalls = faults.stalls(7).take(10_000).toVector
     assertEquals(faults.stalls(7).take(10_000).toVector, stalls)
@@ -88,7 +88,7 @@ class DeliverySuite extends munit.FunSuite:
     assertEquals(starts, starts.sorted)
     assert(starts.contains(ms(5000)) && starts.contains(ms(1)))
 
-  test("random resets end connections after the wanted mean time, and the earlier fault wins"):
+  test("random resets end connections after the requested mean time, and the earlier fault wins"):
     val faults = Faults(resetEvery = Some(Span.ofSeconds(20)))
     val random = SplitMix64(1)
     val lives  = List.fill(2000)(Span.ofSeconds(random.nextDouble() * 1000)).map: opened =>

@@ -26,7 +26,7 @@ class FirstBytesSuite extends munit.FunSuite:
       Seq("PATCH /", "PRI * HTTP/2.0\r\n\r\n")
   private val hello = ByteString(22, 3, 1, 2, 0, 1)
 
-  test("each request of HTTP is foreign as soon as its method has come, whatever the pieces"):
+  test("each HTTP request is foreign as soon as its method is complete, for any segmentation"):
     for request <- requests do
       val method = request.indexOf(' ') + 1
       for length <- 0 until method do
@@ -40,7 +40,7 @@ class FirstBytesSuite extends munit.FunSuite:
     for own <- Seq(ByteString("GETTING"), ByteString("AKKA"), ByteString(0, 0, 0, 10)) do
       assertEquals(verdict(own), Own)
 
-  test("a port that knows how its protocol begins takes nothing else, not even one byte of it"):
+  test("a port that knows its protocol's first bytes accepts nothing else, not even one byte"):
     val own = Set(0xfd, 0xfe)
     assertEquals(verdict(ByteString(0xfd), own), Own)
     assertEquals(verdict(ByteString(0x00), own), Foreign("a first byte of 0x00"))
@@ -55,7 +55,7 @@ class FirstBytesSuite extends munit.FunSuite:
     20.seconds
   )
 
-  test("the guard passes on what is its own from the first byte, and nothing of what is foreign"):
+  test("the guard passes on its own protocol from the first byte, and nothing of foreign ones"):
     assertEquals(through(ByteString("G"), ByteString("ET"), ByteString("S on")), ByteString("GETS on"))
     val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
     assertEquals(

@@ -33,12 +33,12 @@ class LatencyProbeSuite extends munit.FunSuite:
       i => after((350 - 100 * i).millis, system.scheduler)(Future.unit)
     assertEquals(measured, List(250, 150, 50).map(ms => Success(Span.ofMillis(ms))))
 
-  test("a request that fails gives its failure, and the next is sent all the same"):
+  test("a failed request emits its failure, and the next is sent nevertheless"):
     val refused  = RuntimeException("refused")
     val measured = probe(2)(_ => i => if i == 1 then Future.failed(refused) else Future.unit)
     assertEquals(measured, Seq(Failure(refused), Success(Span.Zero)))
 
-  test("no more requests are under way than allowed"):
+  test("no more requests are in progress than allowed"):
     var open, most = 0
     val measured   = probe(5, maxUnanswered = 2): system =>
       _ =>

@@ -11,9 +11,9 @@ import skein.signal.*
 import skein.testing.{Lengthy, Timing}
 import skein.units.*
 
-/** Real sockets on loopback and the real clock: delays through the proxy against those of the profile, over
-  * many connections at once. Messages of one connection are further apart than the longest delay, so that
-  * order never makes one wait for another.
+/** Real sockets on loopback and the real clock: delays through the proxy compared with those of the profile,
+  * over many simultaneous connections. Messages of one connection are further apart than the longest delay,
+  * so that no message waits for an earlier one.
   */
 class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
   private given system: ActorSystem = ActorSystem("link-fidelity", PreciseScheduler.config)
@@ -68,8 +68,7 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
       _ <- server.close()
     yield delays.flatten.unzip
 
-  /** How late tasks start while nothing is asked of a link, ms at the 99 % quantile: what the machine adds.
-    */
+  /** Lateness of tasks without any link, ms at the 99 % quantile: the machine's share. */
   private def latenessMs(): Future[Double] =
     Future
       .traverse((1 to 300).toVector): i =>
@@ -79,7 +78,7 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
 
   /** @param differencesMs measured minus profile from the 10 % to the 99 % quantile, to the server and to the
     *   client
-    * @param latenessMs of the machine in the same seconds
+    * @param latenessMs of the machine during the measurement
     */
   private final case class Run(differencesMs: Seq[Seq[Double]], latenessMs: Double):
     def matches: Boolean = differencesMs.flatten.forall(math.abs(_) < 2)
@@ -106,16 +105,16 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
                 ) - distribution.quantile(percent / 100.0).toMillis / 2
           Run(differences, late)
 
-  /** Measures again, a few times, until the result matches: what the link does is the same each time, what a
-    * busy machine or a cold virtual machine adds is not.
+  /** Measures repeatedly, a few times, until the result matches: the link's delays are equal each time, those
+    * of a busy machine or a cold virtual machine are not.
     */
   private def runs(left: Int)(measure: => Future[Run]): Future[Vector[Run]] =
     measure.flatMap: run =>
       if run.matches || left == 1 then Future.successful(Vector(run))
       else runs(left - 1)(measure).map(run +: _)
 
-  /** As many messages as several runs have, in two seconds: the virtual machine has compiled what they need
-    * then.
+  /** Sends as many messages as several runs, within two seconds, so that the virtual machine has compiled the
+    * code.
     */
   private lazy val warm: Future[Unit] = delaysMs(LatencyProfile.none, 10.millis, messages = 200).map(_ => ())
 

@@ -30,7 +30,7 @@ class LinkProxyLiveSuite extends munit.FunSuite:
   private def repeat(message: ByteString, every: FiniteDuration): Source[ByteString, NotUsed] =
     Source.tick(every, every, message).mapMaterializedValue(_ => NotUsed)
 
-  test("10 MB cross a slow link and come back the same, and every byte is counted"):
+  test("10 MB cross a slow link and return unchanged, and every byte is counted"):
     val random = SplitMix64(1)
     val sent   = Vector.fill(160)(ByteString(Array.fill(65536)(random.nextLong().toByte)))
     for
@@ -64,7 +64,7 @@ class LinkProxyLiveSuite extends munit.FunSuite:
       assertEquals(back, ByteString("ab"))
       assert(took >= Span.ofMillis(200), took.toMillis)
 
-  test("where the server does not listen the client's connection breaks, and the proxy tells why"):
+  test("without a server the client's connection breaks, and the proxy reports why"):
     val told = Promise[Throwable]()
     for
       server <- serve(Flow[ByteString])
@@ -100,7 +100,7 @@ class LinkProxyLiveSuite extends munit.FunSuite:
       assertEquals(again, ByteString("y"))
       assertEquals(proxy.counts.disconnects, 1L)
 
-  test("a stall holds everything back, and loses nothing"):
+  test("a stall delays everything, and loses nothing"):
     val stall   = TimedFault(Span.ofMillis(200), Fault.Stall(Span.ofMillis(300)))
     val profile = LinkProfile.none.copy(faults = Faults(List(stall)))
     for

@@ -7,14 +7,14 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.signal.*
 import skein.units.{Clock, Span}
 
-/** The real clock and many threads. */
+/** Uses the real clock and many threads. */
 class MemoryNetworkLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("memory-network", PreciseScheduler.config)
   private given ExecutionContext    = system.dispatcher
 
   override def afterAll(): Unit = system.terminate(): Unit
 
-  test("fifty connections at once carry every byte"):
+  test("fifty simultaneous connections carry every byte"):
     val latency =
       LatencyProfile.Steady("uniform", LatencyDistribution.Uniform(Span.ofMillis(1), Span.ofMillis(20)))
     val network   = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(latency)), seed = 1, Clock.system)

@@ -36,7 +36,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     def connected(): Future[Done] =
       Source.maybe[ByteString].viaMat(controller.connect(simulator))(Keep.right).to(Sink.ignore).run()
 
-    /** Sends a byte each 10 ms and ends with the connection. */
+    /** Sends a byte each 10 ms until the connection ends. */
     def talk(): Future[Done] =
       Source.tick(
         0.millis,
@@ -83,7 +83,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
       yield world.ms()
     assertEquals(at, 0.0)
 
-  test("where nobody listens the client learns it after a round trip"):
+  test("without a listener the client's attempt fails after a round trip"):
     val outcome = in(over(slow))(world => world.ended(world.ask(ByteString("x"))))
     assertEquals(outcome, (Failure(TransportError.NobodyListens(simulator)), 100.0))
 
@@ -112,7 +112,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     val outcome = in(over(slow))(world => world.ended(world.serve(Flow[ByteString], foreign)))
     assert(outcome._1.failed.get.isInstanceOf[TransportError.CannotListen], outcome)
 
-  test("listeners that do not care get ports that are free"):
+  test("listeners on port 0 get free ports"):
     val ports = in(over(slow)): world =>
       for
         first  <- world.serve(Flow[ByteString], Address("simulator", 49153))
@@ -121,7 +121,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
       yield List(first, second, third).map(_.address.port)
     assertEquals(ports, List(49153, 49152, 49154))
 
-  test("where too many wait to be accepted, a further attempt gets no answer"):
+  test("with a full backlog, a further attempt gets no answer"):
     val outcome = in(over(slow)): world =>
       val deaf =
         world.server.listen(simulator).to(Sink.fromGraph(Flow[Incoming].initialDelay(1.hour).to(Sink.ignore)))
@@ -133,7 +133,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     assertEquals(outcome._1, Failure(TransportError.NoAnswer(simulator, Span.ofSeconds(5))))
     assertEquals(outcome._2, 10_000.0) // 5 s after the crowd, which waited as long
 
-  test("each direction closes for itself"):
+  test("each direction closes separately"):
     val (heard, received) = in(over(slow)): world =>
       val received = Promise[ByteString]()
       val greets   = Flow.fromSinkAndSource(
@@ -156,9 +156,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     assertEquals(heard, ByteString("hello"))
     assertEquals(received, ByteString("after your end"))
 
-  test(
-    "a side that fails resets the connection, and the other learns it one delay later, in both directions"
-  ):
+  test("a failing side resets the connection, and the other learns it one delay later, in both directions"):
     val (client, clientAt, unsent) = in(over(slow)): world =>
       val failing = Flow.fromSinkAndSource(
         Sink.ignore,
@@ -212,7 +210,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     assertEquals(firstAt, 20_500.0)
     assertEquals(again, ByteString("again"))
 
-  test("a fault on one link leaves the others alone"):
+  test("a fault on one link does not affect others"):
     val fault = NetworkFault(
       Where.Link("elsewhere", "simulator"),
       TimedFault(Span.ofMillis(10), Fault.Silence(Span.ofSeconds(9)))
@@ -221,7 +219,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
       world.serve(Flow[ByteString]).flatMap(_ => world.ask(ByteString("x")))
     assertEquals(answer, ByteString("x"))
 
-  test("a client that gives up while it connects leaves no connection behind"):
+  test("a client that cancels while it connects leaves no connection behind"):
     val serverSide = in(over(slow)): world =>
       val ended = Promise[Done]()
       for
@@ -235,7 +233,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
       yield outcome
     assertEquals(serverSide._1, Success(Done))
 
-  test("segments are cut anywhere, and no byte is lost or moved"):
+  test("segments are cut anywhere, and no byte is lost or reordered"):
     val cutting       = slow.copy(cutsSegments = true)
     val (back, sizes) = in(over(cutting)): world =>
       val text = ByteString((1 to 500).map(i => s"$i;").mkString)
@@ -249,7 +247,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     assert(back)
     assert(sizes.distinct.sizeIs > 5, sizes)
 
-  test("a limited bandwidth delays what is large"):
+  test("a limited bandwidth delays large data"):
     val narrow = LinkProfile.symmetric(
       LatencyProfile.Limited("narrow", slow.toServer, Bandwidth.ofBitsPerSecond(80_000))
     )
@@ -260,7 +258,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
       yield (answer.utf8String, world.ms())
     assertEquals(at, ("5000", 100 + 50 + 500 + 50 + 0.4))
 
-  test("the same seed gives the same traffic to the nanosecond, another seed another"):
+  test("equal seeds give equal traffic to the nanosecond, different seeds different traffic"):
     val shaky = LinkProfile.symmetric(LatencyProfile.vpn).copy(
       faults = Faults(
         stallEvery = Some(Span.ofSeconds(2)),

@@ -15,30 +15,28 @@ class PlacesSuite extends munit.FunSuite:
       places.entered(i, guest)
     (places, guests)
 
-  test(
-    "256 silent connections lock nobody out: each that comes takes the place of the one silent for longest"
-  ):
+  test("256 silent connections exclude no other: a new one takes the place of the one silent for longest"):
     val (places, guests) = full(10 to 265*)
     for i <- 1 to 256 do
       assert(places.admit(), s"newcomer $i")
       assertEquals(guests.filter(_.left).map(_.silentFor.toSeconds.round.toInt), (266 - i to 265).toVector)
     assert(!places.admit(), "those asked to leave are not asked twice, and none else is silent")
 
-  test("nobody who has just asked something has to leave"):
+  test("a guest with a recent request keeps its place"):
     val (places, guests) = full(0, 4, 3)
     assert(!places.admit())
     assert(guests.forall(!_.left))
     places.left(1)
     assert(places.admit())
 
-  test("places given back are given again"):
+  test("returned places are available again"):
     val (places, _) = full(0, 0)
     for _ <- 1 to 100 do
       places.left(0)
       assert(places.admit())
       assert(!places.admit())
 
-  test("of those who have said nothing yet the first makes room, however short it has been there"):
+  test("of guests without a message the earliest makes room, however short it has been there"):
     val places = Places(3, Span.ofSeconds(5))
     val spoken = Guest(Span.ofSeconds(100))
     val mute   = Seq.fill(3)(Guest(Span.Zero, hasSpoken = false))

@@ -8,7 +8,7 @@ import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import skein.signal.SplitMix64
 import skein.testing.Timing
 
-/** The real clock. */
+/** Uses the real clock. */
 class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
   private val system             = ActorSystem("precise-scheduler", PreciseScheduler.config)
   private given ExecutionContext = system.dispatcher
@@ -21,11 +21,11 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
     scheduler.scheduleOnce(delay)(promise.success(result): Unit): Unit
     promise.future
 
-  test("an actor system takes it from its configuration"):
+  test("an actor system loads the scheduler from its configuration"):
     assertEquals(scheduler.getClass, classOf[PreciseScheduler])
 
-  /** What a measurement came to when it first was as it should be, or at the fifth try: what the scheduler
-    * does is the same each time, what a busy machine adds is not.
+  /** The first measurement that passes, or the fifth: the scheduler's part is equal each time, a busy
+    * machine's is not.
     */
   private def untilItHolds[A](measure: => Future[A], tries: Int = 5)(holds: A => Boolean): Future[A] =
     measure.flatMap: result =>
@@ -62,7 +62,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
       assert(atRate >= 100 && atRate < 138, s"20 runs of 2 ms every 5 ms took $atRate ms")
       assert(withDelay >= 138, s"20 runs of 2 ms, 5 ms apart, took $withDelay ms")
 
-  test("a cancelled task never runs, is told, and a second cancel is refused"):
+  test("a cancelled task never runs, its cancellation is reported, and a second one is refused"):
     var told = false
     val task = scheduler.scheduleOnce(
       20.millis,
@@ -75,7 +75,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
     assert(task.isCancelled)
     after(40.millis)(assert(told))
 
-  test("a repeated task stops when cancelled, also by itself"):
+  test("a repeated task stops when cancelled, even by itself"):
     val runs = AtomicInteger()
     val self = Promise[org.apache.pekko.actor.Cancellable]()
     self.success(

@@ -6,14 +6,14 @@ class SeatsSuite extends munit.FunSuite:
   private var now          = 0.0
   private val clock: Clock = () => Instant.ofNanos((now * 1e9).round)
 
-  test("who has said nothing makes room, the first who came before all others, and is told once"):
+  test("a connection without a message makes room, the earliest first, and is notified once"):
     val seats = Seats(2, clock)
     var told  = Vector.empty[Int]
     for guest <- 1 to 4 do assert(seats.enter(() => told :+= guest).isDefined, guest)
     assertEquals(told, Vector(1, 2))
     assertEquals(seats.displacedConnections, 2L)
 
-  test("who said one word and is silent makes room after five seconds, and before that nobody does"):
+  test("a connection silent after its first message makes room after five seconds, and not before"):
     now = 0
     val seats = Seats(1, clock)
     var told  = 0
@@ -25,7 +25,7 @@ class SeatsSuite extends munit.FunSuite:
     assert(seats.enter(() => ()).isDefined)
     assertEquals((told, seats.displacedConnections, seats.refusedConnections), (1, 1L, 1L))
 
-  test("who speaks keeps its seat, however many come"):
+  test("an active connection keeps its seat, however many arrive"):
     now = 0
     val seats = Seats(2, clock)
     val first = seats.enter(() => fail("it speaks")).get
@@ -35,7 +35,7 @@ class SeatsSuite extends munit.FunSuite:
       seats.enter(() => ()): Unit
     first.left()
 
-  test("seats given back are free"):
+  test("returned seats are free"):
     val seats = Seats(1, clock)
     for _ <- 1 to 10 do
       val one = seats.enter(() => ()).get

@@ -52,7 +52,7 @@ class TcpTransportLiveSuite extends munit.FunSuite:
       assertEquals(heard.utf8String, "hello")
       assertEquals(got.utf8String, "after your end")
 
-  test("where nobody listens the error says so and names the address, in the future and in the stream"):
+  test("without a listener the error states that and names the address, in the future and in the stream"):
     val socket = ServerSocket(0, 1, InetAddress.getLoopbackAddress)
     val free   = Address("127.0.0.1", socket.getLocalPort)
     socket.close()
@@ -81,25 +81,25 @@ class TcpTransportLiveSuite extends munit.FunSuite:
         fillers.foreach(_.close())
         deaf.close()
 
-  test("an unknown host is called that"):
+  test("an unknown host is reported as such"):
     val nowhere = Address("no-such-host.invalid", 41451)
     failureOf(Source.maybe[ByteString].viaMat(transport.connect(nowhere))(Keep.right).to(Sink.ignore).run())
       .map(assertEquals(_, TransportError.UnknownHost(nowhere)))
 
-  test("a port that is taken is called that"):
+  test("a port in use is reported as such"):
     for
       server <- serve(Flow[ByteString])
       error  <- failureOf(transport.listen(server.address).to(Sink.ignore).run())
       _      <- server.close()
     yield assertEquals(error, TransportError.PortTaken(server.address))
 
-  test("an address of another machine cannot be listened at"):
+  test("listening at another machine's address fails"):
     val foreign = Address("192.0.2.1", 0)
     failureOf(transport.listen(foreign).to(Sink.ignore).run()).map:
       case TransportError.CannotListen(`foreign`, _) => ()
       case other                                     => fail(s"expected CannotListen, got $other")
 
-  test("a connection that the other side resets fails with the address it led to"):
+  test("a connection that the peer resets fails with its address"):
     val resetting =
       Flow.fromSinkAndSourceCoupled(Sink.ignore, Source.failed[ByteString](RuntimeException("crash")))
     for
@@ -118,7 +118,7 @@ class TcpTransportLiveSuite extends munit.FunSuite:
       TransportError.Lost(to, "Connection reset by peer")
     )
 
-  test("after close a listener accepts no more, and open connections go on"):
+  test("after close a listener accepts no more, and open connections stay open"):
     for
       server <- serve(Flow[ByteString])
       toSend              = Promise[ByteString]()

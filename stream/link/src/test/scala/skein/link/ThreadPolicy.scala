@@ -2,11 +2,11 @@ package skein.link
 
 import java.nio.file.{Files, Path}
 
-/** How Linux schedules a thread, as it says itself. */
+/** How Linux schedules a thread, read from /proc. */
 private object ThreadPolicy:
 
-  /** By the policy's number, of a thread's folder in /proc: the 41st field of proc_pid_stat(5). The second
-    * may hold spaces, but ends with the last parenthesis.
+  /** A thread's policy number, from its folder in /proc: the 41st field of proc_pid_stat(5). The second field
+    * may contain spaces, but ends with the last parenthesis.
     */
   def of(thread: Path): Int =
     val stat = Files.readString(thread.resolve("stat"))

@@ -21,13 +21,13 @@ class TlsEngineSuite extends munit.FunSuite:
   )
 
   for (name, bytes) <- lies do
-    test(s"what is no record is refused at once, and nothing is waited for: $name"):
+    test(s"an invalid record is refused immediately, without waiting for more: $name"):
       val server = engine(asClient = false)
       server.beginHandshake()
       intercept[SSLException](server.unwrap(ByteBuffer.wrap(bytes), into)): Unit
       assertEquals(server.unwrap(ByteBuffer.wrap(bytes), into).getStatus, Status.CLOSED)
 
-  test("a greeting passes, in whatever pieces it comes"):
+  test("a ClientHello passes in any segmentation"):
     val (client, server) = (engine(asClient = true), engine(asClient = false))
     client.beginHandshake()
     val greeting = ByteBuffer.allocate(1 << 15)
@@ -39,7 +39,7 @@ class TlsEngineSuite extends munit.FunSuite:
     val result = server.unwrap(greeting, into)
     assertEquals((result.getStatus, result.getHandshakeStatus), (Status.OK, HandshakeStatus.NEED_TASK))
 
-  test("that names are verified is asked of the engine itself"):
+  test("verification of names is configured on the JDK's engine"):
     val own        = SSLContext.getDefault.createSSLEngine("lab", 1)
     val parameters = own.getSSLParameters
     parameters.setEndpointIdentificationAlgorithm("HTTPS")

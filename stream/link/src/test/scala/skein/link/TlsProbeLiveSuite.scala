@@ -6,10 +6,10 @@ import java.util.concurrent.FutureTask
 import scala.util.Using
 import skein.units.Span
 
-/** On loopback. */
+/** Probes real sockets on loopback. */
 class TlsProbeLiveSuite extends munit.FunSuite:
 
-  /** Who reads a little and then answers so. */
+  /** Probes a server that reads a little and then sends this answer. */
   private def asked(answer: Int*): Boolean =
     Using.resource(ServerSocket(0, 1, InetAddress.getLoopbackAddress)): server =>
       val heard = FutureTask: () =>
@@ -22,11 +22,11 @@ class TlsProbeLiveSuite extends munit.FunSuite:
       assertEquals(heard.get(), 22, "a handshake is begun")
       told
 
-  test("who goes on with the handshake speaks TLS, and so does who refuses it"):
+  test("a peer that continues the handshake speaks TLS, and so does one that refuses it"):
     assert(asked(22, 3, 3, 0, 2, 0, 0))
     assert(asked(21, 3, 3, 0, 2, 2, 70))
 
-  /** Whether each connection's bytes are waited for before it is ended. */
+  /** Probes a server that closes connections, and optionally waits for their first bytes. */
   private def refused(waits: Boolean): Boolean =
     Using.resource(ServerSocket(0, 1, InetAddress.getLoopbackAddress)): server =>
       Thread.ofPlatform().daemon().start: () =>
@@ -37,15 +37,13 @@ class TlsProbeLiveSuite extends munit.FunSuite:
         catch case _: IOException => ()
       TlsProbe.isRefused(Address("127.0.0.1", server.getLocalPort), Span.ofSeconds(1))
 
-  test(
-    "who ends a connection for what it says, and not before, refuses TLS; a link without other side does not"
-  ):
+  test("a peer that closes after the ClientHello refuses TLS; a dead link does not"):
     assert(refused(waits = true))
     assert(!refused(waits = false))
     val free = Using.resource(ServerSocket(0))(_.getLocalPort)
     assert(!TlsProbe.isRefused(Address("127.0.0.1", free), Span.ofSeconds(1)))
 
-  test("who says nothing, something else, or is not there, does not"):
+  test("a silent peer, one of another protocol, and a missing one do not speak TLS"):
     assert(!asked())
     assert(!asked(22))
     assert(!asked(0, 0, 0, 4, 1))

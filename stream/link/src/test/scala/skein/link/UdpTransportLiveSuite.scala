@@ -12,7 +12,7 @@ import skein.units.Span
 
 class UdpTransportLiveSuite extends munit.FunSuite:
 
-  test("who is heard again after having been idle is one new connection, and stays it"):
+  test("a peer that sends again after having been idle is one new connection, and stays it"):
     given system: ActorSystem = ActorSystem("udp")
     import system.dispatcher
     val idle   = Span.ofMillis(200)

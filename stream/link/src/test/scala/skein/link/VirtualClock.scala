@@ -6,5 +6,4 @@ import skein.vtime.VirtualTime
 
 object VirtualClock:
 
-  /** The clock of a system in virtual time. */
   def apply(system: ActorSystem): Clock = Clock.ofNanos(VirtualTime.clock(system))

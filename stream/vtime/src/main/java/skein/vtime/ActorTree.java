@@ -3,7 +3,7 @@ package skein.vtime;
 import org.apache.pekko.actor.ActorSystem;
 import org.apache.pekko.actor.ActorSystemImpl;
 
-/** Shows who is alive, for reports. In Java, because Scala may not look into Pekko's systems. */
+/** Lists live actors for reports. In Java, because Scala cannot access Pekko's private classes. */
 final class ActorTree {
   private ActorTree() {}
 

@@ -8,8 +8,8 @@
  *
  * <p>Readings of the clock and random draws inside of Pekko and {@code scala.concurrent} are redirected by
  * the agent ({@code skein.vtime.agent}), with which the JVM must be started. On threads without a loop they
- * are what they always were. What would make a run wrong (another thread's interference, blocking, sockets)
- * ends it and names the culprit: see {@code Problem}. The README of this module tells how to set it up and
- * what it cannot see.
+ * are unchanged. Anything that would make a run wrong (another thread's interference, blocking, sockets) ends
+ * it and names the culprit: see {@code Problem}. The README of this module explains the set-up and what the
+ * agent cannot redirect.
  */
 package skein.vtime;

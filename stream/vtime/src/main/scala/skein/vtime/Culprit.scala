@@ -1,4 +1,4 @@
 package skein.vtime
 
-/** Shows where the thread stood that a run ended by. */
+/** Carries the stack of the thread whose action ended a run. */
 private final class Culprit extends RuntimeException(s"on thread '${Thread.currentThread.getName}'")

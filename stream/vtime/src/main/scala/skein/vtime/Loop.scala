@@ -11,7 +11,7 @@ import skein.vtime.agent.{Environment, Redirect}
 /** The run-to-completion loop: one thread, a first-in-first-out queue of tasks, and timers. Time advances to
   * the next timer only when the queue is empty.
   *
-  * Made, run and left on the thread that starts it. All other threads may only read [[nanoTime]].
+  * Made and run on one thread. All other threads may only read [[nanoTime]].
   */
 private final class Loop(seed: Long, limits: RunLimits) extends Environment with BlockContext:
   val thread                                                 = Thread.currentThread
@@ -45,10 +45,10 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
     requireOwnThread(s"cancelled a timer for ${TaskName.of(timer.task)}")
     timers.cancel(timer)
 
-  /** Empties the timers; their tasks in the order in which they would have run. */
+  /** Empties the timers; returns their tasks in the order in which they would have run. */
   def removeTimers(): Seq[Runnable] = timers.removeAll().map(_.task)
 
-  /** Records the problem, which ends the run however the exception is treated by its catchers. */
+  /** Records the problem, which ends the run even if the exception is caught. */
   def fail(problem: Problem, culprit: Throwable = Culprit()): VirtualTimeException =
     val error = VirtualTimeException(problem, culprit)
     if failure == null then failure = error
@@ -64,14 +64,15 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
 
   def blocked(call: String): VirtualTimeException = fail(Problem.Blocked(call))
 
-  /** The global context and those made by `ExecutionContext.fromExecutor` share a prefix of their class
-    * names.
+  /** Refuses the global context and those made by `ExecutionContext.fromExecutor`: they share a prefix of
+    * their class names.
     */
   def submitted(executionContext: Object): Unit =
     if executionContext.getClass.getName.startsWith("scala.concurrent.impl.ExecutionContextImpl") then
       throw fail(Problem.LeftTheLoop(executionContext.toString))
 
-  /** `Await` and `blocking`. Pekko awaits its own actors while a system starts: then the queue is run first.
+  /** Handles `Await` and `blocking`. Pekko awaits its own actors while a system starts: then the queue is run
+    * first.
     */
   def blockOn[A](thunk: => A)(using CanAwait): A =
     if !booting then throw blocked("Await or blocking")
@@ -80,7 +81,7 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
       checkFailure()
     thunk
 
-  /** Makes this loop the calling thread's for the duration of `body`. */
+  /** Makes this loop the calling thread's environment during `body`. */
   def governing[A](body: => A): A =
     Redirect.setEnvironment(this)
     val watchdog =
@@ -92,11 +93,11 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
         tellEndless
       )
     try BlockContext.withBlockContext(this)(body)
-    catch case _: Throwable if failure != null => throw failure.nn // it explains whatever followed from it
+    catch case _: Throwable if failure != null => throw failure.nn // it is the cause of later exceptions
     finally
       watchdog.stop()
       if failure != null then
-        Thread.interrupted(): Unit // the watchdog's; whatever runs next here is not meant
+        Thread.interrupted(): Unit // the watchdog's interrupt; it is not meant for later code
       Redirect.setEnvironment(null)
 
   private def tellEndless(stack: Array[StackTraceElement]): Unit =
@@ -106,13 +107,13 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
         at.fold("")(frame => s"; it is at $frame")
     )
 
-  /** How many tasks have begun; may be read, late, by other threads. */
+  /** Number of tasks that have begun; other threads may read it with a delay. */
   def begun: Long = tasks
 
-  /** From here on, blocking is an error. */
+  /** Ends the start of the system: from now on, blocking is an error. */
   def booted(): Unit = booting = false
 
-  /** Runs tasks and advances time until `done`. `actors` describes who is there, for a report. */
+  /** Runs tasks and advances time until `done`. `actors` describes the live actors, for a report. */
   def runUntil(done: () => Boolean)(actors: => String): Unit =
     checkFailure()
     while !done() do
@@ -133,8 +134,8 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
     else if tasksThisTime % Loop.tasksPerLook == 0 then lookAtProcessor()
     task.run()
 
-  /** Not at every task, since it takes as long as a short one; from the first look on, so that one long task
-    * counts for nothing.
+  /** Reads the processor time; not at every task, since it takes as long as a short one, and relative to the
+    * first reading, so that one long task does not count.
     */
   private def lookAtProcessor(): Unit =
     val taken = Loop.processorNanos()
@@ -157,7 +158,7 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
         fired += 1
         queue.add(timer.task): Unit
 
-  /** Past the limit, notes what runs a while longer, and then reports it. */
+  /** Beyond the limit, counts which tasks run for a while longer, and then reports them. */
   private def sample(task: Runnable): Unit =
     sampled = sampled.updatedWith(TaskName.of(task))(times => Some(times.getOrElse(0) + 1))
     if sampled.values.sum >= Loop.sampleSize then
@@ -167,23 +168,22 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
 private object Loop:
   private val libraries = Seq("java.", "jdk.", "scala.")
 
-  /** 2000-01-01T00:00:00Z, so that equal seeds give equal stamps. */
+  /** The start of virtual time, 2000-01-01T00:00:00Z, so that equal seeds give equal time stamps. */
   val epochNanos: Long = 946_684_800_000_000_000L
 
   private val sampleSize = 1000
 
-  /** Of the instant's tasks, after which the processor time is looked at. */
+  /** Tasks at one instant between two readings of the processor time. */
   private val tasksPerLook = 256L
 
   private val threads = ManagementFactory.getThreadMXBean
 
-  /** Of the calling thread, so far; -1 where the JVM cannot tell. */
+  /** Processor time of the calling thread so far; -1 where the JVM does not report it. */
   private def processorNanos(): Long =
     if threads.isCurrentThreadCpuTimeSupported && threads.isThreadCpuTimeEnabled then
       threads.getCurrentThreadCpuTime
     else -1
 
-  /** The loop of the calling thread. */
   def current: Loop = Redirect.environment() match
     case loop: Loop => loop
     case _ => throw IllegalStateException("no loop on this thread: start the system by VirtualTime.run")

@@ -17,7 +17,7 @@ import org.apache.pekko.dispatch.{
   MessageDispatcherConfigurator
 }
 
-/** Puts a dispatcher on the loop; named as `executor` in every dispatcher's configuration. */
+/** Makes a dispatcher's executor run on the loop; named as `executor` in every dispatcher's configuration. */
 private final class LoopExecutorConfigurator(config: Config, prerequisites: DispatcherPrerequisites)
     extends ExecutorServiceConfigurator(config, prerequisites):
   private val loop = Loop.current
@@ -40,7 +40,7 @@ private final class LoopExecutor(loop: Loop) extends AbstractExecutorService wit
   def isTerminated: Boolean                                    = closed
   def awaitTermination(timeout: Long, unit: TimeUnit): Boolean = closed
 
-/** Stands where a dispatcher would be that virtual time cannot give: asking for it ends the run. */
+/** Replaces a dispatcher that virtual time does not support: using it ends the run. */
 private final class RefusedDispatcher(config: Config, prerequisites: DispatcherPrerequisites)
     extends MessageDispatcherConfigurator(config, prerequisites):
 
@@ -50,5 +50,5 @@ private final class RefusedDispatcher(config: Config, prerequisites: DispatcherP
       if id == RefusedDispatcher.sockets then Problem.Sockets else Problem.NeedsThreads(id)
 
 private object RefusedDispatcher:
-  /** Where Pekko would run its sockets. */
+  /** The name of the dispatcher on which Pekko would run its sockets. */
   val sockets = "skein.vtime.sockets"

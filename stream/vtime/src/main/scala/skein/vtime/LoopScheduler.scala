@@ -40,7 +40,7 @@ private final class LoopScheduler(
     repeated.start(initialDelay)
     repeated
 
-  /** As Pekko's own scheduler does: tasks that must run at the end do, others are told. */
+  /** Closes as Pekko's own scheduler does: tasks that must run at the end do, others are cancelled. */
   def close(): Unit =
     closed = true
     loop.removeTimers().foreach:

@@ -4,10 +4,11 @@ import java.security.CodeSource
 import scala.concurrent.duration.FiniteDuration
 import skein.vtime.agent.Agent
 
-/** Why a run in virtual time was stopped. */
+/** The reasons why a run in virtual time was stopped. */
 enum Problem:
 
-  /** The agent that redirects the clock is not at work in this JVM, or came too late for some classes. */
+  /** The agent that redirects the clock is not active in this JVM, or was loaded too late for some classes.
+    */
   case NoAgent(detail: String)
 
   /** A thread other than the loop's handed it a task or a timer, so the order of events would depend on
@@ -21,7 +22,7 @@ enum Problem:
   /** Code on the loop handed a task to threads that virtual time does not govern. */
   case LeftTheLoop(executionContext: String)
 
-  /** A dispatcher that needs threads of its own was asked for. */
+  /** A dispatcher that needs threads of its own was requested. */
   case NeedsThreads(dispatcher: String)
 
   /** Sockets and name look-ups answer in real time and are not supported. */
@@ -31,16 +32,16 @@ enum Problem:
     */
   case Livelock(at: FiniteDuration, tasks: Long, running: Seq[(String, Int)])
 
-  /** Nothing is left to run and no timer is set, yet the future is not completed. */
+  /** No task and no timer is left, but the future is not completed. */
   case Deadlock(at: FiniteDuration, actors: String)
 
   /** The future was not completed within the limit of virtual time. */
   case Overrun(limit: FiniteDuration, actors: String)
 
-  /** The loop's thread stood still in one task for the given real time. */
+  /** The loop's thread stood still in one task for this real time. */
   case Stuck(forReal: FiniteDuration)
 
-  /** What happened and what to do instead. */
+  /** States what happened and what to do instead. */
   def message: String = this match
     case NoAgent(detail) =>
       s"""virtual time needs its agent, and it is not at work: $detail.
@@ -74,6 +75,6 @@ object Problem:
     val source: CodeSource | Null = classOf[Agent].getProtectionDomain.getCodeSource
     if source == null then "vtime-agent.jar" else source.getLocation.getPath
 
-/** A run that was stopped; the cause, where there is one, shows the culprit's stack. */
+/** Thrown when a run was stopped; the cause, if there is one, has the culprit's stack. */
 final class VirtualTimeException(val problem: Problem, cause: Throwable | Null = null)
     extends RuntimeException(problem.message, cause)

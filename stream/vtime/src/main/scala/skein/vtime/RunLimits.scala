@@ -2,7 +2,7 @@ package skein.vtime
 
 import scala.concurrent.duration.*
 
-/** How far a run may go.
+/** Limits of a run.
   *
   * @param duration of virtual time
   * @param tasksPerInstant tasks that may run without time advancing

@@ -2,7 +2,7 @@ package skein.vtime
 
 import java.util.PriorityQueue
 
-/** A task to run at a time; of equal times, the one set first runs first. */
+/** A task to run at a time; at equal times, tasks run in the order in which they were scheduled. */
 private final class Timer(val dueNanos: Long, val sequence: Long, val task: Runnable)
     extends Comparable[Timer]:
   var cancelled: Boolean = false
@@ -12,8 +12,8 @@ private final class Timer(val dueNanos: Long, val sequence: Long, val task: Runn
     if byTime != 0 then byTime else java.lang.Long.compare(sequence, other.sequence)
 
 /** Timers by time and sequence. A cancelled one stays until it is due or until half of the queue is
-  * cancelled, so that cancelling costs nothing and yet the queue never holds more than twice what is wanted,
-  * plus [[TimerQueue.slack]].
+  * cancelled, so that cancelling costs nothing and yet the queue holds at most twice the active timers, plus
+  * [[TimerQueue.slack]].
   */
 private final class TimerQueue:
   private val heap      = PriorityQueue[Timer]()
@@ -43,7 +43,7 @@ private final class TimerQueue:
   /** Removes the timer that [[head]] returned. */
   def removeHead(): Unit = heap.poll(): Unit
 
-  /** Empties the queue; what was not cancelled, in order. */
+  /** Empties the queue; returns the active timers in order. */
   def removeAll(): Seq[Timer] =
     val all = Seq.unfold(this)(_.head.map: timer =>
       removeHead()

@@ -3,10 +3,11 @@ package skein.vtime
 import com.typesafe.config.{Config, ConfigFactory, ConfigObject, ConfigUtil}
 import scala.jdk.CollectionConverters.*
 
-/** Any configuration, changed so that its actor system lives on the loop. */
+/** Changes a configuration so that its actor system runs on the loop. */
 private object VirtualConfig:
 
-  /** Every dispatcher in `config` runs on the loop; one that needs threads, and sockets, are refused. */
+  /** Makes every dispatcher in `config` run on the loop; those that need threads, and sockets, are refused.
+    */
   def apply(config: Config): Config =
     val (of, made) = latest
     if of eq config then made
@@ -39,7 +40,7 @@ private object VirtualConfig:
     pekko.io.dns.dispatcher = "${RefusedDispatcher.sockets}"
     """
 
-  /** Path and `type` of each dispatcher. */
+  /** Path and `type` of each dispatcher in the configuration. */
   private def dispatchers(at: ConfigObject, path: Seq[String]): Seq[(Seq[String], String)] =
     val here = Option(at.get("type")).map(_.unwrapped).collect:
       case kind @ ("Dispatcher" | "PinnedDispatcher") => (path, kind.toString)

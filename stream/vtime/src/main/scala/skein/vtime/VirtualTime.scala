@@ -29,7 +29,7 @@ object VirtualTime:
     loop.governing:
       requireAgent(loop)
       val system = ActorSystem("virtual", VirtualConfig(config))
-      // It awaits an actor when it is made, so it must be there before blocking becomes an error.
+      // Making it awaits an actor, so it must exist before blocking becomes an error.
       SystemMaterializer(system): Unit
       loop.booted()
       val result = Promise[A]()
@@ -49,7 +49,9 @@ object VirtualTime:
       case scheduler: LoopScheduler => scheduler.loop.nanoTime
       case _ => throw IllegalArgumentException(s"${system.classicSystem} does not run in virtual time")
 
-  /** Asks rewritten code what time it is, in Pekko and in `scala.concurrent`. */
+  /** Reads the time through rewritten code, in Pekko and in `scala.concurrent`, to check that the agent
+    * works.
+    */
   private def requireAgent(loop: Loop): Unit =
     def stop(detail: String)   = throw loop.fail(Problem.NoAgent(detail))
     val failure: String | Null = Agent.failure

@@ -4,12 +4,12 @@ import java.lang.Thread.State
 import java.lang.management.ManagementFactory
 import scala.concurrent.duration.*
 
-/** Ends a run whose thread stands still, waiting in one task for a lock, a latch or an answer that nobody on
-  * the loop can give. One that computes in one task cannot be ended by another thread; that is told once.
-  * Looks every half of `patience` (real time).
+/** Ends a run whose thread stands still: it waits in one task for a lock, a latch or an answer that the loop
+  * cannot provide. Another thread cannot end a task that computes; this is only reported, once. Checks every
+  * half of `patience` (real time).
   *
-  * @param begun how many tasks the thread has begun so far
-  * @param onEndless where a task is that does not end
+  * @param begun number of tasks that the thread has begun
+  * @param onEndless called with the stack of a task that does not end
   */
 private final class Watchdog(
     thread: Thread,
@@ -23,7 +23,7 @@ private final class Watchdog(
   private var stopped = false
   private val watcher = Thread.ofVirtual.start(() => watch())
 
-  /** From here on, the loop's thread may wait as long as it likes, and is not interrupted any more. */
+  /** Stops watching: the loop's thread may wait as long as it likes. */
   def stop(): Unit =
     synchronized { stopped = true }
     watcher.interrupt()
@@ -52,23 +52,24 @@ private final class Watchdog(
 
 private object Watchdog:
 
-  /** What the watchdog sees of the loop's thread.
+  /** One observation of the loop's thread.
     *
-    * @param waits whether it waits at this moment
+    * @param waits whether it waits now
     * @param begun tasks begun so far
-    * @param processorNanos processor time it has had so far; -1 where the JVM cannot tell
+    * @param processorNanos processor time so far; -1 where the JVM does not report it
     */
   final case class Look(waits: Boolean, begun: Long, processorNanos: Long)
 
   val LooksNeeded = 3
 
-  /** On a machine that is busy otherwise a thread may be met waiting again and again, though it works in
-    * between, as while classes load: what has had the processor since the look before does not stand still.
+  /** Whether the thread stands still. On a busy machine a working thread may be observed waiting repeatedly,
+    * for example while classes load: a thread that used the processor since the previous observation does not
+    * stand still.
     */
   def standsStill(looks: Seq[Look]): Boolean =
     looks.size >= LooksNeeded && looks.forall(look => look.waits && look == looks.head)
 
-  /** Most of the time that the looks lie apart was spent in one task, with the processor. */
+  /** Whether one task used the processor for most of the time between the observations. */
   def isEndless(looks: Seq[Look], patience: FiniteDuration): Boolean =
     looks.size >= LooksNeeded && looks.forall(_.begun == looks.head.begun) &&
       looks.last.processorNanos - looks.head.processorNanos > patience.toNanos / 2

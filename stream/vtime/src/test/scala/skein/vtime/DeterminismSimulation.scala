@@ -6,15 +6,15 @@ import org.apache.pekko.stream.{KillSwitches, OverflowStrategy}
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.Future
 
-/** Equal seeds give equal runs: in one JVM, in several, and beside one another. */
+/** Equal seeds give equal runs: in one JVM, in several, and in parallel. */
 class DeterminismSimulation extends munit.FunSuite:
 
-  test("a graph gives the same log over repeats, and another one for another seed"):
+  test("a graph has equal logs over repeats, and another one for another seed"):
     val first = SampleGraph.digest(3)
     (1 to 5).foreach(_ => assertEquals(SampleGraph.digest(3), first))
     assertNotEquals(SampleGraph.digest(4), first)
 
-  test("two loops in two threads at once give what each gives alone"):
+  test("two loops in parallel threads have the results of each alone"):
     val alone   = Seq(3L, 4L).map(SampleGraph.digest(_))
     val threads = Executors.newFixedThreadPool(2)
     try
@@ -23,7 +23,7 @@ class DeterminismSimulation extends munit.FunSuite:
       assertEquals(together.map(_.get()), Seq.fill(3)(alone).flatten)
     finally threads.shutdown()
 
-  test("actors have the same names and numbers in every run, those of streams too"):
+  test("actors have equal names and numbers in every run, those of streams, too"):
     def names() = VirtualTime.run(1): system =>
       given ActorSystem = system
       val actor         = system.actorOf(Props(Silent()))
@@ -35,7 +35,7 @@ class DeterminismSimulation extends munit.FunSuite:
     assert(clue(first)._2.contains("StreamSupervisor-1/"))
     assertEquals(names().value, first)
 
-  test("a shared kill switch ends its streams in the same order in every run"):
+  test("a shared kill switch ends its streams in one order in every run"):
     def ended() = VirtualTime.run(1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -82,10 +82,10 @@ class DeterminismSimulation extends munit.FunSuite:
     do
       assert(clue(sleep).startsWith(s"Blocked($call"))
 
-  test("another JVM gives the same log"):
+  test("another JVM has an equal log"):
     assertEquals(OtherJvm.run("skein.vtime.sampleGraphDigest", Seq("3")), SampleGraph.digest(3))
 
-  test("without the agent, a run is refused at once, and the option to add is shown"):
+  test("without the agent, a run is refused immediately, and the option to add is shown"):
     val refused = OtherJvm.run("skein.vtime.withoutAgent", withAgent = false)
     assert(clue(refused).startsWith("refused: virtual time needs its agent"))
     assert(refused.contains("-javaagent:/"))

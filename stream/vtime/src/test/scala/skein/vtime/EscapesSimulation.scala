@@ -9,7 +9,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import skein.testing.Unhurried
 
-/** What cannot be right in virtual time stops the run and names the culprit. */
+/** Anything that would make virtual time wrong stops the run and names the culprit. */
 class EscapesSimulation extends munit.FunSuite, Unhurried:
   private def stopped(limits: RunLimits = RunLimits(), config: String = "")(
       body: ActorSystem => Future[?]
@@ -80,7 +80,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
         Promise[Done]().future
     assertEquals(error.problem, Problem.NeedsThreads("own"))
 
-  test("a dispatcher of somebody's own with a thread pool runs on the loop"):
+  test("a user's own dispatcher with a thread pool runs on the loop"):
     val config = ConfigFactory.parseString("own { type = Dispatcher, executor = thread-pool-executor }")
     val ran    = VirtualTime.run(1, config = config.withFallback(ConfigFactory.load())): system =>
       Future(Thread.currentThread)(using system.dispatchers.lookup("own"))
@@ -117,7 +117,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       case other => fail(s"another problem: $other")
     assert(clue(taken) < 10.seconds)
 
-  test("a stream of many elements at one instant is none"):
+  test("a stream of many elements at one instant is no livelock"):
     val run = VirtualTime.run(1): system =>
       given ActorSystem = system
       Source(1 to 3_000_000).runWith(Sink.fold(0L)(_ + _))
@@ -147,7 +147,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
     intercept[IllegalStateException]:
       VirtualTime.run(1)(_ => Future.successful(VirtualTime.run(2)(_ => Future.successful(1))))
 
-  test("the failure of the future is thrown as it is"):
+  test("the failure of the future is thrown unchanged"):
     val error = intercept[ArithmeticException]:
       VirtualTime.run(1)(_ => Future.failed(ArithmeticException("division")))
     assertEquals(error.getMessage, "division")

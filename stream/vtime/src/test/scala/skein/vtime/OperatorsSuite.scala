@@ -9,10 +9,10 @@ import org.apache.pekko.util.Timeout
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 
-/** Each operator that reads a clock or sets a timer, against the exact times it must act at. */
+/** Each operator that reads a clock or sets a timer, compared with its exact times. */
 class OperatorsSuite extends munit.FunSuite:
 
-  /** Milliseconds since the start, per element. */
+  /** Times of the elements, milliseconds since the start. */
   private def times[A](source: ActorSystem => Source[A, ?]): Seq[(A, Double)] =
     VirtualTime.run(1): system =>
       given ActorSystem = system
@@ -46,7 +46,7 @@ class OperatorsSuite extends munit.FunSuite:
     assertEquals(times(_ => ticks.takeWithin(250.millis)).map(_._1), Seq(1, 2, 3))
     assertEquals(times(_ => ticks.dropWithin(250.millis).take(2)), Seq(4 -> 300.0, 5 -> 400.0))
 
-  test("groupedWithin emits what has come when its time is over"):
+  test("groupedWithin emits the elements received when its time is over"):
     val grouped = times(_ => ticks.groupedWithin(100, 250.millis).take(2))
     assertEquals(grouped, Seq(Seq(1, 2, 3) -> 250.0, Seq(4, 5) -> 500.0))
 
@@ -74,7 +74,7 @@ class OperatorsSuite extends munit.FunSuite:
       run.duration
     assertEquals(failure(_.completionTimeout(700.millis)), 700.millis)
     assertEquals(failure(_.drop(1).initialTimeout(300.millis)), 300.millis)
-    // Demand ends at 0; of the checks, 100 ms apart, the first after more than 800 ms:
+    // Demand ends at 0; the first check, of those 100 ms apart, after more than 800 ms:
     assertEquals(failure(_.backpressureTimeout(800.millis).mapAsync(1)(_ => Future.never)), 900.millis)
 
   test("a circuit breaker lets a call through again exactly when its reset time is over"):
@@ -88,7 +88,7 @@ class OperatorsSuite extends munit.FunSuite:
       breaker.withCircuitBreaker(Future.failed(RuntimeException("down"))).recoverWith { case _ => probe() }
     assertEquals(run.duration, 5.seconds)
 
-  test("mapAsync keeps the order of answers that come at different times"):
+  test("mapAsync keeps the order of answers that arrive at different times"):
     val answered = times: system =>
       Source(Seq(300, 100, 200)).mapAsync(3)(ms => after(ms.millis)(Future.successful(ms))(using system))
     assertEquals(answered, Seq(300 -> 300.0, 100 -> 300.0, 200 -> 300.0))
@@ -102,7 +102,7 @@ class OperatorsSuite extends munit.FunSuite:
     .value
     assertEquals(failedAt, (classOf[AskTimeoutException], 5000.0))
 
-  test("RestartSource backs off by its seeded jitter, the same for one seed and another for another"):
+  test("RestartSource backs off by its seeded jitter, equal for equal seeds"):
     def starts(seed: Long) = VirtualTime.run(seed): system =>
       given ActorSystem = system
       val millis        = elapsedMillis(system)

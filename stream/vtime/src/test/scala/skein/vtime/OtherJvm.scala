@@ -4,10 +4,9 @@ import java.lang.management.ManagementFactory
 import scala.concurrent.Future
 import scala.jdk.CollectionConverters.*
 
-/** Runs a main method in a JVM of its own. */
+/** Runs a main method in a separate JVM. */
 private object OtherJvm:
 
-  /** The last line that `main` prints. */
   def run(
       main: String,
       arguments: Seq[String] = Nil,

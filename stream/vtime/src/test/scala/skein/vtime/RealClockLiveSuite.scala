@@ -7,10 +7,10 @@ import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
 
-/** Needs the real clock: shows that real time goes on beside virtual time. */
+/** Needs the real clock: shows that real time advances beside virtual time. */
 class RealClockLiveSuite extends munit.FunSuite:
 
-  test("a task that waits for a latch is ended, and shows where it stood"):
+  test("a task that waits for a latch is ended, and its stack is shown"):
     val error = intercept[VirtualTimeException]:
       VirtualTime.run(1, RunLimits(standstill = 100.millis)): _ =>
         CountDownLatch(1).await()

@@ -37,9 +37,7 @@ class RewriteJarsSuite extends munit.FunSuite, TemporaryFolders:
         case _                       => None
     yield called
 
-  test(
-    "jars that were rewritten once read virtual time without an agent, and their other classes stay as they were"
-  ):
+  test("rewritten jars read virtual time without an agent, and their other classes are unchanged"):
     val folder = temporaryFolder()
     val scala  = jar(folder.resolve("scala.jar"), deadline, option)
     val agent  = jar(folder.resolve("agent.jar"), s"${classOf[Agent].getName.replace('.', '/')}.class")

@@ -12,12 +12,12 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import scala.util.Random
 
-/** Two vehicles' worth of ticks, asks that sometimes time out, joins, buffers, throttles, delays and
+/** A graph for two vehicles: ticks, asks that sometimes time out, joins, buffers, throttles, delays and
   * restarts.
   */
 private object SampleGraph:
 
-  /** SHA-256 of every event, with its time. */
+  /** SHA-256 over all events with their times. */
   def digest(seed: Long, graphs: Int = 1, duration: FiniteDuration = 20.seconds): String =
     val events = VirtualTime.run(seed): system =>
       import system.dispatcher

@@ -4,7 +4,7 @@ import java.lang.management.ManagementFactory
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 
-/** How fast is virtual time: starting and ending a system, and seconds of [[SampleGraph]] per second of the
+/** Speed of virtual time: starting and ending a system, and seconds of [[SampleGraph]] per second of the
   * loop's processor time, which a busy machine does not distort. The digest is the witness.
   */
 @main def virtualTimeSpeed(): Unit =

@@ -8,7 +8,7 @@ import org.apache.pekko.util.Timeout
 import scala.concurrent.duration.*
 import scala.concurrent.{Promise, TimeoutException}
 
-/** Typed actors on the classic system that a run is given. */
+/** Typed actors on a run's classic system. */
 class TypedSuite extends munit.FunSuite:
   private case object Beat
 

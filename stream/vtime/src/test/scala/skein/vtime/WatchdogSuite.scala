@@ -7,22 +7,23 @@ class WatchdogSuite extends munit.FunSuite:
 
   private val still = Look(waits = true, begun = 7, processorNanos = 1_000)
 
-  test("a thread that waits in the same task and has no processor time in between stands still"):
+  test("a thread that waits in one task without processor time in between stands still"):
     assert(standsStill(Seq(still, still, still)))
 
-  test("two looks are not enough"):
+  test("two observations are not enough"):
     assert(!standsStill(Seq(still, still)))
 
-  test("a thread that is met waiting every time but has worked in between does not stand still"):
+  test("a thread observed waiting each time that has worked in between does not stand still"):
     assert(!standsStill(Seq(still, still.copy(processorNanos = 1_001), still.copy(processorNanos = 1_002))))
     assert(!standsStill(Seq(still, still, still.copy(processorNanos = 1_001))))
 
-  test("nor does one that has begun another task, or that is met running"):
+  test("a thread that has begun another task, or is observed running, does not stand still"):
     assert(!standsStill(Seq(still, still, still.copy(begun = 8))))
     assert(!standsStill(Seq(still, still.copy(waits = false), still)))
 
   test(
-    "a thread that computes in the same task all the time does not end; one that computes now and then may"
+    "a thread that computes in one task all the time is endless; one that computes from time to time is " +
+      "not"
   ):
     def looks(processorMs: Long*) =
       processorMs.map(ms => Look(waits = false, begun = 7, processorNanos = ms * 1_000_000))

@@ -9,15 +9,13 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.{CarControls, CarDriver, GoTo, SingleTrack}
 
-/** A car of AirSim as a loop sees it. AirSim's cars take pedals and a steering wheel, not velocities: the
-  * driver ([[skein.vehicle.CarDriver]]) sits here, looks at the newest reading whenever an action comes, and
-  * what he does then stands until the next action. When the time that an action lasts is over, the car
-  * brakes.
+/** A car of AirSim as a loop's vehicle port. AirSim's cars take pedals and a steering wheel, not velocities:
+  * the driver ([[skein.vehicle.CarDriver]]) runs here. It reads the newest reading when an action arrives,
+  * and its controls hold until the next action. When the action's duration is over, the car brakes.
   *
-  * A velocity's vertical part is no car's, and is passed over; to land is to brake. Turning on the spot and
-  * attitudes are refused.
+  * A velocity's vertical part is ignored; landing brakes. Turning on the spot and attitudes are refused.
   *
-  * @param model what the driver takes the car for
+  * @param model the car's model that the driver assumes
   */
 final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTrack = SingleTrack())(using
     system: ActorSystem
@@ -56,10 +54,9 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
   private def unsupported(what: String): Future[Answer] =
     Future.successful(Left(VehicleError.Unsupported(s"${car.name} is a car, which cannot $what")))
 
-  /** @param wanted velocity, north and east, m/s, of a car that moves so
-    */
+  /** @param wanted the car's velocity to north and east, m/s, as a function of its motion */
   private def drive(lasts: Span)(wanted: Kinematics => (Double, Double)): Future[Answer] = seen.get match
-    // At once, so that actions leave in the order of the calls.
+    // Sent immediately, so that actions leave in the order of the calls.
     case Some(now) => drive(now, wanted(now), lasts)
     case None      =>
       read().flatMap:
@@ -75,7 +72,7 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
       ended.future.onComplete(_ => over.cancel())
     ended.future
 
-  /** Sends controls in the place of those that stand. The action before ends when they have arrived. */
+  /** Replaces the car's controls. The action before ends once the new controls have arrived. */
   private def replace(next: Promise[Answer], controls: CarControls)(arrived: Unit => Unit): Unit =
     val before = underWay.getAndSet(next)
     car.setControls(controls).foreach:

@@ -8,15 +8,15 @@ import skein.units.*
 import upack.{Bool, Float64, Int32, Msg}
 import upickle.default.{Reader, writeMsg}
 
-/** Calls that concern a whole simulator: the built-in one, AirSim, Colosseum or Cosys-AirSim. Vehicles have
-  * their own, in [[Multirotor]].
+/** Calls that concern a whole simulator: the built-in one, AirSim, Colosseum or Cosys-AirSim. Calls that
+  * concern one vehicle are in [[Multirotor]].
   *
-  * @param timeout of every call that answers at once; those that take time by themselves have it on top
+  * @param timeout of calls that answer immediately; calls with a duration of their own add it to this
   */
 final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(5)):
   private given ExecutionContext = ExecutionContext.parasitic
 
-  /** Whether the simulator has refused a camera's function for its last argument; see [[Eyes]]. */
+  /** Whether the simulator has refused a camera function for its last argument; see [[Eyes]]. */
   @volatile private[airsim] var camerasTakeLess = false
 
   private val once      = CallOptions(timeout)
@@ -27,7 +27,7 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
   /** AirSim's protocol version: 1; of the built-in simulator and of Cosys-AirSim 3, 4. */
   def serverVersion(): Future[Either[RpcError, Int]] = get("getServerVersion")
 
-  /** The oldest client version that the simulator serves, 1. */
+  /** The oldest client version that the simulator supports: 1. */
   def minRequiredClientVersion(): Future[Either[RpcError, Int]] = get("getMinRequiredClientVersion")
 
   def pause(): Future[Either[RpcError, Unit]] = tell("simPause", Seq(Bool(true)), whichever)
@@ -37,7 +37,8 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
   def isPaused(): Future[Either[RpcError, Boolean]] = get("simIsPaused")
 
   /** Runs physics for `span` and pauses; answers when that is done. The built-in simulator advances by
-    * exactly `span` and at once; AirSim measures it with the wall clock and overshoots by up to a step.
+    * exactly `span` and needs no wall-clock time for it; AirSim measures `span` with the wall clock and
+    * overshoots by up to a step.
     */
   def continueFor(span: Span): Future[Either[RpcError, Unit]] =
     tell("simContinueForTime", Seq(Float64(span.toSeconds)), once.copy(timeout = timeout + span))
@@ -46,14 +47,13 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
   def continueForFrames(frames: Int): Future[Either[RpcError, Unit]] =
     tell("simContinueForFrames", Seq(Int32(frames)), once)
 
-  /** Puts every vehicle back to its start: landed, disarmed, without api control. Moves end with false. */
+  /** Returns every vehicle to its start: landed, disarmed, without API control. Moves end with false. */
   def reset(): Future[Either[RpcError, Unit]] = tell("reset", Seq(), once)
 
-  /** Names, in the order of the settings. */
+  /** The vehicles' names, in the order of the settings. */
   def vehicles(): Future[Either[RpcError, Seq[String]]] =
     get[Seq[Text]]("listVehicles").map(_.map(_.map(_.value)))
 
-  /** The simulator's `settings.json`. */
   def settingsText(): Future[Either[RpcError, String]] = get[Text]("getSettingsString").map(_.map(_.value))
 
   def settings(): Future[Either[AirSimError, WorldSettings]] =
@@ -67,7 +67,7 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
   def setWind(windNed: Vector3): Future[Either[RpcError, Unit]] =
     tell("simSetWind", Seq(writeMsg(Vector3r(windNed))), whichever)
 
-  /** Closes the connections; calls under way end with [[RpcError.Cancelled]]. */
+  /** Closes the connections; calls in progress end with [[RpcError.Cancelled]]. */
   def close(): Future[Done] = rpc.close()
 
   private def get[A: Reader](method: String): Future[Either[RpcError, A]] =

@@ -4,16 +4,16 @@ import skein.link.Address
 import skein.rpc.RpcError
 import skein.units.Decimals.brief
 
-/** Why a vehicle of a simulator is not at hand. Expected, so a value. */
+/** Why a simulator's vehicle is not available: an expected failure, returned as a value. */
 enum AirSimError:
 
-  /** The simulator did not answer, or refused. */
+  /** The simulator did not answer, or refused the call. */
   case Call(error: RpcError)
 
-  /** It has no vehicle of this name; `existing` are those it has. */
+  /** It has no vehicle of this name; `existing` lists those it has. */
   case UnknownVehicle(name: String, existing: Seq[String])
 
-  /** What it sent as its settings cannot be read. */
+  /** The settings that it sent cannot be read. */
   case Settings(error: SettingsError)
 
   def message: String = this match
@@ -22,13 +22,13 @@ enum AirSimError:
     case Settings(error)                => s"the simulator's settings: ${error.message}"
 
 object AirSimError:
-  /** That a simulator has not got these vehicles, but others. */
+  /** One line: the simulator lacks these vehicles, and which ones it has. */
   def unknown(names: Seq[String], existing: Seq[String]): String =
     def listed(all: Seq[String]) = all.map(name => s"'$name'").mkString(", ")
     val has                      = if existing.isEmpty then "it has none" else s"it has ${listed(existing)}"
     s"the simulator has no vehicle ${listed(names)}; $has"
 
-  /** Why the first call of all has failed, where it is not known yet who listens there. */
+  /** Explains a failed first call, when it is not yet known what listens at the address. */
   def ofFirst(error: RpcError, at: Address): String = error match
     case RpcError.Timeout(_, after) =>
       s"who listens at $at takes the connection, but has said nothing for ${after.toSeconds.brief} s; " +

@@ -8,13 +8,13 @@ import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A multirotor of AirSim as a loop sees it.
+/** A multirotor of AirSim as a loop's vehicle port.
   *
-  * Answers that are missed are dealt with by its [[MoveQueue]]: control goes on 0.6 s and a round trip after
-  * a cancel was lost, and as long and another round trip after an answer was lost; where the sign of life or
-  * the cancel is lost too, after the timeout of that more.
+  * [[MoveQueue]] recovers from missed answers: control resumes 0.6 s and one round trip after a lost cancel,
+  * one further round trip later after a lost answer, and another timeout later where the probe or the cancel
+  * is lost too.
   *
-  * @param onLost told of every answer that was missed, and what became of it
+  * @param onLost called with one line for each missed answer: what happened to it
   */
 final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem)
     extends VehiclePort:
@@ -23,7 +23,7 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
 
   private val moves = MoveQueue(multirotor, onLost)
 
-  /** Calls that were made beside readings and moves. */
+  /** Calls sent in addition to readings and moves. */
   def callsBeside: Int = moves.callsBeside
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
@@ -53,7 +53,7 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
       call: Future[Unit] => Future[Either[RpcError, Boolean]]
   ): Future[Either[VehicleError, Boolean]] = moves.send(call).map(_.left.map(errorOf))
 
-/** AirSim's own pause and steps. */
+/** Pauses and steps a simulator by AirSim's own functions. */
 final class AirSimTime(client: AirSimClient) extends SteppedTime:
   import VehicleErrors.errorOf
   private given ExecutionContext = ExecutionContext.parasitic

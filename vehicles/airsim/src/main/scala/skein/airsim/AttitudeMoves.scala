@@ -4,16 +4,16 @@ import scala.concurrent.Future
 import skein.rpc.RpcError
 import skein.units.*
 
-/** Moves that command attitude, rates or rotors instead of velocities or places. Angles are of the body FRD
-  * against the world NED (roll to the right, pitch up, yaw towards east), rates about the body's axes in
-  * rad/s, throttle and rotor controls from 0 to 1. Each flies for its duration.
+/** Moves that command attitude, rates or rotors instead of velocities or positions. Angles are of the body
+  * FRD against the world NED (roll to the right, pitch up, yaw towards east), rates are about the body's axes
+  * in rad/s, throttle and rotor controls are from 0 to 1. Each move lasts for its duration.
   */
 trait AttitudeMoves:
 
-  /** Four numbers, for how long. */
+  /** Sends a move of four numbers that lasts for `duration`. */
   protected def attitude(method: String, duration: Span, numbers: Double*): Future[Either[RpcError, Boolean]]
 
-  /** An altitude goal, world NED, in the vehicle's own frame. */
+  /** Converts an altitude goal from world NED to the vehicle's own frame. */
   protected def ownDown(down: Metres): Double
 
   /** Holds attitude and altitude. `down` is NED, in the world's frame, m. */
@@ -77,7 +77,7 @@ trait AttitudeMoves:
     val rates = Seq(rollRateRadPerS, pitchRateRadPerS, yawRateRadPerS)
     attitude("moveByAngleRatesThrottle", duration, rates :+ throttle*)
 
-  /** Controls of the rotors themselves; no controller keeps the vehicle upright. */
+  /** Controls the rotors directly; no controller keeps the vehicle upright. */
   def moveByMotorPwms(
       frontRight: Double,
       rearLeft: Double,

@@ -8,8 +8,8 @@ import skein.units.*
 import skein.vehicle.CarControls
 import upickle.default.writeMsg
 
-/** One car of a simulator. Controls act at once and stand until the next; they are sent on one connection, in
-  * order.
+/** One car of a simulator. Controls take effect immediately and hold until the next; they are sent in order
+  * on one connection.
   */
 final class Car(
     client: AirSimClient,
@@ -38,7 +38,7 @@ final class Car(
       RpcError.Malformed("getCarState", "expected finite numbers in kinematics_estimated")
     ))
 
-  /** Without api control nothing happens.
+  /** Sets pedals and steering. Has no effect without API control.
     *
     * @param gear chosen by hand: −1 is reverse; without it, AirSim's gearbox chooses
     */
@@ -68,7 +68,7 @@ object Car:
 
 /** A car's state.
   *
-  * @param speed along its heading, negative backwards
+  * @param speed along its heading, negative in reverse
   * @param gear −1 is reverse
   */
 final case class CarStatus(

@@ -8,12 +8,12 @@ import skein.units.*
 import upack.{Bool, Msg, Str}
 import upickle.default.writeMsg
 
-/** Cameras and lidars of one vehicle. Images and scans come on connections of their own ([[Channel.Bulk]]),
-  * so nothing that flies the vehicle waits for them, and are stamped with their exposure. A question is
-  * refused while [[skein.rpc.RpcSettings.windowInAll]] of them are unanswered; `skein.flow.Frames` asks as
-  * often as wanted, keeps the newest and counts what it skips.
+/** Cameras and lidars of one vehicle. Images and scans use connections of their own ([[Channel.Bulk]]), so
+  * they never delay control; each is stamped with its exposure time. A request is refused while
+  * [[skein.rpc.RpcSettings.windowInAll]] requests are unanswered; `skein.flow.Frames` requests at a given
+  * rate, keeps the newest and counts what it skips.
   *
-  * @param originNed where the vehicle's own frame has its origin
+  * @param originNed origin of the vehicle's own frame in the world, m
   */
 final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originNed: Vector3):
   private given ExecutionContext = ExecutionContext.parasitic
@@ -21,7 +21,7 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
   private val options =
     CallOptions(client.timeout, Channel.Bulk, idempotent = true, whenFull = WhenFull.Refuse)
 
-  /** Several images of one moment, in the order of the shots. */
+  /** Takes several images of one instant, in the order of the shots. */
   def images(shots: Seq[Shot]): Future[Either[RpcError, Stamped[Vector[Image]]]] =
     val asked = shots.map: shot =>
       ImageRequest(
@@ -32,24 +32,23 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
       )
     askCamera("simGetImages", Seq(writeMsg(asked), Str(vehicle)))(Images.read(_, shots, originNed))
 
-  /** One image. */
   def image(shot: Shot): Future[Either[RpcError, Stamped[Image]]] =
     images(Seq(shot)).map(_.map(_.map(_.head)))
 
-  /** The newest scan of a lidar; an empty name means the first. Between two scans the older one comes again.
+  /** The newest scan of a lidar; an empty name means the first lidar. Between two scans it returns the older
+    * one again.
     */
   def scan(lidar: String = ""): Future[Either[RpcError, Stamped[Scan]]] =
     ask("getLidarData", Seq(Str(lidar), Str(vehicle)))(Images.readScan(_, originNed))
 
-  /** A camera's horizontal field of view. */
   def fov(camera: String): Future[Either[RpcError, Radians]] =
     askCamera("simGetCameraInfo", Seq(Str(camera), Str(vehicle)))(in =>
       Right((Images.readFov(in), Instant.Epoch))
     )
       .map(_.map(_.value))
 
-  /** Functions of cameras end with `external` in AirSim and Colosseum, and have no such argument in
-    * Cosys-AirSim 3. Which it is the simulator tells by its first refusal, and the client remembers.
+  /** Camera functions end with the argument `external` in AirSim and Colosseum, and lack it in Cosys-AirSim
+    *   3. The client learns which from the simulator's first refusal, and remembers it.
     */
   private def askCamera[A](method: String, params: Seq[Msg])(
       read: MessageReader => Either[String, (A, Instant)]
@@ -71,5 +70,5 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
       case TimedReply(Left(reason), _, _) => Left(RpcError.Malformed(method, reason)))
 
 private object Eyes:
-  /** rpclib's words for another number of arguments than the function has. */
+  /** rpclib's error text for a wrong number of arguments. */
   val WrongCount = "invalid number of arguments"

@@ -3,7 +3,7 @@ package skein.airsim
 import skein.rpc.{Bytes, MessageReader}
 import skein.units.*
 
-/** What an image shows, with AirSim's numbers. Cosys-AirSim has further ones. */
+/** What an image shows, by AirSim's numbers. Cosys-AirSim has further kinds. */
 enum ImageKind(val number: Int):
   case Scene               extends ImageKind(0)
   case DepthPlanar         extends ImageKind(1)
@@ -16,18 +16,17 @@ enum ImageKind(val number: Int):
   case OpticalFlow         extends ImageKind(8)
   case OpticalFlowVis      extends ImageKind(9)
 
-/** How an image's pixels come. */
+/** How an image's pixels are encoded on the wire. */
 enum Encoding:
-  /** Three bytes a pixel: blue, green, red. */
   case Raw
 
-  /** As a PNG file. It costs the simulator much time. */
+  /** A PNG file. Encoding takes the simulator long. */
   case Png
 
-  /** One number a pixel, depths in m. */
+  /** One 32-bit float a pixel; depths are in m. */
   case Numbers
 
-/** One image to be taken.
+/** A request for one image.
   *
   * @param camera its name; `0` is the front one
   */
@@ -35,18 +34,15 @@ final case class Shot(camera: String, kind: ImageKind = ImageKind.Scene, encodin
 
 /** The pixels of an image, in rows from the top, without gaps. */
 enum Pixels:
-  /** Blue, green, red of each pixel. */
   case Bgr(bytes: Bytes)
 
-  /** A PNG file. */
   case Png(file: Bytes)
 
-  /** One number a pixel. */
   case Numbers(values: Array[Float])
 
-/** An image.
+/** One image.
   *
-  * @param positionNed of the camera when it was taken, world, m
+  * @param positionNed of the camera at the exposure, world, m
   * @param orientation from the camera's frame (front, right, down) to world NED
   */
 final case class Image(
@@ -73,8 +69,8 @@ final case class Scan(
 ):
   def size: Int = points.length / 3
 
-  /** How far, in the plane, the nearest point is in each of so many equal sectors of the compass, clockwise
-    * from north, m; of points in the lidar's own frame.
+  /** Distance in the horizontal plane to the nearest point in each of `sectors` equal sectors, clockwise from
+    * north, m; for points in the lidar's own frame.
     *
     * @param bandM points more than this above or below do not count
     * @param farM the value of a sector without points
@@ -98,13 +94,13 @@ final case class Scan(
       at += 3
     found
 
-/** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones
-  * passed over, missing ones as if they were empty. What cannot be is told by [[MessageReader]]'s error.
+/** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, unknown keys
+  * skipped, missing keys as empty. What cannot be read ends with [[MessageReader]]'s error.
   */
 private[airsim] object Images:
 
-  /** The answer to `simGetImages`, and when they were exposed; None for one that the simulator could not
-    * take, with what it says.
+  /** Reads the answer to `simGetImages` and the time of exposure; None for an image that the simulator could
+    * not take, with its message.
     */
   def read(
       in: MessageReader,
@@ -155,8 +151,8 @@ private[airsim] object Images:
       case "height"             => came.height = in.int()
     came
 
-  /** The answer to `getLidarData`, and when it was scanned. A cloud of one number is AirSim's way to send an
-    * empty one.
+  /** Reads the answer to `getLidarData` and the time of the scan. A cloud of one number is AirSim's encoding
+    * of an empty one.
     */
   def readScan(in: MessageReader, originNed: Vector3): Either[String, (Scan, Instant)] =
     var points       = Array.emptyFloatArray
@@ -180,7 +176,7 @@ private[airsim] object Images:
       Left(s"expected ${points.length / 3} segmentation ids, came ${segmentation.length}")
     else Right((Scan(points, segmentation, position + originNed, orientation), at))
 
-  /** Of the answer to `simGetCameraInfo`. */
+  /** Reads the field of view from the answer to `simGetCameraInfo`. */
   def readFov(in: MessageReader): Radians =
     var degrees = 0.0
     in.fields:

@@ -5,10 +5,10 @@ import skein.port.{Sensor, VehicleError}
 import skein.scenario.Equipment
 import skein.signal.Stamped
 
-/** A lidar as policies read it: see [[Equipment.Lidar]]. Its points have to come in its own frame
-  * (`"DataFrame": "SensorLocalFrame"`). Scans come on connections of their own.
+/** A lidar as policies read it: see [[Equipment.Lidar]]. Its points must be in its own frame (`"DataFrame":
+  * "SensorLocalFrame"`). Scans use connections of their own.
   *
-  * @param seen is shown each scan; must not wait for anything
+  * @param seen called with each scan; must not block
   */
 final class LidarSensor(eyes: Eyes, lidar: Equipment.Lidar, seen: Stamped[Scan] => Unit = _ => ())
     extends Sensor:

@@ -5,10 +5,9 @@ import upack.{Float32, Msg}
 
 /** How far ahead on its path a vehicle aims. */
 enum Lookahead:
-  /** By the speed, and farther while the vehicle is off the path. AirSim's default. */
+  /** In proportion to its speed, and farther while the vehicle is off the path. AirSim's default. */
   case Automatic
 
-  /** A fixed distance. */
   case Fixed(distance: Metres)
 
   private[skein] def params: Seq[Msg] = this match

@@ -6,25 +6,23 @@ import scala.concurrent.{Future, Promise}
 import skein.rpc.RpcError
 import skein.units.*
 
-/** The moves of one vehicle that AirSim has not answered yet, and what is done where an answer is missed.
+/** The moves of one vehicle that AirSim has not answered yet, and the recovery when an answer is missed.
   *
-  * AirSim answers a move when the next one arrives, which cancels it. Two things go wrong with that, and look
-  * alike:
-  *   - The answer is lost on a connection that lives. The next move flies.
-  *   - The cancel is lost: it came while AirSim was about to begin the move. That one flies on to its end,
-  *     and the next waits behind it. One move more, sent on suspicion, would cancel the first and wait behind
-  *     the second: from then on each move would begin when the one after it comes, for the rest of the
+  * AirSim answers a move when the next one arrives, which cancels it. Two failures look alike:
+  *   - The answer is lost on a live connection. The next move flies.
+  *   - The cancel is lost: it arrived while AirSim was about to begin the move. That move flies to its end,
+  *     and the next waits behind it. Sending one more move on suspicion would cancel the first and wait
+  *     behind the second: from then on each move would begin when its successor arrives, for the rest of the
   *     flight.
   *
-  * So, when the answer to a replaced move is missed for [[MoveQueue.AnswerWithin]], the vehicle is asked for
-  * a sign of life behind the next move, on the same ordered connection. When that has come and the answer has
-  * not, the vehicle's task is cancelled once more, which adds no move to AirSim's queue: where a cancel was
-  * lost, the replaced move ends and the next begins; where the answer was lost, the next one ends, and the
-  * loop sends another. Only if [[MoveQueue.Settles]] after that nothing was heard of the replaced move, its
-  * answer is taken for lost and for what it must have been: false, replaced. Where the sign of life is lost
-  * too, all this begins again.
+  * So, when the answer to a replaced move is missing for [[MoveQueue.AnswerWithin]], a probe is sent behind
+  * the next move, on the same ordered connection. If the probe is answered and the move is not, the vehicle's
+  * task is cancelled once more, which adds no move to AirSim's queue: after a lost cancel, the replaced move
+  * ends and the next begins; after a lost answer, the next move ends, and the loop sends another. If the
+  * answer is still missing [[MoveQueue.Settles]] later, it is taken as lost and replaced by the answer it
+  * must have been: false, replaced. If the probe's answer is lost too, the procedure starts again.
   *
-  * @param onLost told of every answer that was missed, and what became of it
+  * @param onLost called with one line for each missed answer: what happened to it
   */
 final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem):
   import MoveQueue.*
@@ -33,12 +31,12 @@ final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using syst
   private val newest = AtomicReference(Option.empty[Sent])
   private val asked  = AtomicInteger()
 
-  /** Calls that were made beside the moves: signs of life and cancels. */
+  /** Calls sent in addition to the moves: probes and cancels. */
   def callsBeside: Int = asked.get
 
   /** Sends a move, which replaces the one before.
     *
-    * @param call is told when its answer need not be waited for any longer
+    * @param call makes the call, given a future that completes when its answer need no longer be awaited
     */
   def send(call: Future[Unit] => Future[Either[RpcError, Boolean]]): Future[Either[RpcError, Boolean]] =
     val withdrawn = Promise[Unit]()
@@ -67,7 +65,7 @@ final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using syst
     if !replaced.answer.isCompleted && replaced.withdrawn.trySuccess(()) then
       onLost("a replaced move was not answered: its answer is taken for lost")
 
-  /** A call beside the moves, unless it is needed no more. */
+  /** Makes a call in addition to the moves, unless it is no longer needed. */
   private def beside(replaced: Sent)(call: Multirotor => Future[Either[RpcError, Unit]])(
       next: Either[RpcError, Unit] => Unit
   ): Unit = if !replaced.answer.isCompleted then
@@ -78,10 +76,10 @@ final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using syst
     system.scheduler.scheduleOnce(span.toDuration)(act)
 
 object MoveQueue:
-  /** From the sending of a move until the answer to the one that it replaces is missed. */
+  /** Time from sending a move until the replaced move's answer counts as missing. */
   val AnswerWithin: Span = Span.ofMillis(500)
 
-  /** That AirSim has to end a replaced move; it takes 0.3 ms. */
+  /** Time that AirSim has to end a replaced move; it needs 0.3 ms. */
   val Settles: Span = Span.ofMillis(100)
 
   private final case class Sent(answer: Future[Either[RpcError, Boolean]], withdrawn: Promise[Unit])

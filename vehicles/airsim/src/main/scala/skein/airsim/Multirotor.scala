@@ -11,9 +11,9 @@ import upickle.default.writeMsg
 
 /** One multirotor of a simulator. Positions are world NED in m, velocities NED in m/s.
   *
-  * A move answers when it has ended: true if it was flown to its end, false if a newer one replaced it or its
-  * time was over. All moves of one vehicle share a connection, so that none overtakes another. AirSim holds a
-  * worker for each move until it ends: have at most one under way and the one that replaces it.
+  * A move answers when it has ended: true if it was completed, false if a newer one replaced it or its time
+  * was over. All moves of one vehicle share a connection and stay in order. AirSim holds a worker for each
+  * move until it ends, so have at most one in progress and one that replaces it.
   */
 final class Multirotor(
     client: AirSimClient,
@@ -40,8 +40,8 @@ final class Multirotor(
       RpcError.Malformed("getMultirotorState", "expected finite numbers in kinematics_estimated")
     ))
 
-  /** Lets the vehicle hover at a place above the ground, level and at rest, as if it had long done so; it
-    * must be under api control. The built-in simulator alone can do that.
+  /** Lets the vehicle hover at a position above the ground, level and at rest, with its controllers settled;
+    * it must be under API control. Only the built-in simulator supports this.
     */
   def hoverAt(pose: VehiclePose): Future[Either[RpcError, Unit]] = tell("skeinHoverAt", own(pose))
 
@@ -61,21 +61,22 @@ final class Multirotor(
   def takeoff(timeout: Span = Span.ofSeconds(20)): Future[Either[RpcError, Boolean]] =
     move("takeoff", timeout, seconds(timeout))
 
-  /** Sinks at 0.2 m/s until it stands. */
+  /** Descends at 0.2 m/s until it stands on the ground. */
   def land(timeout: Span = Span.ofSeconds(60)): Future[Either[RpcError, Boolean]] =
     move("land", timeout, seconds(timeout))
 
-  /** Flies to its start. */
   def goHome(timeout: Span = Span.ofSeconds(600)): Future[Either[RpcError, Boolean]] =
     move("goHome", timeout, seconds(timeout))
 
-  /** Ends the move under way; 60 ms later the vehicle holds the place it has then. AirSim answers false. */
+  /** Ends the current move; 60 ms later the vehicle holds the position that it has then. AirSim answers
+    * false.
+    */
   def hover(): Future[Either[RpcError, Boolean]] = move("hover", Span.Zero)
 
   /** Flies with a velocity.
     *
     * @param velocityNed m/s
-    * @param withdrawn when it completes, the answer is waited for no longer
+    * @param withdrawn when it completes, the answer is no longer awaited
     */
   def moveByVelocity(
       velocityNed: Vector3,
@@ -89,7 +90,7 @@ final class Multirotor(
     *
     * @param velocityNed m/s; its third component is ignored
     * @param down altitude goal, world NED
-    * @param withdrawn when it completes, the answer is waited for no longer
+    * @param withdrawn when it completes, the answer is no longer awaited
     */
   def moveByVelocityZ(
       velocityNed: Vector3,
@@ -100,7 +101,7 @@ final class Multirotor(
   ): Future[Either[RpcError, Boolean]] =
     byVelocity("moveByVelocityZ", velocityNed.x, velocityNed.y, ownDown(down), duration, yaw, withdrawn)
 
-  /** Like [[moveByVelocity]], in the frame that has the vehicle's heading at the start of the move. */
+  /** Like [[moveByVelocity]], in the frame given by the vehicle's heading at the start of the move. */
   def moveByVelocityBodyFrame(
       velocity: Vector3,
       duration: Span,
@@ -108,7 +109,7 @@ final class Multirotor(
   ): Future[Either[RpcError, Boolean]] =
     byVelocity("moveByVelocityBodyFrame", velocity.x, velocity.y, velocity.z, duration, yaw)
 
-  /** Like [[moveByVelocityZ]], in the frame that has the vehicle's heading at the start of the move. */
+  /** Like [[moveByVelocityZ]], in the frame given by the vehicle's heading at the start of the move. */
   def moveByVelocityZBodyFrame(
       velocity: Vector3,
       down: Metres,
@@ -154,7 +155,6 @@ final class Multirotor(
       Seq(real(ownDown(down)), real(speed.value), seconds(timeout), writeMsg(yaw.mode)) ++ lookahead.params*
     )
 
-  /** Flies to a place on the globe. */
   def moveToGps(
       location: GeoLocation,
       speed: MetresPerSecond,
@@ -174,8 +174,7 @@ final class Multirotor(
   ): Future[Either[RpcError, Boolean]] =
     move("rotateToYaw", timeout, degrees(heading.value), seconds(timeout), degrees(margin.value))
 
-  /** @param radiansPerSecond clockwise seen from above
-    */
+  /** @param radiansPerSecond clockwise, seen from above */
   def rotateByYawRate(radiansPerSecond: Double, duration: Span): Future[Either[RpcError, Boolean]] =
     move("rotateByYawRate", duration, degrees(radiansPerSecond), seconds(duration))
 
@@ -229,5 +228,5 @@ object Multirotor:
       case Yaw.Turning(rate)    => YawMode(is_rate = true, math.toDegrees(rate).toFloat)
       case Yaw.Forward          => YawMode(is_rate = false, 0)
 
-    /** AirSim's: 1 forward only, 0 any direction. */
+    /** AirSim's drivetrain number: 1 forward only, 0 any direction. */
     private def drivetrain: Int = if yaw == Yaw.Forward then 1 else 0

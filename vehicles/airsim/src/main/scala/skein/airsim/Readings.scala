@@ -31,5 +31,5 @@ final case class GpsReading(location: GeoLocation, velocityNed: Vector3, valid: 
   */
 final case class BarometerReading(altitude: Metres, pressurePa: Double)
 
-/** One rotor. */
+/** One rotor's thrust, torque and speed, as AirSim reports them. */
 final case class RotorReading(thrustN: Double, torqueNm: Double, speedRadPerS: Double)

@@ -1,6 +1,6 @@
 package skein.airsim
 
-/** A kind of sensor, with the number that AirSim's settings know it by. */
+/** A kind of sensor, with its number in AirSim's settings. */
 enum SensorKind(val number: Int):
   case Barometer    extends SensorKind(1)
   case Imu          extends SensorKind(2)
@@ -10,7 +10,7 @@ enum SensorKind(val number: Int):
   case Lidar        extends SensorKind(6)
 
 object SensorKind:
-  /** What a multirotor of AirSim has if its settings say nothing. */
+  /** The sensors of an AirSim multirotor whose settings name none. */
   val Default: Map[String, SensorKind] =
     Map("imu" -> Imu, "magnetometer" -> Magnetometer, "gps" -> Gps, "barometer" -> Barometer)
 

@@ -10,23 +10,23 @@ enum SettingsError:
   case NotJson(reason: String)
   case Unexpected(path: String, expected: String, found: String)
 
-  /** One line, however long and whatever the file's keys and values are. */
+  /** One line of bounded length, whatever the file's keys and values are. */
   def message: String = this match
     case NotJson(reason)                   => s"not JSON: ${SettingsError.shown(reason)}"
     case Unexpected(path, expected, found) =>
       s"${SettingsError.shown(path)}: expected $expected, found ${SettingsError.shown(found)}"
 
 object SettingsError:
-  /** What a file says, as a part of one line: its first 120 letters, and none that would steer a terminal. */
+  /** A file's text for display within one line: its first 120 characters, without control characters. */
   def shown(text: String): String =
     val line = text.take(MostShown).map(letter => if letter.isControl then '\ufffd' else letter)
     if text.length > MostShown then s"$line…" else line
 
   private val MostShown = 120
 
-/** An object of a `settings.json`, and where it stands. What it lacks is read as said; at the first value
-  * that does not fit, all reading ends. Which keys are read is remembered: [[unread]] tells the others, so
-  * that nothing in a file is passed over without a word.
+/** An object of a `settings.json` and its path. A missing key reads as its default; the first value that does
+  * not fit ends all reading. Keys that are read are remembered: [[unread]] lists the others, so that nothing
+  * in a file is ignored silently.
   */
 final private[skein] class SettingsSection private (fields: Obj, path: String, read: SettingsSection.Read):
   import SettingsSection.*
@@ -60,7 +60,7 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, r
   def section(key: String): SettingsSection =
     value(key).fold(SettingsSection(Obj(), at(key), read))(of(key, _))
 
-  /** By their names, in the file's order. */
+  /** The subsections by name, in the file's order. */
   def sections(key: String): Vector[(String, SettingsSection)] = section(key).parts
 
   private def parts = fields.value.keysIterator.toVector.map(name => name -> section(name))
@@ -70,16 +70,18 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, r
     case Some(other)             => fail(key, "an array", kindOf(other))
     case None                    => Vector.empty
 
-  /** NED, m or m/s. */
+  /** A vector with the keys X, Y and Z: NED, m or m/s. */
   def vector: Vector3 = Vector3(number("X", 0), number("Y", 0), number("Z", 0))
 
-  /** Takes all of it as read: what is switched off has no effect in AirSim either. */
+  /** Counts the whole section as read: a part that is switched off has no effect in AirSim either. */
   def switchedOff(): Unit = read.all += path
 
-  /** Takes nothing of it as read, whatever was. */
+  /** Counts nothing of the section as read, whatever was read before. */
   def passedOver(): Unit = read.none += path
 
-  /** The paths of what was not read, in the file's order: a section of which nothing was read as a whole. */
+  /** The paths of all keys that were not read, in the file's order; a section of which nothing was read
+    * counts as one path.
+    */
   def unread: Vector[String] =
     if read.all(path) then Vector.empty
     else if read.none(path) then Vector(path)
@@ -107,7 +109,6 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, r
 
 private[skein] object SettingsSection:
 
-  /** Reads a file's text. */
   def read[A](text: String)(read: SettingsSection => A): Either[SettingsError, A] =
     try
       ujson.read(text) match
@@ -117,24 +118,23 @@ private[skein] object SettingsSection:
       case e: Misfit   => Left(e.error)
       case NonFatal(e) => Left(notJson(text, e))
 
-  /** Paths: of keys that were read, of sections of which everything counts as read, and of those of which
-    * nothing does.
+  /** Paths: keys that were read, sections that count as read as a whole, and sections that count as unread.
     */
   final private class Read:
     val keys = mutable.Set.empty[String]
     val all  = mutable.Set.empty[String]
     val none = mutable.Set.empty[String]
 
-  /** Without `.0`. */
+  /** Formats a whole number without its `.0`. */
   private def plain(number: Double): String =
     if number.isWhole && number.abs < 1e15 then number.toLong.toString else number.toString
 
   final private class Misfit(val error: SettingsError)
       extends RuntimeException(error.message, null, false, false)
 
-  /** Where a text stopped to be JSON, and what is wrong there.
+  /** Where a text ceases to be JSON, and what is wrong there.
     *
-    * @param mistake of `ujson`, which names the mistake in its cause, and before it the whole path to it
+    * @param mistake of `ujson`, which states the mistake in its cause, and before it the whole path to it
     */
   private def notJson(text: String, mistake: Throwable): SettingsError =
     Iterator.iterate(mistake)(_.getCause).takeWhile(_ != null).take(MostCauses).collectFirst {

@@ -8,9 +8,9 @@ import skein.units.*
 import upack.{Bool, Float32, Msg, Str}
 import upickle.default.{Reader, writeMsg}
 
-/** One vehicle of a simulator, of whatever kind. Positions are world NED in m, velocities NED in m/s.
+/** One vehicle of a simulator, of any kind. Positions are world NED in m, velocities NED in m/s.
   *
-  * @param originNed where the vehicle's own frame has its origin: its start
+  * @param originNed origin of the vehicle's own frame in the world: its start
   * @param connectionKey vehicles with different keys are spread over the connections
   */
 abstract class VehicleClient private[airsim] (
@@ -25,21 +25,20 @@ abstract class VehicleClient private[airsim] (
   protected val getter: CallOptions = once.copy(idempotent = true)
   private val sensor                = getter.copy(channel = Channel.Sensors)
 
-  /** Behind every command sent before, on their connection. */
+  /** Options of calls that keep their order with every command sent before, on their connection. */
   protected val inOrder: CallOptions = once.copy(key = Some(connectionKey))
 
-  /** Its cameras and LIDARs. */
   val eyes: Eyes = Eyes(client, name, originNed)
 
-  /** The same vehicle by another client. */
+  /** This vehicle through another client. */
   def over(client: AirSimClient, originNed: Vector3 = originNed, connectionKey: Int = 0): VehicleClient
 
   // ---- state
 
-  /** Where the vehicle is and how it moves, by its own estimate, with the three times known so far. */
+  /** The vehicle's position and motion by its own estimate, with the times known so far. */
   def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]]
 
-  /** The truth; AirSim does not say when it was valid. */
+  /** The vehicle's true motion; AirSim does not state when it was valid. */
   def groundTruth(): Future[Either[RpcError, Kinematics]] =
     get[KinematicsState]("simGetGroundTruthKinematics").map(_.map(inWorld))
 
@@ -48,20 +47,20 @@ abstract class VehicleClient private[airsim] (
       VehiclePose(pose.position.toVector + originNed, pose.orientation.toQuaternion)
     ))
 
-  /** Puts the vehicle elsewhere. It keeps its velocity and its goal: one that holds a position flies back
-    * there, one that stood on the ground falls.
+  /** Moves the vehicle to a pose. It keeps its velocity and its goal: a vehicle that holds a position flies
+    * back to it; one that stood on the ground falls.
     */
   def setPose(pose: VehiclePose): Future[Either[RpcError, Unit]] =
     tell("simSetVehiclePose", own(pose), Bool(true))
 
-  /** What was touched since the last call, if anything was. */
+  /** The collision since the last call, if there was one. */
   def collision(): Future[Either[RpcError, Option[Collision]]] =
     call[CollisionInfo]("simGetCollisionInfo", Seq(), once).map(_.map: info =>
       Option.when(info.has_collided)(
         Collision(info.time_stamp, info.position.toVector + originNed, info.normal.toVector, info.object_name)
       ))
 
-  /** The start of the vehicle on the globe. */
+  /** The vehicle's start in geographic coordinates. */
   def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(located))
 
   // ---- sensors; an empty name means the first of its kind
@@ -91,20 +90,17 @@ abstract class VehicleClient private[airsim] (
 
   // ---- control
 
-  /** Without api control moves answer true and do nothing. */
+  /** Takes or releases API control. Without it, moves answer true and do nothing. */
   def enableApiControl(on: Boolean = true): Future[Either[RpcError, Unit]] =
     tell("enableApiControl", Bool(on))
 
   def isApiControlEnabled(): Future[Either[RpcError, Boolean]] = get("isApiControlEnabled")
 
-  /** Ends the move under way, with false. It travels behind every command sent before, on their connection.
-    */
+  /** Ends the current move with false. Keeps its order behind every command sent before on the connection. */
   def cancelLastTask(): Future[Either[RpcError, Unit]] =
     call[Msg]("cancelLastTask", Seq(), inOrder).map(_.map(_ => ()))
 
-  /** Answers when every command sent before has reached the simulator: it travels behind them, on their
-    * connection.
-    */
+  /** Answers when every command sent before on the connection has reached the simulator. */
   def reached(): Future[Either[RpcError, Unit]] =
     client.rpc.call("ping", Seq(), inOrder).map(_.map(_ => ()))
 
@@ -125,7 +121,7 @@ abstract class VehicleClient private[airsim] (
   ): Future[Either[RpcError, A]] =
     client.rpc.callAs[A](method, params :+ Str(name), options)
 
-  /** A getter whose answer says when it was valid. */
+  /** Calls a getter whose answer states when it was valid. */
   protected def stamped[A: Reader, B](method: String, params: Msg*)(
       read: A => (B, Instant)
   ): Future[Either[RpcError, Stamped[B]]] = asked(getter, method, params)(read)
@@ -161,7 +157,9 @@ abstract class VehicleClient private[airsim] (
 
 private object VehicleClient:
 
-  /** @param make of its origin and its connection's key
+  /** Makes a client for a named vehicle.
+    *
+    * @param make builds it from its origin and its connection's key
     */
   def named[A](
       client: AirSimClient,

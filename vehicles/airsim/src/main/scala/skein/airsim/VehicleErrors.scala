@@ -5,7 +5,7 @@ import skein.rpc.RpcError
 
 private object VehicleErrors:
 
-  /** An error of the wire as a vehicle's. */
+  /** Converts an RPC error to a vehicle's error. */
   def errorOf(error: RpcError): VehicleError = error match
     case _: RpcError.Timeout                       => VehicleError.TimedOut(error.message)
     case _: RpcError.Refused                       => VehicleError.Refused(error.message)

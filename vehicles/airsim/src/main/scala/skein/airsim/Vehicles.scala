@@ -6,7 +6,7 @@ import skein.policy.Agent
 import skein.port.VehiclePort
 import skein.vehicle.VehicleKind
 
-/** Vehicles of a simulator, by their kind. */
+/** Makes clients and ports of a simulator's vehicles, by kind. */
 object Vehicles:
 
   /** The vehicle of this name; its origin is read from the simulator's settings. */
@@ -18,15 +18,15 @@ object Vehicles:
     case VehicleKind.Multirotor => Multirotor.named(client, name)
     case VehicleKind.Car        => Car.named(client, name)
 
-  /** A vehicle as a loop sees it.
+  /** A vehicle's port for a loop.
     *
-    * @param onLost told of every answer that was missed, and what became of it
+    * @param onLost called with one line for each missed answer: what happened to it
     */
   def port(vehicle: VehicleClient, onLost: String => Unit)(using ActorSystem): VehiclePort = vehicle match
     case multirotor: Multirotor => AirSimVehicle(multirotor, onLost)
     case car: Car               => AirSimCar(car)
 
-  /** Of a scenario's agent: on the ground below its start, looking where it will go. */
+  /** Settings of a scenario's agent: on the ground below its start, heading towards its goal. */
   def settings(agent: Agent): VehicleSettings = VehicleSettings(
     agent.name,
     agent.startPositionNed.copy(z = 0),

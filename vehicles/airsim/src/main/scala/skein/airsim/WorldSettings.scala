@@ -4,12 +4,12 @@ import skein.scenario.Equipment
 import skein.units.*
 import ujson.Obj
 
-/** Where a vehicle starts, which is where its own frame has its origin.
+/** A vehicle's settings. Its start is the origin of its own frame.
   *
   * @param startNed world, m
-  * @param vehicleType in any case of letters
-  * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the one that is meant
-  *   where a call names none
+  * @param vehicleType in any letter case
+  * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the default vehicle of
+  *   calls that name none
   * @param armed after the start and after a reset (`DefaultVehicleState`)
   * @param sensors that are switched on, by their names
   */
@@ -24,17 +24,17 @@ final case class VehicleSettings(
 ):
   def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
 
-  /** Whether it is no vehicle but a camera that stays where it is put. */
+  /** Whether it is not a vehicle but a fixed camera. */
   def isCamera: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision)
 
-/** What is read of an AirSim `settings.json`: vehicles with their sensors, origin, wind and clock speed.
-  * Everything else in it is passed over. `SimMode` says of what type vehicles are that name none; unlike
-  * AirSim's, a world may have vehicles of several types. Vehicles with `AutoCreate` false are none of it.
+/** The part of an AirSim `settings.json` that is read: vehicles with their sensors, origin, wind and clock
+  * speed. Everything else in it is ignored. `SimMode` is the type of vehicles that name none; unlike
+  * AirSim's, a world may have vehicles of several types. Vehicles with `AutoCreate` false are left out.
   *
   * @param vehicles in the file's order
   * @param origin of the world's NED frame
-  * @param text the file as it came
-  * @param addedSensors what a vehicle carries that comes later (`simAddVehicle`): `DefaultSensors`
+  * @param text of the file, unchanged
+  * @param addedSensors sensors of a vehicle that is added later (`simAddVehicle`): `DefaultSensors`
   * @param apiPort `ApiServerPort`
   */
 final case class WorldSettings(
@@ -48,7 +48,7 @@ final case class WorldSettings(
 ):
   require(vehicles.nonEmpty, "a world needs a vehicle")
 
-  /** The one that is meant where a call names none: of those with `IsFpvVehicle` the last by name, else the
+  /** The default vehicle of calls that name none: the last by name of those with `IsFpvVehicle`, else the
     * first.
     */
   def defaultVehicle: VehicleSettings =
@@ -59,23 +59,23 @@ object WorldSettings:
   /** The default vehicle's type and name in AirSim. */
   val SimpleFlight = "SimpleFlight"
 
-  /** The same where `SimMode` is `Car`. */
+  /** AirSim's vehicle type where `SimMode` is `Car`. */
   val PhysXCar = "PhysXCar"
 
-  /** The same where `SimMode` is `ComputerVision`. */
+  /** AirSim's vehicle type where `SimMode` is `ComputerVision`. */
   val ComputerVision = "ComputerVision"
 
   private val CarMode = "Car"
 
-  /** AirSim's default home. */
+  /** AirSim's default home, in degrees and m above the sea. */
   val DefaultOrigin: GeoLocation = GeoLocation(47.641468, -122.140165, Metres(122))
 
   val Default: WorldSettings = WorldSettings(Vector(VehicleSettings(SimpleFlight)))
 
-  /** Reads a `settings.json`. Without vehicles there is one, named after its type, as in AirSim. */
+  /** Reads a `settings.json`. A file without vehicles gives one, named after its type, as in AirSim. */
   def parse(text: String): Either[SettingsError, WorldSettings] = SettingsSection.read(text)(read(_, text))
 
-  /** A `settings.json` with these vehicles, and what they carry to see by. */
+  /** Writes a `settings.json` with these vehicles and their cameras and lidars. */
   def render(vehicles: Seq[VehicleSettings], equipment: Seq[Equipment] = Nil): String =
     val entries = vehicles.map: vehicle =>
       val carried = equipment.filter(_.vehicle == vehicle.name)
@@ -143,7 +143,7 @@ object WorldSettings:
       Option.when(root.has("ApiServerPort"))(root.whole("ApiServerPort", 0, 1, 65535))
     )
 
-  /** Of the vehicles that a file lists those that there are from the start. */
+  /** The listed vehicles that exist from the start. */
   private[skein] def created(listed: Vector[(String, SettingsSection)]): Vector[(String, SettingsSection)] =
     listed.filter: (_, fields) =>
       val created = fields.flag("AutoCreate", unless = true)
@@ -178,8 +178,8 @@ object WorldSettings:
       sensors(fields.sections("Sensors"), unless)
     )
 
-  /** Those that are enabled, and of the kinds that none is listed of, those of `unless`. Kinds that are not
-    * known, which forks have, count as not read.
+  /** The sensors that are enabled; for kinds of which none is listed, those of `unless`. Unknown kinds, which
+    * forks have, count as not read.
     */
   private def sensors(
       all: Vector[(String, SettingsSection)],

@@ -4,17 +4,17 @@ import scala.concurrent.Promise
 import skein.units.*
 import upack.Msg
 
-/** A result with the times that age is computed from, on the client's clock.
+/** A result with the times from which its age is computed, on the client's clock.
   *
   * @param sentAt when the request was handed to the transport (the last time, if it was sent again)
-  * @param receivedAt when the reply's last byte had come
+  * @param receivedAt when the reply's last byte was received
   */
 final case class TimedReply[+A](value: A, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): TimedReply[B] = copy(value = f(value))
 
   def roundTrip: Span = receivedAt.since(sentAt)
 
-/** One call on its way through a channel. The channel's thread alone changes it. */
+/** One call in progress through a channel. Only the channel's thread changes it. */
 private[rpc] final class Call(
     val method: String,
     val params: Seq[Msg],
@@ -24,14 +24,12 @@ private[rpc] final class Call(
   val outcome: Promise[Either[RpcError, TimedReply[Msg | Received]]] = Promise()
   val deadline: Instant                                              = calledAt + options.timeout
 
-  /** Order of arrival in its channel. */
   var sequence: Long = -1
 
-  /** The connection it is assigned to, or -1. */
   var connection: Int = -1
   var id: Long        = -1
 
-  /** Whether its bytes were handed to the transport of the present connection. */
+  /** Whether its bytes were handed to the transport of the current connection. */
   var written: Boolean = false
   var sends: Int       = 0
   var sentAt: Instant  = Instant.Epoch

@@ -5,19 +5,19 @@ import java.util.concurrent.atomic.{AtomicBoolean, LongAdder}
 import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 import scala.jdk.CollectionConverters.*
 
-/** Calls that wait to be run: a line for each connection, from which calls are taken in rounds. Calls of one
-  * connection keep their order.
+/** Calls that wait to be run: one queue for each connection, served in rounds. Calls of one connection keep
+  * their order.
   *
-  * A call that comes to an empty line goes before all that wait, as long as its line has had less than
-  * `share` in the round: so a client that asks now and then hardly waits for those that ask without a pause.
-  * Of a line in which calls wait `batch` are taken in a round, one after another: to wake a connection for an
-  * answer costs more than to run most calls, and so it is woken once for several. No call that is first in
-  * its line waits for more than `share` calls of every other connection.
+  * A call that enters an empty queue goes ahead of all that wait, as long as its connection has had less than
+  * `share` calls in the round: so a client that calls rarely hardly waits for clients that call without a
+  * pause. From a longer queue, `batch` calls are taken in a row: waking a connection for an answer costs more
+  * than running most calls, so it is woken once for several. The first call of a queue waits for at most
+  * `share` calls of every other connection.
   *
-  * While nothing else can be run, [[takeUrgent]] gives calls that need not wait for the others.
+  * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for the others.
   *
-  * Any thread may put and forget, one takes. What waits is bounded by the server, which lets each connection
-  * have a limited number of calls unanswered.
+  * Any thread may add and forget calls; one thread takes them. The number that waits is bounded by the
+  * server, which lets each connection have a limited number of calls unanswered.
   */
 final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => Boolean = (_: Call) => false):
   require(share >= batch && batch > 0, s"a batch, $batch, must be positive and within the share, $share")
@@ -29,7 +29,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
     val calls  = ConcurrentLinkedQueue[Place]()
     val inTurn = AtomicBoolean()
 
-    // The rest is the taker's.
+    // The remaining fields belong to the taking thread.
     var round = -1L
     var taken = 0 // in that round
 
@@ -44,10 +44,8 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
   private var later = ArrayDeque[Line]()
   private var round = 0L
 
-  /** Calls forgotten so far. */
   def dropped: Long = gone.sum
 
-  /** By the thread that takes. */
   def isEmpty: Boolean = came.isEmpty && first.isEmpty && turns.isEmpty && later.isEmpty
 
   def put(connection: Long, call: Call): Unit =
@@ -58,7 +56,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
     if line.inTurn.compareAndSet(false, true) then
       val _ = came.add(line)
 
-  /** The call whose turn it is. */
+  /** Takes the call whose turn it is, if any waits. */
   @annotation.tailrec
   def take(): Option[Call] =
     sort()
@@ -73,7 +71,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
         forgetTaken()
       if line.calls.isEmpty then
         line.inTurn.set(false)
-        // One may have come between the two.
+        // A line may have been added between the two checks.
         if !line.calls.isEmpty && line.inTurn.compareAndSet(false, true) then
           val _ = came.add(line)
       else if line.taken >= batch then later.add(line): Unit
@@ -81,8 +79,8 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
       else turns.addFirst(line)
       if place == null then take() else Some(place.call)
 
-  /** The first urgent call, before all that wait, and what becomes needless of those that its connection has
-    * asked before it: they are taken, too.
+  /** Takes the first urgent call ahead of all that wait, together with the earlier calls of its connection
+    * that it makes needless.
     *
     * @param supersedes whether the first call makes the other one needless
     */
@@ -98,7 +96,6 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
         val needless = before.filter(other => supersedes(place.call, other.call)).filter(takeOut)
         Some((place.call, needless.map(_.call)))
 
-  /** By the thread that takes. */
   def hasUrgent: Boolean =
     forgetTaken()
     !urgent.isEmpty
@@ -109,7 +106,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
 
   private def forgetTaken(): Unit = while Option(urgent.peek()).exists(_.isTaken) do urgent.poll(): Unit
 
-  /** The connection has closed: nobody waits for its calls, and they are not to be run. */
+  /** Drops the calls of a closed connection: their answers have no receiver. */
   def forget(connection: Long): Unit =
     val line = lines.remove(connection)
     if line != null then
@@ -119,7 +116,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
         gone.increment()
         place = line.calls.poll()
 
-  /** Gives every line that has come its place, and begins a round when the last is over. */
+  /** Moves newly filled queues into the round, and begins a round when the last is over. */
   private def sort(): Unit =
     var line = came.poll()
     while line != null do

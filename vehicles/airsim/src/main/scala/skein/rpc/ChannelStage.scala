@@ -15,17 +15,17 @@ import skein.link.{Address, Transport}
 import skein.units.*
 import upack.Msg
 
-/** The way into a running channel; from any thread. */
+/** Submits calls to a running channel; from any thread. */
 private[rpc] trait ChannelInput:
   def submit(call: Call): Unit
 
-  /** Ends a call that was submitted, unless it has ended. */
+  /** Ends a submitted call, unless it has ended. */
   def withdraw(call: Call): Unit
   def close(): Future[Done]
 
 /** One channel with all its connections in a single stage, hence on one thread at a time: a call costs one
-  * hop to that thread, calls made meanwhile leave in one write, and every decision is [[ChannelState]]'s. The
-  * connections run fused inside this stage.
+  * hop to that thread, calls made during that hop leave in one write, and every decision is
+  * [[ChannelState]]'s. The connections run fused inside this stage.
   *
   *   - '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
   *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its
@@ -144,7 +144,7 @@ private[rpc] final class ChannelStage(
       state.withdraw(call, clock.now())
       settle()
 
-    /** After every change: write what may be written, and wake up for the next deadline. */
+    /** After every change: writes what may be written, and schedules the next deadline. */
     private def settle(): Unit =
       connections.foreach(_.flush())
       for next <- state.nextDeadline if armedFor.forall(next < _) do
@@ -176,7 +176,7 @@ private[rpc] final class ChannelStage(
         state.lost(index, reason, malformed)
         settle()
 
-      /** Whether a call of ours has waited for it. */
+      /** Takes a reply; whether a call of ours was waiting for it. */
       def received(reply: RpcMessage.Reply, now: Instant): Boolean = state.replied(index, reply, now)
 
       def ignored(what: String): Unit = state.ignored(index, what)
@@ -242,7 +242,9 @@ private[rpc] final class ChannelStage(
           connection.openFailed(reasonOf(failure))
         case _ => ()
 
-      /** The stream has ended. Until the connection is reported open or failed, that report is waited for. */
+      /** The stream has ended. Waits for the report whether the connection was opened or failed, if that is
+        * still missing.
+        */
       private def ended(reason: String, malformed: Boolean = false): Unit =
         if !up then early = early.orElse(Some(reason))
         else if !over then
@@ -286,7 +288,7 @@ private[rpc] final class ChannelStage(
         strays += 1
         connection.ignored(what)
 
-      /** A message is under way: for how long, and with how much of it held? */
+      /** Tracks the incomplete message: since when it arrives, and how many of its bytes are held. */
       private def keep(now: Instant): Unit =
         if !framer.midway then begun = None
         else if begun.isEmpty then
@@ -320,5 +322,5 @@ private[rpc] final class ChannelStage(
   private case object Deadline
 
 private object ChannelStage:
-  /** Bytes after which a write stops taking further calls along. */
+  /** Bytes after which a write takes no further calls. */
   private val LargestWrite = 128 << 10

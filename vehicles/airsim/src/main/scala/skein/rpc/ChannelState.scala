@@ -7,15 +7,15 @@ import skein.link.Address
 import skein.units.*
 import upack.{Msg, Null}
 
-/** What a [[ChannelState]] has done by whoever owns the sockets. */
+/** Effects that a [[ChannelState]] requests from the owner of the sockets. */
 private[rpc] trait ChannelEffects:
-  /** The call now belongs to an open connection; write it as soon as possible. */
+  /** Writes a call to the open connection it was assigned to, as soon as possible. */
   def send(call: Call): Unit
 
-  /** The call has ended. */
+  /** Ends the call with its result or its error. */
   def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit
 
-  /** Try to open the connection again, after a pause. */
+  /** Tries to open the connection again, after a pause. */
   def reconnect(connection: Int, after: Span): Unit
 
   def observe(event: RpcEvent): Unit
@@ -25,8 +25,8 @@ private[rpc] trait ChannelEffects:
   * the effects.
   *
   * A call without a key goes to the open connection with the fewest calls in flight, in rotation among
-  * equals; a call with a key always to the same one. Calls that wait go out in the order they came. While a
-  * connection cannot be opened, calls that only it could carry fail at once.
+  * equals; calls with equal keys always go to one connection. Waiting calls go out in order of arrival. While
+  * a connection cannot be opened, calls that only it could carry fail immediately.
   *
   * @param uniform random numbers in [0, 1), for the jitter of reconnecting
   */
@@ -134,7 +134,7 @@ private[rpc] final class ChannelState(
     counters.ignored.increment()
     effects.observe(RpcEvent.Ignored(what, channel, connection))
 
-  /** Ends every call whose time is over. */
+  /** Ends every call whose timeout has passed. */
   def expire(now: Instant): Unit =
     while !deadlines.isEmpty && deadlines.first.deadline <= now do
       val call = deadlines.first
@@ -142,7 +142,7 @@ private[rpc] final class ChannelState(
       fail(call, RpcError.Timeout(call.method, call.options.timeout))
     dispatch()
 
-  /** Ends a call whose answer nobody waits for any longer; one that has ended is left alone. */
+  /** Ends a call whose answer is no longer awaited; one that has ended is left alone. */
   def withdraw(call: Call, now: Instant): Unit = if !call.ended then
     leave(call)
     fail(call, RpcError.Timeout(call.method, now.since(call.calledAt)))
@@ -250,7 +250,7 @@ private[rpc] final class ChannelState(
     inFlight += 1
     effects.send(call)
 
-  /** Sends what waits, oldest first, as far as there are places. */
+  /** Sends waiting calls, oldest first, while there is room. */
   private def dispatch(): Unit =
     var next = if waiting > 0 then oldestWithPlace else None
     while next.nonEmpty do
@@ -282,7 +282,7 @@ private object ChannelState:
     val keyed       = waitingLine()
     private var id  = 0L
 
-    /** A counter that wraps at 32 bits and passes over ids still in use. */
+    /** Draws the next id from a counter that wraps at 32 bits, skipping ids still in use. */
     def freshId(): Long =
       while inFlight.contains(id) || abandoned.contains(id) do id = (id + 1) & RpcMessage.MaxId
       val fresh = id

@@ -2,7 +2,8 @@ package skein.rpc
 
 import org.apache.pekko.util.ByteString
 
-/** A value that is MessagePack already, sent as it is: of a large one, neither a tree nor a copy is made.
+/** A value that is already encoded as MessagePack and is sent unchanged: a large value needs neither a tree
+  * nor a copy.
   *
   * @param bytes of exactly one value; its pieces must not change afterwards
   */

@@ -2,12 +2,12 @@ package skein.rpc
 
 import org.apache.pekko.util.ByteString
 
-/** Bounds on what one peer may make us hold for one message.
+/** Bounds on the memory for one message of a peer.
   *
   * @param frameBytes longest encoded message, bytes
   * @param depth deepest nesting of arrays and maps; the message's own array counts as one
   * @param elements most values in one message, counting every key, value and array element
-  * @param keys most keys in one map. A peer can choose keys whose hashes are equal; then each key put into a
+  * @param keys most keys in one map. A peer can choose keys whose hashes are equal; then each key added to a
   *   map is compared with all before it, so this bounds the comparisons a key costs
   * @param maps most maps in one message: even an empty one, a single byte, becomes an object of some 150
   *   bytes
@@ -24,7 +24,7 @@ final case class FrameLimits(
     s"limits must be positive: $this"
   )
 
-/** What a [[Framer]] has to say. */
+/** The result of reading on from a [[Framer]]. */
 enum Framed:
   /** The encoded bytes of exactly one MessagePack value. */
   case Complete(bytes: Array[Byte])
@@ -33,17 +33,17 @@ enum Framed:
   case NeedsMore
 
   /** The bytes are not MessagePack, or a limit is exceeded. The stream is out of step for good: every later
-    * call says the same.
+    * call returns this result.
     */
   case Malformed(reason: String)
 
-/** Cuts a byte stream into MessagePack values, over any segmentation. Each byte's header is looked at once:
-  * what is left to read is two numbers, the values outstanding at each open level and the payload bytes to
-  * skip, so nothing is ever parsed again. A value's bytes are copied once, when it is complete. Does no I/O;
-  * one instance per connection and direction, one thread at a time.
+/** Cuts a byte stream into MessagePack values, over any segmentation. Each header is read once: the state is
+  * the number of values outstanding at each open level and of payload bytes to skip, so nothing is parsed
+  * twice. A value's bytes are copied once, when it is complete. Does no I/O; one instance per connection and
+  * direction, one thread at a time.
   *
-  * @param keptBytes of a longer value only the beginning is kept, about so many bytes: for a listener that
-  *   needs no more of an image
+  * @param keptBytes keeps only about this many bytes from the beginning of a longer value: for a listener
+  *   that needs no more of an image
   */
 final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.MaxValue):
   import Framer.*
@@ -84,16 +84,15 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
           refusal = Some(Framed.Malformed(refused.getMessage))
           refusal.get
 
-  /** Whether the peer has sent a part of a value: an end of the stream here cuts a message. */
+  /** Whether the peer has sent part of a value: a stream that ends now cuts a message. */
   def midway: Boolean = earlierBytes > 0 || position > frameStart
 
-  /** Bytes held of a value that is not complete. */
   def heldBytes: Int = earlierBytes
 
-  /** About how many bytes of memory the value completed last takes once it is decoded. */
+  /** Approximate memory of the last completed value once it is decoded, bytes. */
   def decodedBytes: Long = decoded
 
-  /** Length of the value completed last, also of what was not kept of it. */
+  /** Length of the last completed value, including bytes that were not kept. */
   def valueBytes: Long = lastBytes
 
   private def scan(): Framed =
@@ -136,7 +135,7 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
       headerBytes = 0
       open(header(0) & 0xff, bigEndian(header, 1, headerExpected - 1))
 
-  /** One value begins: `size` is what its header's length field says, 0 where it has none. */
+  /** Begins one value: `size` is its header's length field, 0 where it has none. */
   private def open(marker: Int, size: Long): Unit =
     if marker == NeverUsed then throw Refused("byte 0xc1, which MessagePack never uses")
     val children = childCount(marker, size)
@@ -158,7 +157,7 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
     if least > limits.frameBytes then
       throw Refused(s"a message of at least $least bytes; at most ${limits.frameBytes} are accepted")
 
-  /** A value, or a container's header, is complete. True if that completes the outermost value. */
+  /** Completes a value, or a container's header. True if that completes the outermost value. */
   private def closeLevels(): Boolean =
     var closing = true
     while closing && level > 0 do
@@ -169,8 +168,8 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
 
   private def frameBytesSoFar: Long = earlierBytes + passedBytes + (position - frameStart)
 
-  /** Keeps what the segment holds of an incomplete value: large parts as they are, small ones gathered, so
-    * that a peer that sends single bytes does not make us hold an object for each.
+  /** Keeps the segment's part of an incomplete value: large parts by reference, small ones gathered, so that
+    * a peer that sends single bytes does not cost one object for each.
     */
   private def keep(): Unit =
     val length = position - frameStart
@@ -228,14 +227,14 @@ private object Framer:
 
   private final class Refused(reason: String) extends RuntimeException(reason, null, false, false)
 
-  /** How many bytes of length follow the marker. */
+  /** Number of length bytes that follow the marker. */
   private def lengthBytes(marker: Int): Int = marker match
     case 0xc4 | 0xc7 | 0xd9               => 1
     case 0xc5 | 0xc8 | 0xda | 0xdc | 0xde => 2
     case 0xc6 | 0xc9 | 0xdb | 0xdd | 0xdf => 4
     case _                                => 0
 
-  /** How many values a container holds; 0 for anything else. */
+  /** Number of values in a container; 0 for anything else. */
   private def childCount(marker: Int, size: Long): Long = marker match
     case 0xdc | 0xdd                 => size
     case 0xde | 0xdf                 => 2 * size
@@ -245,7 +244,7 @@ private object Framer:
 
   private def isMap(marker: Int): Boolean = (marker & 0xf0) == 0x80 || marker == 0xde || marker == 0xdf
 
-  /** How many bytes follow the header before the value is complete. */
+  /** Number of bytes between the header and the end of the value. */
   private def payloadBytes(marker: Int, size: Long): Long = marker match
     case 0xcc | 0xd0                             => 1
     case 0xcd | 0xd1                             => 2

@@ -2,13 +2,13 @@ package skein.rpc
 
 import java.util.concurrent.atomic.AtomicLong
 
-/** How much peers make us hold, over all connections of one server or client: bytes of memory (messages under
-  * way, messages decoded and not yet answered, answers not yet taken), or requests being handled; here all
-  * are called bytes.
+/** Bounds what peers can make us hold, over all connections of one server or client: bytes of memory
+  * (incomplete messages, messages decoded and not yet answered, answers not yet taken), or requests in
+  * progress; here all are called bytes.
   *
-  * Every connection may hold `each` bytes whatever the others do; what it holds beyond comes out of `common`,
-  * first come, first served. So a peer that asks little is never refused because of one that asks much, and
-  * the whole is at most `common` and `each` for every connection. Safe from any thread.
+  * Every connection may hold `each` bytes whatever the others do; more comes out of `common`, first come,
+  * first served. So a peer that requests little is never refused because of one that requests much, and the
+  * total is at most `common` and `each` for every connection. Safe from any thread.
   *
   * @param each bytes that a connection may always hold
   * @param common bytes that all connections together may hold beyond that
@@ -18,19 +18,17 @@ private[rpc] final class Holdings(each: Long, common: Long):
   private val inAll  = AtomicLong()
   private val most   = AtomicLong()
 
-  /** Bytes held now. */
   def bytes: Long = inAll.get
 
-  /** Most bytes held at any time. */
   def mostBytes: Long = most.get
 
-  /** What one connection holds; one thread at a time. */
+  /** One connection's share; for one thread at a time. */
   final class Holding:
     private var held   = 0L
     private var forced = 0L // of what is beyond its own part: what was not granted
 
-    /** Holds so many bytes from now on, unless the common part has not that much left: then false, and as
-      * before.
+    /** Changes the bytes held to `to`, unless the common part is too small: then it returns false and changes
+      * nothing.
       */
     def resize(to: Long): Boolean =
       val change  = beyondOwn(to) - beyondOwn(held)
@@ -40,7 +38,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         account(to)
       granted
 
-    /** Holds so many bytes, which are there already, granted or not. */
+    /** Changes the bytes held to `to`, which exist already, granted or not. */
     def force(to: Long): Unit =
       if !resize(to) then
         val change = beyondOwn(to) - beyondOwn(held)
@@ -48,7 +46,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         forced += change
         account(to)
 
-    /** Whether the common part has all that is held, by now. */
+    /** Whether the common part now covers all that is held. */
     def isGranted: Boolean =
       if forced > 0 && beyond.get <= common then forced = 0
       forced == 0

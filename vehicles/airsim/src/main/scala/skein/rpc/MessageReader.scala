@@ -5,10 +5,10 @@ import java.lang.Float.intBitsToFloat
 import java.nio.ByteBuffer
 import java.nio.charset.StandardCharsets.UTF_8
 
-/** Bytes where they stand: a part of an array that nobody changes. */
+/** A slice of an array that must not change. */
 final class Bytes(array: Array[Byte], offset: Int, val length: Int):
 
-  /** Without a copy; read-only. */
+  /** A read-only view of the bytes, without a copy. */
   def buffer: ByteBuffer = ByteBuffer.wrap(array, offset, length).slice().asReadOnlyBuffer()
 
   def apply(index: Int): Byte =
@@ -20,33 +20,31 @@ final class Bytes(array: Array[Byte], offset: Int, val length: Int):
 object Bytes:
   val empty: Bytes = Bytes(Array.emptyByteArray, 0, 0)
 
-/** A MessagePack value as it came, at the end of the bytes of its message, to be read by a [[MessageReader]].
-  */
+/** An undecoded MessagePack value at the end of its message's bytes, to be read by a [[MessageReader]]. */
 final class Received private[skein] (private[rpc] val bytes: Array[Byte], private[rpc] val from: Int):
   private[rpc] def toArray: Array[Byte] = java.util.Arrays.copyOfRange(bytes, from, bytes.length)
 
-/** Reads one MessagePack value from front to back, straight into what the caller wants: no tree of values is
-  * made, and binary is not copied. Numbers are read from whatever form they came in.
+/** Reads one MessagePack value from front to back, directly into the caller's types: it builds no tree of
+  * values and copies no binary. Numbers are read from any of MessagePack's encodings.
   */
 final class MessageReader private (bytes: Array[Byte], private var at: Int, end: Int):
   import MessageReader.Unexpected
 
-  /** How many values follow; each has to be read or skipped. */
+  /** Number of elements that follow; each has to be read or skipped. */
   def array(): Int = header() match
     case marker if (marker & 0xf0) == 0x90 => marker & 0x0f
     case 0xdc                              => size(2, least = 1)
     case 0xdd                              => size(4, least = 1)
     case other                             => unexpected("an array", other)
 
-  /** How many keys follow, each with its value. */
+  /** Number of keys that follow, each with its value. */
   def map(): Int = header() match
     case marker if (marker & 0xf0) == 0x80 => marker & 0x0f
     case 0xde                              => size(2, least = 2)
     case 0xdf                              => size(4, least = 2)
     case other                             => unexpected("a map", other)
 
-  /** The fields of a map, in whatever order they come. `read` says whether it knows a field and has read its
-    * value; others are skipped.
+  /** Reads a map's fields in any order. `read` handles the fields that it is defined for; others are skipped.
     */
   def fields(read: PartialFunction[String, Unit]): Unit =
     for _ <- 0 until map() do
@@ -58,7 +56,7 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
     val text = binary()
     String(bytes, at - text.length, text.length, UTF_8)
 
-  /** Binary, or a string's bytes, as AirSim's sender chooses. */
+  /** Reads binary, or a string's bytes: AirSim's sender uses either. */
   def binary(): Bytes =
     val length = header() match
       case marker if (marker & 0xe0) == 0xa0 => marker & 0x1f
@@ -94,7 +92,7 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
       longBitsToDouble(take(8))
     case _ => long().toDouble
 
-  /** An array of numbers; of 32-bit floats, as AirSim sends, at the speed of memory. */
+  /** Reads an array of numbers; 32-bit floats, as AirSim sends them, at memory speed. */
   def floats(): Array[Float] =
     val numbers = new Array[Float](array())
     var i       = 0
@@ -114,7 +112,6 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
       i += 1
     numbers
 
-  /** Passes over one value. */
   def skip(): Unit =
     var left = 1L
     while left > 0 do
@@ -142,14 +139,14 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
         case 0xdf                        => left += 2L * size(4, least = 2)
         case other                       => unexpected("a value", other)
 
-  /** The next value, and all that follows, where it stands. */
+  /** The next value and all that follows, without a copy. */
   private[rpc] def rest: Received = Received(bytes, at)
 
   private[rpc] def isArray: Boolean =
     val marker = peek()
     (marker & 0xf0) == 0x90 || marker == 0xdc || marker == 0xdd
 
-  /** One value as it stands, which is passed over. */
+  /** Returns one value's encoded bytes and skips it. */
   private[rpc] def raw(): Array[Byte] =
     val start = at
     skip()
@@ -175,7 +172,9 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
     need(count)
     at += count
 
-  /** A length, of what takes at least so many bytes each: what cannot be there is not allocated for. */
+  /** Reads a length, refusing one whose elements, of at least `least` bytes each, cannot fit the bytes left:
+    * so nothing is allocated for them.
+    */
   private def size(bytesOfSize: Int, least: Int): Int =
     val length = take(bytesOfSize)
     if length * least > end - at then
@@ -197,11 +196,11 @@ object MessageReader:
       java.nio.ByteOrder.BIG_ENDIAN
     )
 
-  /** What came is not what `read` asked for. */
+  /** The value received differs from what `read` expects. */
   private[rpc] final case class Unexpected(what: String) extends RuntimeException(what, null, false, false)
 
-  /** What `read` makes of one value, or what it expected and what came. Binary that it gives out stands in
-    * these bytes.
+  /** Applies `read` to one value; Left states what was expected and what was received. Binary in the result
+    * refers to these bytes.
     */
   def read[A](received: Received)(read: MessageReader => A): Either[String, A] =
     attempt(read(new MessageReader(received.bytes, received.from, received.bytes.length)))

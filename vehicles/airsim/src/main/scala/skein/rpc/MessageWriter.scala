@@ -6,8 +6,8 @@ import org.apache.pekko.util.ByteString
 import upack.{Arr, Binary, Ext, False, Float32, Float64, Int32, Int64, Msg, Null, Obj, Str, True, UInt64}
 
 /** Encodes messages one after another, to be sent in one write. Strings are `str`, integers take their
-  * shortest form. Binary values of 32 KiB and more are sent from the array they stand in, without a copy: it
-  * must not change afterwards. One thread at a time.
+  * shortest form. Binary values of 32 KiB and more are sent from their own array, without a copy: it must not
+  * change afterwards. One thread at a time.
   */
 final class MessageWriter:
   import MessageWriter.*
@@ -16,7 +16,6 @@ final class MessageWriter:
   private var used     = 0
   private var finished = ByteString.empty
 
-  /** Bytes encoded and not yet taken. */
   def length: Int = finished.length + used
 
   def request(id: Long, method: String, params: Seq[Msg]): Unit =
@@ -50,14 +49,14 @@ final class MessageWriter:
         byte(0xc0)
         inPlace(result)
 
-  /** Everything encoded since the last call. */
+  /** Returns everything encoded since the last call. */
   def take(): ByteString =
     flush()
     val taken = finished
     finished = ByteString.empty
     taken
 
-  /** Unsays all but the first so many bytes of what is not yet taken. */
+  /** Discards all bytes not yet taken except the first `length`. */
   def backTo(length: Int): Unit =
     flush()
     finished = finished.take(length).compact
@@ -80,7 +79,6 @@ final class MessageWriter:
     numbers(values.length, 5): (encoded, i) =>
       encoded.put(0xca.toByte).putFloat(values(i)): Unit
 
-  /** An array of integers, five bytes each. */
   def integers(values: Array[Int]): Unit =
     array(values.length)
     numbers(values.length, 5): (encoded, i) =>
@@ -98,7 +96,6 @@ final class MessageWriter:
     flush()
     finished = finished ++ encoded
 
-  /** A value of any kind. */
   def value(msg: Msg): Unit = msg match
     case Null        => byte(0xc0)
     case False       => byte(0xc2)
@@ -193,7 +190,7 @@ object MessageWriter:
   private val KeptCapacity    = 256 << 10
   private val SentInPlace     = 32 << 10
 
-  /** What `write` tells the writer, which has to be exactly one value. */
+  /** Encodes what `write` writes, which must be exactly one value. */
   def encode(write: MessageWriter => Unit): Encoded =
     val writer = MessageWriter()
     write(writer)

@@ -2,7 +2,7 @@ package skein.rpc
 
 import skein.units.*
 
-/** How long one connection has kept its server waiting, told once every [[ServerLimits.Watch]]. Knows no
+/** How long one connection has kept its server waiting, counted in steps of [[ServerLimits.Watch]]. Knows no
   * clock.
   */
 private[rpc] final class Patience(limits: ServerLimits):
@@ -11,27 +11,24 @@ private[rpc] final class Patience(limits: ServerLimits):
   private var quiet            = 0
   @volatile private var silent = 0
 
-  /** For how long nothing has come and nothing been under way; who waits for an answer, and says nothing for
-    * more than [[ServerLimits.waiting]] meanwhile, is silent from then on. From any thread.
+  /** How long nothing has been received and nothing was in progress. A peer that awaits an answer and sends
+    * nothing for more than [[ServerLimits.waiting]] counts as silent from then on. From any thread.
     */
   def silentFor: Span = ServerLimits.Watch * silent.toLong
 
-  /** Bytes have come. */
   def came(): Unit =
     silent = 0
     quiet = 0
 
-  /** The message under way is complete. */
   def completed(): Unit = midway = 0
 
-  /** The peer has taken replies. */
   def taken(): Unit = untaken = 0
 
-  /** One watch has passed; the answer is why the connection is to be closed, if it is.
+  /** Counts one watch; returns why the connection must be closed, if so.
     *
     * @param forMessage the server waits for the rest of a message
     * @param forTaking replies wait to be taken
-    * @param forNothing neither of these, and no request is being handled
+    * @param forNothing neither of these, and no request is in progress
     */
   def watch(forMessage: Boolean, forTaking: Boolean, forNothing: Boolean): Option[(ServerLimit, String)] =
     midway = if forMessage then midway + 1 else 0
@@ -46,7 +43,7 @@ private[rpc] final class Patience(limits: ServerLimits):
       Some(ServerLimit.Idle -> s"silent for more than ${seconds(limits.idle)}")
     else None
 
-  /** The first watch may have come at once. */
+  /** Whether `watches` exceed `longest`; the first watch may be arbitrarily short. */
   private def lasts(watches: Int, longest: Span): Boolean =
     ServerLimits.Watch * (watches - 1).toLong >= longest
 

@@ -12,17 +12,16 @@ import upickle.default.Reader
 import upickle.core.{AbortException, TraceVisitor}
 
 /** Calls a MessagePack-RPC server over a pool of connections and never blocks: every call is a future that
-  * ends exactly once, with a result or an [[RpcError]], at the latest when its timeout is over. Safe from any
-  * thread.
+  * ends exactly once, with a result or an [[RpcError]], no later than its timeout. Safe from any thread.
   *
   * Timeouts and pauses are as exact as the actor system's scheduler: about 0.1 ms with
   * [[skein.link.PreciseScheduler]], 10 ms and more with Pekko's own. Messages leave fastest with
   * `pekko.stream.materializer.io.tcp.coalesce-writes = 0`, because they are gathered here already.
   *
-  * @param transport where connections come from; it bounds the time that connecting may take
+  * @param transport opens connections; it bounds the time to connect
   * @param seed of the jitter in the pauses between attempts to connect
-  * @param observer told of every event; called on the channels' threads, so it must be quick, safe to call
-  *   from both at once, and throw nothing
+  * @param observer called with every event on the channels' threads, so it must be quick, thread-safe, and
+  *   throw nothing
   */
 final class RpcClient(
     transport: Transport,
@@ -41,7 +40,7 @@ final class RpcClient(
   private val bulk     = start(Channel.Bulk)
   private val sensors  = start(Channel.Sensors)
 
-  /** Calls `method` and gives its result as it came. */
+  /** Calls `method` and returns its result undecoded. */
   def call(
       method: String,
       params: Seq[Msg],
@@ -49,7 +48,7 @@ final class RpcClient(
   ): Future[Either[RpcError, Msg]] =
     callStamped(method, params, options).map(_.map(_.value))
 
-  /** Calls `method` and reads its result as an `A`; [[RpcError.Malformed]] if it is none. */
+  /** Calls `method` and reads its result as an `A`; [[RpcError.Malformed]] if it cannot be read. */
   def callAs[A: Reader](
       method: String,
       params: Seq[Msg],
@@ -57,7 +56,7 @@ final class RpcClient(
   ): Future[Either[RpcError, A]] =
     callStamped(method, params, options).map(_.flatMap(answer => read[A](method, answer.value)))
 
-  /** Calls `method` and gives its result with the times of sending and receiving. */
+  /** Calls `method` and returns its result with the times of sending and receiving. */
   def callStamped(
       method: String,
       params: Seq[Msg],
@@ -71,9 +70,8 @@ final class RpcClient(
           catch case NonFatal(e) => Left(RpcError.Malformed(method, s"not readable as MessagePack: $e"))
     ))
 
-  /** Calls `method` on [[Channel.Bulk]], for what is large, and reads its result straight from the bytes of
-    * its message. They are copied once, from the transport's segments; binary that `read` gives out is a part
-    * of them.
+  /** Calls `method` on [[Channel.Bulk]], for large results, and reads its result directly from its message's
+    * bytes. They are copied once, from the transport's segments; binary in the result refers to them.
     */
   def callBulk[A](method: String, params: Seq[Msg], options: CallOptions = CallOptions())(
       read: MessageReader => A
@@ -113,14 +111,13 @@ final class RpcClient(
       _.flatMap(answer => read[A](method, answer.value).map(value => answer.map(_ => value)))
     )
 
-  /** What has been counted so far. */
   def stats: RpcStats = counters.snapshot
 
-  /** Ends calls under way with [[RpcError.Cancelled]], later ones too, and closes all connections. */
+  /** Ends current and later calls with [[RpcError.Cancelled]], and closes all connections. */
   def close(): Future[Done] =
     Future.traverse(Vector(control, sensors, bulk))(_.close()).map(_ => Done)
 
-  /** A flow has passed over an element whose call failed. */
+  /** Counts an element that a flow skipped because its call failed. */
   private[rpc] def skipped(method: String, error: RpcError): Unit =
     counters.skipped.increment()
     observer(RpcEvent.Skipped(method, error))
@@ -133,8 +130,8 @@ final class RpcClient(
           s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil"
         )
       read
-    // Keeping note of where it is makes reading several times slower: only what cannot be read is read again
-    // with it.
+    // Tracking the position makes reading several times slower: only unreadable answers are read again with
+    // it.
     try Right(readAs(trace = false))
     catch
       case NonFatal(_) =>
@@ -157,7 +154,7 @@ final class RpcClient(
     RunnableGraph.fromGraph(stage).run()
 
 object RpcClient:
-  /** What was expected in an answer and where, in words: without the names of the classes that say it. */
+  /** Describes what was expected in an answer and where, without class names. */
   private def unreadable(mistake: Throwable): String = mistake match
     case at: TraceVisitor.TraceException =>
       val where = at.jsonPath.stripPrefix("$").replaceAll("\\['?([^'\\]]*)'?\\]", ".$1").stripPrefix(".")
@@ -166,8 +163,8 @@ object RpcClient:
     case _: NumberFormatException => "expected a number, came a string"
     case other                    => Option(other.getMessage).getOrElse(s"$other")
 
-  /** Where nil stands in an answer in the place of a part of what was read from it, as names with dots
-    * between; absent where it does not. A number's nil reads as 0, and so only the answer itself tells it.
+  /** The dotted path of a nil in an answer where a value was read; None without one. Needed since a nil
+    * number reads as 0.
     */
   private def nilIn(answer: Msg, read: Any): Option[String] =
     def within(parts: Iterator[(String, Msg, Any)]) = parts

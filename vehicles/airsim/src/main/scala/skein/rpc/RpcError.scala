@@ -4,7 +4,7 @@ import skein.link.Address
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Why a call has no result. Expected, so a value and never an exception. */
+/** Why a call has no result: an expected failure, so a value and never an exception. */
 enum RpcError:
 
   /** No answer within the call's timeout. It may still run at the peer; a late answer is counted and dropped.
@@ -14,24 +14,22 @@ enum RpcError:
   /** The peer answered with an error; `text` is its own. */
   case Refused(method: String, text: String)
 
-  /** The connection ended before the answer came. With `mayHaveRun` the request had left; without it, it had
-    * not.
-    */
+  /** The connection ended before the answer was received. `mayHaveRun`: the request had been sent. */
   case ConnectionLost(address: Address, mayHaveRun: Boolean, reason: String)
 
-  /** What came is not what was expected: bytes that are no reply, or a result of another type. */
+  /** The answer is not what was expected: bytes that are no reply, or a result of another type. */
   case Malformed(method: String, reason: String)
 
-  /** Too much is in flight or waiting; the call was not sent. `limit` names the bound that was met. */
+  /** Too many calls are in flight or waiting; the call was not sent. `limit` names the bound. */
   case Overloaded(method: String, limit: String)
 
-  /** The client was closed before the answer came. */
+  /** The client was closed before the answer was received. */
   case Cancelled(method: String)
 
   /** No connection to the peer could be opened; the call was not sent. */
   case Unreachable(address: Address, reason: String)
 
-  /** One line for a person: what was expected, what came, where. */
+  /** One line for a person: what was expected, what was received, where. */
   def message: String = this match
     case Timeout(method, after) => s"$method: no answer within ${after.toMillis.fixed(0)} ms"
     case Refused(method, text)  => s"$method: refused by the peer: $text"

@@ -6,24 +6,24 @@ import skein.units.*
 import upack.Msg
 import upickle.default.Reader
 
-/** What a flow asks for one element. */
+/** The call that a flow makes for one element. */
 final case class RpcCall(method: String, params: Seq[Msg], options: CallOptions = CallOptions())
 
-/** Calls of an RPC client as stages of a stream. */
+/** Makes calls of an RPC client as stream stages. */
 object RpcFlow:
 
-  /** Asks the peer once for each element and emits the answers in the order of the elements: the paper's ask.
-    * An element whose call fails or comes late is passed over, counted in [[RpcStats.skipped]] and reported
+  /** Calls the peer once for each element and emits the answers in the order of the elements: the paper's
+    * ask. An element whose call fails or times out is skipped, counted in [[RpcStats.skipped]] and reported
     * as [[RpcEvent.Skipped]].
     *
-    *   - '''Emits when''' the oldest call under way has its answer.
-    *   - '''Backpressures when''' `parallelism` calls are under way or done and not yet emitted, or
+    *   - '''Emits when''' the oldest call in progress has its answer.
+    *   - '''Backpressures when''' `parallelism` calls are in progress or done and not yet emitted, or
     *     downstream does.
-    *   - '''Completes when''' upstream has completed and no call is under way.
+    *   - '''Completes when''' upstream has completed and no call is in progress.
     *   - '''Cancels when''' downstream cancels.
     *
-    * @param parallelism most calls under way; they wait for a place in the client's windows, which may be
-    *   smaller, and are passed over only if more of them wait than [[RpcSettings.queue]] allows
+    * @param parallelism most calls in progress; they wait for a place in the client's windows, which may be
+    *   smaller, and are skipped only if more of them wait than [[RpcSettings.queue]] allows
     * @param timeout of each call, in place of the one in its options
     */
   def ordered[A, B: Reader](client: RpcClient, parallelism: Int, timeout: Span)(

@@ -5,26 +5,24 @@ import upack.{Arr, Binary, Int32, Int64, Msg, Null, Obj, Str, UInt64}
 
 /** One MessagePack-RPC message, decoded.
   *
-  * Requests are `[0, id, method, params]`, replies `[1, id, error, result]`, notifications
-  * `[2, method, params]`. Which an array is follows from its length and the role of the reader; the type
-  * field is not checked, as AirSim's server does not check it either.
+  * Requests are `[0, id, method, params]`, replies `[1, id, error, result]`, notifications `[2, method,
+  * params]`. Which of them an array is follows from its length and the role of the reader; the type field is
+  * not checked, as AirSim's server does not check it either.
   */
 enum RpcMessage:
   case Request(id: Long, method: String, params: IndexedSeq[Msg])
   case Notification(method: String, params: IndexedSeq[Msg])
   case Reply(id: Long, error: Msg, result: Msg | Received)
 
-  /** A value that is no message but does no harm: an array of another length, a map, a number. */
+  /** A value that is no message but harmless: an array of another length, a map, a number. */
   case Ignored(what: String)
 
-  /** Something that must not be answered or guessed at; its connection is to be closed. */
+  /** A value that cannot be answered safely; its connection is to be closed. */
   case Malformed(reason: String)
 
 object RpcMessage:
-  /** Ids are unsigned 32-bit. */
   val MaxId: Long = 0xffffffffL
 
-  /** What a server makes of one encoded value. */
   def fromClient(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) =>
       fields.length match
@@ -42,7 +40,7 @@ object RpcMessage:
         case length => Right(Ignored(s"an array of $length"))
     case other => Right(Ignored(kindOf(other)))
 
-  /** The id of an encoded request, read without the rest of it; None if it is none. */
+  /** The id of an encoded request, read without decoding the rest; None if it is no request. */
   private[rpc] def requestId(frame: Array[Byte]): Option[Long] =
     def at(i: Int): Int = frame(i) & 0xff
     // An array of four, short or long; a type, which may be any number; an id.
@@ -60,13 +58,14 @@ object RpcMessage:
       if at(id) < 0x80 then Some(at(id).toLong)
       else Option.when(bytes > 0)((1 to bytes).foldLeft(0L)((value, i) => value << 8 | at(id + i)))
 
-  /** What a client makes of one encoded value. */
   def fromServer(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) if fields.length == 4 => idOf(fields(1)).map(Reply(_, fields(2), fields(3)))
     case Arr(fields)                       => Right(Ignored(s"an array of ${fields.length}"))
     case other                             => Right(Ignored(kindOf(other)))
 
-  /** The same, with a reply's result left as it came: of a large one no tree is made. */
+  /** Decodes one value received by a client, but leaves a reply's result undecoded, so that a large one needs
+    * no tree.
+    */
   def fromServerUnread(frame: Array[Byte]): RpcMessage =
     val reader = MessageReader.of(frame)
     try
@@ -79,7 +78,7 @@ object RpcMessage:
           case length => Ignored(s"an array of $length")
     catch case NonFatal(e) => Malformed(s"not readable as MessagePack: $e")
 
-  /** The text of a reply's error slot, cut where a person would have stopped reading. */
+  /** The text of a reply's error slot, shortened for display. */
   def errorText(error: Msg): String = error match
     case Str(text)   => short(text)
     case Binary(raw) => short(utf8(raw))

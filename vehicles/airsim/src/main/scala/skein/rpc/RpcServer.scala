@@ -12,7 +12,7 @@ import skein.link.{Address, Incoming, Listening, Places, Transport}
 
 /** A running MessagePack-RPC server.
   *
-  * @param failed completes if it ceases to listen without having been closed, with the reason; all its
+  * @param failed completes if it stops listening without having been closed, with the reason; all its
   *   connections are closed then
   */
 final class RpcServer private (
@@ -21,12 +21,12 @@ final class RpcServer private (
     val failed: Future[Throwable],
     stop: () => Unit
 ):
-  /** Where it listens, with the actual port. */
+  /** The listening address, with the actual port. */
   def address: Address = listening.address
 
   def stats: ServerStats = counters.snapshot
 
-  /** Accepts no more and closes every connection; requests being handled get no answer. */
+  /** Stops accepting and closes every connection; requests in progress get no answer. */
   def close(): Future[Done] =
     val unbound = listening.close()
     stop()
@@ -35,10 +35,10 @@ final class RpcServer private (
 object RpcServer:
 
   /** Serves `handler` at `at`; the future fails if that cannot be bound. Malformed input closes its own
-    * connection, with a reason that is logged, counted and observed, and harms no other.
+    * connection, with a reason that is logged, counted and passed to the observer, and affects no other.
     *
     * @param failureText the error text for a request whose handler throws or fails
-    * @param observer told of every event, on the connections' threads; it must be quick and throw nothing
+    * @param observer called with every event on the connections' threads; it must be quick and throw nothing
     */
   def bind(
       transport: Transport,
@@ -54,7 +54,8 @@ object RpcServer:
     val stop     = KillSwitches.shared("rpc-server")
     val told     = AtomicInteger()
 
-    // What a hostile peer can cause as often as it likes is told some times, and counted ever after.
+    // Events that a hostile peer can cause without limit are logged a limited number of times, and then only
+    // counted.
     def tell(what: => String): Unit =
       val before = told.getAndIncrement()
       if before < MostTold then system.log.warning("RPC {}", what)
@@ -95,11 +96,11 @@ object RpcServer:
       failed.success(failure)
     listening.map(RpcServer(_, counters, failed.future, () => stop.shutdown()))
 
-  /** The words of AirSim's server for a function that throws. */
+  /** The error text of AirSim's server for a function that throws. */
   def rpclibFailure(request: RpcRequest, failure: Throwable): String =
     val text = Option(failure.getMessage).getOrElse(failure.toString)
     s"rpclib: function '${request.method}' (called with ${request.params.length} " +
       s"arg(s)) threw an exception. The exception contained this information: $text."
 
-  /** Closed and refused connections that are told one by one. */
+  /** Closed and refused connections that are logged one by one; later ones are only counted. */
   private val MostTold = 20

@@ -3,20 +3,22 @@ package skein.rpc
 import scala.concurrent.Future
 import skein.units.*
 
-/** Which connections a call uses. Each channel has its own, so a large reply never delays a small one. */
+/** The set of connections that a call uses. Each channel has its own, so a large reply never delays a small
+  * one.
+  */
 enum Channel:
-  /** Small and urgent: readings and commands. */
+  /** Small and urgent messages: readings and commands. */
   case Control
 
-  /** Small and periodic: what sensors say. */
+  /** Small and periodic messages: sensor readings. */
   case Sensors
 
-  /** Large and patient: images, point clouds. */
+  /** Large messages that may wait: images, point clouds. */
   case Bulk
 
 /** What happens to a call that finds no free place in the window. */
 enum WhenFull:
-  /** It fails at once with [[RpcError.Overloaded]]. */
+  /** It fails immediately with [[RpcError.Overloaded]]. */
   case Refuse
 
   /** It waits in the channel's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]].
@@ -28,8 +30,8 @@ enum WhenFull:
   * @param timeout from the call to its answer, waiting included; then [[RpcError.Timeout]]
   * @param idempotent may run twice without harm: sent again, a bounded number of times, when its connection
   *   is lost
-  * @param key calls with the same key use the same connection and are sent in the order of the calls
-  * @param withdrawn when it completes, the answer is waited for no longer: [[RpcError.Timeout]] before the
+  * @param key calls with equal keys use one connection and are sent in the order of the calls
+  * @param withdrawn when it completes, the answer is no longer awaited: [[RpcError.Timeout]] before the
   *   timeout is over
   */
 final case class CallOptions(
@@ -41,7 +43,7 @@ final case class CallOptions(
     withdrawn: Option[Future[?]] = None
 )
 
-/** The bounds of a client. Windows and queue hold for each channel by itself.
+/** The bounds of a client. Windows and queue apply to each channel separately.
   *
   * @param controlConnections connections of [[Channel.Control]], opened with its first call; the paper's pool
   *   has 5
@@ -52,8 +54,8 @@ final case class CallOptions(
   * @param queue most calls of a channel that wait, for a place or for a connection being opened
   * @param resends how often one idempotent call is sent again at most
   * @param rememberedIds how many timed-out calls a connection remembers, to recognise their late replies
-  * @param strays most values on a connection, since the last reply that was waited for, that answer no call
-  *   of ours; then it is closed as malformed
+  * @param strays most values on a connection, since the last expected reply, that answer no call of ours;
+  *   then it is closed as malformed
   * @param messageTime longest time from a message's first byte to its last; then its connection is closed as
   *   malformed
   * @param openBytes most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a

@@ -2,14 +2,14 @@ package skein.rpc
 
 import java.util.concurrent.atomic.LongAdder
 
-/** What a client has counted since it was made. Every call ends exactly once:
-  * `called = answered + refused + timedOut + lost + malformed + overloaded + cancelled + unreachable + pending`.
+/** Counts of a client since it was made. Every call ends exactly once: `called = answered + refused +
+  * timedOut + lost + malformed + overloaded + cancelled + unreachable + pending`.
   *
-  * @param sent requests written, those sent again included
+  * @param sent requests written, including those sent again
   * @param late replies to calls that had timed out
   * @param unexpected replies to no known call
   * @param ignored values that were no replies
-  * @param skipped elements that flows passed over
+  * @param skipped elements that flows skipped because their calls failed
   */
 final case class RpcStats(
     called: Long,
@@ -30,11 +30,10 @@ final case class RpcStats(
     connected: Long,
     disconnected: Long
 ):
-  /** Calls that have not ended. */
   def pending: Long =
     called - answered - refused - timedOut - lost - malformed - overloaded - cancelled - unreachable
 
-/** The running counts behind [[RpcStats]]; written by both channels, read by anyone. */
+/** The counters behind [[RpcStats]]; written by all channels, read from any thread. */
 private[rpc] final class RpcCounters:
   val called, sent, answered, refused, timedOut, lost, malformed, overloaded, cancelled, unreachable,
       sentAgain, late, unexpected, ignored, skipped, connected, disconnected = LongAdder()

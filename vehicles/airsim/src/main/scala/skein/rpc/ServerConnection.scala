@@ -15,12 +15,12 @@ import upack.Msg
 /** Serves one connection: requests' bytes in, replies' bytes out, replies in the order of completion.
   *
   *   - '''Emits when''' replies are ready; those ready together leave together.
-  *   - '''Backpressures when''' its limit of requests being handled, of reply bytes not yet taken, or of
-  *     memory held is reached. A request too large for the memory left waits for those of its connection that
-  *     are under way; then, or after the longest time for a message, it is answered with an error, and so is
-  *     one whose reply is too large.
-  *   - '''Completes when''' upstream has completed and every request is answered, or at once on malformed
-  *     input or a limit that cannot be waited for.
+  *   - '''Backpressures when''' its limit of requests in progress, of reply bytes not yet taken, or of memory
+  *     held is reached. A request too large for the memory left waits for its connection's requests in
+  *     progress; then, or after the longest time for a message, it is answered with an error, and so is one
+  *     whose reply is too large.
+  *   - '''Completes when''' upstream has completed and every request is answered, or immediately on malformed
+  *     input or a limit that waiting cannot relieve.
   *   - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
   */
 private[rpc] final class ServerConnection(
@@ -55,10 +55,10 @@ private[rpc] final class ServerConnection(
       private var strays    = 0    // values since the last request that were no messages
       private var reason    = Option.empty[String]
 
-      @volatile private var spoken   = false // a request has come
+      @volatile private var spoken   = false // a request has been received
       @volatile private var finished = false // the peer sends no more
 
-      // The next message, while it is too large for what is left, and the watches since it is.
+      // The next message, while it exceeds the memory left, and the number of watches since then.
       private var heldBack = Option.empty[Array[Byte]]
       private var backFor  = 0
 
@@ -90,7 +90,7 @@ private[rpc] final class ServerConnection(
             consumed = false
             proceed()
 
-      /** What speaks, if that is not MessagePack-RPC: its first byte alone tells. */
+      /** The protocol that a peer speaks instead of MessagePack-RPC, recognised by its first byte. */
       private def foreign(bytes: ByteString): Option[String] =
         if spoken || framer.midway then None
         else
@@ -141,7 +141,7 @@ private[rpc] final class ServerConnection(
         counters.limited(limit)
         reason = Some(why)
 
-      /** Takes requests as far as the limits allow, and sends what is ready. */
+      /** Takes requests within the limits, and sends what is ready. */
       private def proceed(): Unit =
         try
           takeRequests()
@@ -176,7 +176,7 @@ private[rpc] final class ServerConnection(
               consumed = true
               segment = 0
             case Framed.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
-        // The rest of it may never come: only requests of its own are worth waiting for.
+        // The rest of it may never arrive: it is worth waiting only for its own requests.
         if consumed && reason.isEmpty && !mayRead && !underWay then tooMuch()
         turn.force(inFlight)
         holding.force(held)
@@ -188,12 +188,12 @@ private[rpc] final class ServerConnection(
 
       private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
 
-      /** Whether it may hold what it holds: if not, it waits until some of its requests are answered and
-        * taken.
+      /** Whether its memory is granted: if not, it waits until some of its requests are answered and their
+        * replies taken.
         */
       private def hasRoom: Boolean = isGranted || !underWay
 
-      /** Whether it may have the rest of the message that is under way. */
+      /** Whether it may read the rest of the incomplete message. */
       private def mayRead: Boolean = isGranted || framer.heldBytes <= limits.heldBytesPerConnection
 
       private def tooMuch(): Unit = refuse(ServerLimit.Held, s"$held bytes of it are held, and $noMore")
@@ -212,7 +212,7 @@ private[rpc] final class ServerConnection(
         else
           backFor = 0
           counters.lacking.increment()
-          // Unread: to read it takes what is lacking.
+          // Not decoded: decoding needs the memory that is lacking.
           RpcMessage.requestId(frame) match
             case Some(id) =>
               counters.requests.increment()
@@ -255,7 +255,7 @@ private[rpc] final class ServerConnection(
               ExecutionContext.parasitic
             )
 
-      /** From any thread. */
+      /** Accepts a request's outcome; from any thread. */
       private def completed(outcome: Outcome): Unit =
         val _ = done.add(outcome)
         if scheduled.compareAndSet(false, true) then wake.invoke(())
@@ -288,10 +288,12 @@ private[rpc] final class ServerConnection(
 private object ServerConnection:
   private val NoReply = -1L
 
-  /** Memory that a request takes beside its message: the objects that lead it to its answer. */
+  /** Memory of a request beside its message, bytes: the objects that track it until its answer. */
   private val BytesPerRequest = 512
 
-  /** The first bytes of an array of three or four, MessagePack's and AirSim's clients' only ones. */
+  /** The first bytes of an array of three or four elements: the only ones that MessagePack's and AirSim's
+    * clients send.
+    */
   private[rpc] val Starts = Set(0x93, 0x94, 0xdc, 0xdd)
 
   private case object Watch

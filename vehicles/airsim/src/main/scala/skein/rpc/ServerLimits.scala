@@ -2,34 +2,34 @@ package skein.rpc
 
 import skein.units.*
 
-/** What one server gives its peers. Times are kept to one [[ServerLimits.Watch]].
+/** What one server grants its peers. Times are exact to one [[ServerLimits.Watch]].
   *
-  * @param inFlightPerConnection most requests of one connection being handled; beyond that its socket is not
+  * @param inFlightPerConnection most requests of one connection in progress; beyond that its socket is not
   *   read
-  * @param inFlightAssured so many of them it may have whatever the others do
-  * @param inFlightInCommon beyond those, for all connections together, first come, first served. What is
-  *   being handled is what outlives the garbage collector: 50,000 requests of 200 greedy connections make its
-  *   pauses ten times as long, and everybody wait
+  * @param inFlightAssured requests that each connection may have in progress whatever the others do
+  * @param inFlightInCommon beyond those, for all connections together, first come, first served. Requests in
+  *   progress survive garbage collections: 50,000 requests of 200 greedy connections make its pauses ten
+  *   times as long
   * @param unsentBytesPerConnection a connection that has this many bytes of replies to take is not read until
   *   it has taken them
-  * @param connections most connections open. One more takes the place of the first that has asked nothing
+  * @param connections most connections open. One more takes the place of the first that has requested nothing
   *   yet, or of the one that has been silent for the longest time, if that is at least `silence`; else it is
-  *   closed as it comes
+  *   closed on arrival
   * @param heldBytesPerConnection memory that one connection may always make the server hold: messages under
-  *   way, requests being handled, replies not taken
+  *   way, requests in progress, replies not taken
   * @param heldBytesInCommon memory beyond that, for all connections together. A connection whose requests and
-  *   replies hold it is not read until some are answered and taken. One with nothing under way whose
-  *   unfinished message finds none left is closed; a whole request, or a reply, that finds none left becomes
-  *   an error
+  *   replies hold it is not read until some are answered and taken. One without requests in progress whose
+  *   unfinished message exceeds it is closed; a whole request, or a reply, that exceeds it becomes an error
   * @param strays most values that are no messages between two requests; then the connection is closed, and
   *   before the first request at the first of them
   * @param messageTime longest time from a message's first byte to its last, while the server waits for it
-  * @param replyTime longest time that a peer takes none of the replies that wait for it
-  * @param silence how long a connection must be silent, with nothing under way, before a new one may take its
-  *   place
-  * @param waiting who says nothing for so long while it waits for an answer counts as silent from then on
-  * @param idle a connection silent for so long, with nothing under way, is closed. AirSim's own clients think
-  *   for minutes between two calls and do not connect again
+  * @param replyTime longest time without a peer taking any of its waiting replies
+  * @param silence how long a connection must be silent, with nothing in progress, before a new one may take
+  *   its place
+  * @param waiting a peer that sends nothing for this long while it awaits an answer counts as silent from
+  *   then on
+  * @param idle a connection silent for this long, with nothing in progress, is closed. AirSim's own clients
+  *   think for minutes between two calls and do not connect again
   */
 final case class ServerLimits(
     frame: FrameLimits = FrameLimits(),
@@ -64,5 +64,5 @@ final case class ServerLimits(
   def heldBytes: Long = heldBytesInCommon + 2L * connections * heldBytesPerConnection
 
 object ServerLimits:
-  /** How often a connection's times are looked at. */
+  /** How often a connection's times are checked. */
   val Watch: Span = Span.ofSeconds(1)

@@ -2,25 +2,25 @@ package skein.rpc
 
 import java.util.concurrent.atomic.{AtomicLong, LongAdder}
 
-/** What a server has counted since it was bound.
+/** Counts of a server since it was bound.
   *
   * @param connections open now
   * @param accepted connections served, closed ones included
   * @param turnedAway connections beyond the limit
   * @param closedWithReason connections that ended because of malformed input, a cut message, a limit or a
   *   failure
-  * @param malformed of those: for what was no message, or one beyond [[FrameLimits]]
-  * @param overHeld of those: for memory that no longer could be held for them
-  * @param tooSlow of those: for a message, or the taking of replies, that took too long
-  * @param idle of those: for silence, when their place was needed or far too long
+  * @param malformed of those: for a value that is no message, or one beyond [[FrameLimits]]
+  * @param overHeld of those: because the memory limit was reached
+  * @param tooSlow of those: because a message, or taking replies, took too long
+  * @param idle of those: for silence, when their place was needed or after [[ServerLimits.idle]]
   * @param answered replies with a result
   * @param refused replies with an error
-  * @param lacking of those: requests, and replies, too large for the memory left; and notifications, which
-  *   are dropped then
+  * @param lacking of those: requests, replies and dropped notifications that were too large for the memory
+  *   left
   * @param ignored values that were no messages
   * @param dropped requests taken and not run, because their connection had closed before their turn
-  * @param heldBytes memory held for peers now; see [[ServerLimits.heldBytes]]
-  * @param mostHeldBytes the most there was
+  * @param heldBytes bytes held for peers now; see [[ServerLimits.heldBytes]]
+  * @param mostHeldBytes the maximum of `heldBytes`
   */
 final case class ServerStats(
     connections: Long,
@@ -42,7 +42,7 @@ final case class ServerStats(
     mostHeldBytes: Long
 )
 
-/** Why a server closes a connection. */
+/** The kind of limit for which a server closes a connection. */
 private[rpc] enum ServerLimit:
   case Malformed, Held, Time, Idle
 
@@ -52,7 +52,7 @@ private[rpc] final class ServerCounters(holdings: Holdings):
   private val closed, closedWithReason, turnedAway, ignoredValues = LongAdder()
   private val accepted                                            = AtomicLong()
 
-  /** The number of the connection now accepted. */
+  /** Returns the number of a newly accepted connection. */
   def nextConnection(): Long = accepted.incrementAndGet()
 
   def open: Long = accepted.get - closed.sum

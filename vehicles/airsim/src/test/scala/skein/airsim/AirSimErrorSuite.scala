@@ -6,7 +6,7 @@ import skein.units.Span
 
 class AirSimErrorSuite extends munit.FunSuite:
 
-  test("who takes the connection and says nothing is told by the address, and what was expected there"):
+  test("a silent peer is reported with its address, and what was expected there"):
     val at = Address("127.0.0.1", 9)
     assertEquals(
       AirSimError.ofFirst(RpcError.Timeout("ping", Span.ofSeconds(5)), at),

@@ -5,12 +5,12 @@ import skein.airsim.wire.{ImageResponse, LidarData, Quaternionr, Vector3r}
 import skein.rpc.{MessageReader, Mutation, Received}
 import skein.units.*
 
-/** Replies with images and scans, changed in a few places: each is read as what it can be, or refused;
-  * nothing is thrown.
+/** Replies with images and scans, changed in a few places: each is read as a valid value, or refused; nothing
+  * is thrown.
   */
 object ImageFuzz:
 
-  /** What the replies came to. */
+  /** Counts of the replies by their results. */
   final case class Figures(replies: Int, images: Int, scans: Int, refused: Int)
 
   def run(replies: Int, seed: Long): Figures =

@@ -42,7 +42,7 @@ class ImagesSuite extends munit.FunSuite:
       case Pixels.Bgr(bytes) => assertEquals(bytes.toArray.toSeq, image.image_data_uint8.toSeq)
       case other             => fail(s"$other")
 
-  test("several images of one moment come in the order of the shots"):
+  test("several images of one instant are in the order of the shots"):
     val far = image.copy(
       image_data_uint8 = Array.emptyByteArray,
       image_data_float = Array.tabulate(8)(_ * 0.5f),
@@ -55,7 +55,8 @@ class ImagesSuite extends munit.FunSuite:
       case other                  => fail(s"$other")
 
   test(
-    "Cosys-AirSim's further keys, other orders and missing keys are borne, and binary that comes as a string"
+    "Cosys-AirSim's additional keys, other orders and missing keys are accepted, and binary sent as a " +
+      "string"
   ):
     val cosys = Obj(
       Str("annotation_name")  -> Str(""),
@@ -69,7 +70,7 @@ class ImagesSuite extends munit.FunSuite:
     assertEquals(read.head.positionNed, Vector3(11, 20, -1))
     assertEquals(exposed, Instant.Epoch)
 
-  test("an image that the simulator could not take is told with what it says"):
+  test("an image that the simulator could not take is reported with its message"):
     val none = ImageResponse(image_data_uint8 = Array[Byte](0), message = "no such camera", compress = false)
     assertEquals(
       images(sent(none), raw),
@@ -82,7 +83,7 @@ class ImagesSuite extends munit.FunSuite:
     assert(images(sent(image.copy(width = -4, height = -2)), raw).isLeft)
     assertEquals(images(sent(image), raw, raw), Left("expected 2 images, came 1"))
 
-  test("a scan is read as it was sent; one number is an empty cloud; ids that do not fit are told"):
+  test("a scan is read as it was sent; one number is an empty cloud; mismatched ids are reported"):
     val cloud = LidarData(
       at,
       Array(1, 2, 3, 4, 5, 6),
@@ -108,7 +109,7 @@ class ImagesSuite extends munit.FunSuite:
     val cosys = Obj(Str("point_cloud") -> Arr(), Str("groundtruth") -> Arr(Str("tree")))
     assertEquals(scan(Wire.pack(cosys)).map(_._1.size), Right(0))
 
-  test("the nearest point by direction of the compass, whichever way the vehicle is turned"):
+  test("the nearest point by compass direction does not depend on the vehicle's heading"):
     // Two to the front of different depths, one to the right, one too far below.
     val points                        = Array[Float](8, 0, 0, 6, 0.1f, 1, 0, 5, 0, 0, -3, 2.5f)
     def near(orientation: Quaternion) = Scan(points, Array.empty, Vector3.Zero, orientation)
@@ -123,6 +124,6 @@ class ImagesSuite extends munit.FunSuite:
       Seq(40.0, 40.0, 6.0, 5.0)
     )
 
-  test("of malformed replies nothing is thrown"):
+  test("malformed replies throw nothing"):
     val figures = ImageFuzz.run(20_000, seed = 1)
     assert(figures.refused > 5_000 && figures.images > 500 && figures.scans > 500, figures)

@@ -10,7 +10,7 @@ class WorldSettingsSuite extends munit.FunSuite:
   test("settings without vehicles have AirSim's default one"):
     assertEquals(WorldSettings.parse("{}").map(_.vehicles), Right(Vector(VehicleSettings("SimpleFlight"))))
 
-  test("SimMode says what vehicles are that name no type; a world may have both"):
+  test("SimMode is the type of vehicles that name none; a world may have both types"):
     assertEquals(
       WorldSettings.parse("""{"SimMode": "Car"}""").map(_.vehicles),
       Right(Vector(VehicleSettings("PhysXCar", vehicleType = "PhysXCar")))
@@ -30,7 +30,7 @@ class WorldSettingsSuite extends munit.FunSuite:
     assert(WorldSettings.render(cars).contains("\"SimMode\": \"Car\""))
     assertEquals(WorldSettings.parse(WorldSettings.render(cars)).map(_.vehicles), Right(cars))
 
-  test("vehicles, origin, wind and clock speed are read, the rest is passed over"):
+  test("vehicles, origin, wind and clock speed are read, everything else is ignored"):
     val text = """{"SettingsVersion": 1.2, "SimMode": "Multirotor", "ClockSpeed": 2,
       "Wind": {"X": 1, "Y": -2}, "OriginGeopoint": {"Latitude": 47, "Longitude": 8, "Altitude": 400},
       "Vehicles": {
@@ -52,7 +52,7 @@ class WorldSettingsSuite extends munit.FunSuite:
       )
     )
 
-  test("vehicles with AutoCreate false are none; ComputerVision is a type that SimMode names, too"):
+  test("vehicles with AutoCreate false do not exist; ComputerVision is a type that SimMode names, too"):
     val text  = """{"SimMode": "ComputerVision", "ApiServerPort": 42, "Vehicles":
       {"A": {"AutoCreate": true}, "B": {"VehicleType": "PX4Multirotor", "AutoCreate": false}}}"""
     val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
@@ -66,7 +66,7 @@ class WorldSettingsSuite extends munit.FunSuite:
       Right(SensorKind.Default - "gps" + ("G" -> SensorKind.Gps))
     )
 
-  test("what is rendered is read back"):
+  test("rendered settings are read back unchanged"):
     val vehicles = Vector(VehicleSettings("A", Vector3(1, 2, -3)), VehicleSettings("B"))
     assertEquals(WorldSettings.parse(WorldSettings.render(vehicles)).map(_.vehicles), Right(vehicles))
 
@@ -89,12 +89,12 @@ class WorldSettingsSuite extends munit.FunSuite:
       _.vehicles.head
     )
 
-  test("who is meant by no name: the vehicle with IsFpvVehicle, else the first by the alphabet"):
+  test("the default vehicle is the one with IsFpvVehicle, else the first by the alphabet"):
     def default(text: String) = WorldSettings.parse(text).map(_.defaultVehicle.name)
     assertEquals(default("""{"Vehicles": {"B": {}, "A": {}}}"""), Right("A"))
     assertEquals(default("""{"Vehicles": {"B": {"IsFpvVehicle": true}, "A": {}}}"""), Right("B"))
 
-  test("DefaultVehicleState says whether a vehicle is armed from the start"):
+  test("DefaultVehicleState sets whether a vehicle is armed from the start"):
     assert(only("").armed)
     assert(only(""" "DefaultVehicleState": "Armed" """).armed)
     assert(!only(""" "DefaultVehicleState": "Inactive" """).armed)
@@ -103,9 +103,7 @@ class WorldSettingsSuite extends munit.FunSuite:
       "Vehicles.A.DefaultVehicleState: expected Armed, Inactive or Disarmed, found 'flying'"
     )
 
-  test(
-    "sensors that are listed take the place of the default ones of their kind; those not enabled are none"
-  ):
+  test("listed sensors replace the default ones of their kind; disabled ones do not exist"):
     assertEquals(only("").sensors, SensorKind.Default)
     val own =
       only(""" "Sensors": {"Imu1": {"SensorType": 2, "Enabled": true}, "Off": {"SensorType": 3}} """).sensors

@@ -19,7 +19,9 @@ class BulkSimulation extends munit.FunSuite:
   private enum Images:
     case None, OwnLane, ControlLane
 
-  /** Round trips of a small question each 20 ms for 10 s, ascending, ms; and images that came meanwhile. */
+  /** Round trips of a small request each 20 ms for 10 s, ascending, ms; and the number of images received
+    * meanwhile.
+    */
   private def fly(images: Images): (Vector[Double], Int) =
     VirtualTime
       .run(1): system =>
@@ -70,7 +72,7 @@ class BulkSimulation extends munit.FunSuite:
     assert(p99(beside) < 26, p99(beside))
     assert(p99(behind) > 300, p99(behind))
 
-  test("a result of another form than was asked for is told, and the connection lives on"):
+  test("a result of another form than requested is reported, and the connection survives"):
     val answers = VirtualTime
       .run(1): system =>
         given ActorSystem = system

@@ -7,17 +7,14 @@ class CallLinesSuite extends munit.FunSuite:
   private def drain[A](lines: CallLines[A]): Seq[A] =
     Iterator.continually(lines.take()).takeWhile(_.nonEmpty).flatten.toSeq
 
-  test(
-    "the first of each connection's calls are taken in turn, " +
-      "then what waits, each connection's in their order"
-  ):
+  test("the first call of each connection is taken in turn, then the waiting ones in order"):
     val lines = CallLines[String]()
     for (connection, call) <- Seq(1 -> "a1", 1 -> "a2", 1 -> "a3", 2 -> "b1", 3 -> "c1", 3 -> "c2") do
       lines.put(connection, call)
     assertEquals(drain(lines), Seq("a1", "b1", "c1", "a2", "a3", "c2"))
     assert(lines.isEmpty)
 
-  test("however many calls 200 others have sent, a call waits for at most one of each"):
+  test("for any number of calls of 200 others, a call waits for at most one of each"):
     for seed <- 1 to 20 do
       val random  = Random(seed)
       val lines   = CallLines[Long]()
@@ -29,13 +26,13 @@ class CallLinesSuite extends munit.FunSuite:
       assert(ahead <= 200, s"$ahead calls went ahead, seed $seed")
 
   test(
-    "one that asks now and then goes before 200 that ask without " +
-      "a pause, who are woken once for several answers"
+    "a client that calls rarely goes ahead of 200 that call without a pause, which are woken once for " +
+      "several answers"
   ):
     for pause <- Seq(60, 200, 1000) do
       val lines = CallLines[Long]()
       for connection <- 1L to 200L; _ <- 1 to 256 do lines.put(connection, connection)
-      for _ <- 1 to 200; taken <- lines.take() do lines.put(taken, taken) // as they had come
+      for _ <- 1 to 200; taken <- lines.take() do lines.put(taken, taken) // in order of arrival
       var last   = -1L
       var wakes  = 0
       val served = new Array[Int](201)
@@ -52,7 +49,7 @@ class CallLinesSuite extends munit.FunSuite:
       assert(others.max - others.min <= 6, s"from ${others.min} to ${others.max}, pause $pause")
       assert(wakes < served.sum * 0.31, s"$wakes wakes for ${served.sum} calls, pause $pause")
 
-  test("whoever asks one call after another as fast as it can has its share and no more"):
+  test("a client that calls as fast as it can has its share and no more"):
     val lines = CallLines[Long]()
     for connection <- 1L to 20L; _ <- 1 to 256 do lines.put(connection, connection)
     val served = new Array[Int](21)
@@ -75,7 +72,7 @@ class CallLinesSuite extends munit.FunSuite:
     lines.put(1, "again")
     assertEquals(drain(lines), Seq("again"))
 
-  test("calls put by several threads are all taken, each connection's in order"):
+  test("calls added by several threads are all taken, each connection's in order"):
     val lines   = CallLines[(Long, Int)]()
     val each    = 20_000
     val threads =

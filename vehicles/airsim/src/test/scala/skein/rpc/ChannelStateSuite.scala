@@ -9,7 +9,7 @@ class ChannelStateSuite extends munit.FunSuite:
 
   private val address = Address("sim", 41451)
 
-  /** A channel whose sends, ends and reconnects are only noted; time is given in milliseconds. */
+  /** A channel that only records sends, ends and reconnects; time is in milliseconds. */
   private final class Channel(settings: RpcSettings) extends ChannelEffects:
     val counters   = RpcCounters()
     val sent       = mutable.Buffer.empty[Call]
@@ -135,7 +135,10 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "b", "c", "d"))
     assertEquals(Seq("b", "c").map(l.connectionOf), Seq(1, 1))
 
-  test("a call times out at its deadline, its place is free at once, and its late reply is told and dropped"):
+  test(
+    "a call times out at its deadline, its place is free immediately, and its late reply is reported " +
+      "and dropped"
+  ):
     val l = channel(connections = 1, perConnection = 1)
     l.open(0)
     l.submit("a", CallOptions(timeout = Span.ofMillis(500)))
@@ -162,7 +165,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.open(0)
     assertEquals(l.sentNames, Seq.empty)
 
-  test("only so many timed-out calls are remembered"):
+  test("a bounded number of timed-out calls is remembered"):
     val l = channel(connections = 1, perConnection = 9, inAll = 9, remembered = 2)
     l.open(0)
     for name <- Seq("a", "b", "c") do l.submit(name)
@@ -196,21 +199,21 @@ class ChannelStateSuite extends munit.FunSuite:
     l.state.lost(0, "reset", malformed = false)
     assertEquals(l.error("read"), RpcError.ConnectionLost(address, mayHaveRun = true, "reset"))
 
-  test("an idempotent call without a key moves to another connection at once"):
+  test("an idempotent call without a key moves to another connection immediately"):
     val l = channel()
     l.open(0, 1)
     l.submit("read", idempotent)
     l.state.lost(l.connectionOf("read"), "reset", malformed = false)
     assertEquals(l.usedInTurn.toSeq, Seq(0, 1))
 
-  test("calls on a connection closed for malformed bytes say so"):
+  test("calls on a connection closed for malformed bytes report that"):
     val l = channel()
     l.open(0)
     l.submit("a")
     l.state.lost(0, "byte 0xc1", malformed = true)
     assertEquals(l.error("a"), RpcError.Malformed("a", "byte 0xc1"))
 
-  test("where nothing answers, waiting calls and later ones fail at once until a connection opens"):
+  test("without an answer, waiting calls and later ones fail immediately until a connection opens"):
     val l = channel()
     l.submit("waiting")
     l.submit("keyed", CallOptions(key = Some(0)))
@@ -301,7 +304,7 @@ class ChannelStateSuite extends munit.FunSuite:
       assertEquals(l.ends.size, calls, s"seed $seed")
       assertEquals(l.counters.snapshot.pending, 0L, s"seed $seed")
 
-  test("a call that is withdrawn ends with a timeout of its own, and its late reply is recognised"):
+  test("a withdrawn call ends with a timeout, and its late reply is recognised"):
     val channel = this.channel(connections = 1, perConnection = 1)
     channel.open(0)
     channel.submit("first", at = 0)

@@ -11,12 +11,14 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Random
 import upack.*
 
-/** Mutated byte sequences against the codec, judged by the oracle: the same values at the same places, the
-  * same end, and nothing thrown.
+/** Mutated byte sequences for the codec, checked against an oracle: equal values at equal positions, an equal
+  * end, and no exception.
   */
 object CodecFuzz:
 
-  /** What the sequences came to; `values` are complete messages, all of them as the oracle reads them. */
+  /** Counts of the sequences by their results; `values` are complete messages, all of them as the oracle
+    * reads them.
+    */
   final case class Figures(
       sequences: Int,
       values: Long,
@@ -91,7 +93,7 @@ object CodecFuzz:
   private def isLimit(reason: String): Boolean =
     Seq("nested", "a message of", "a map of").exists(reason.startsWith)
 
-  /** None where the oracle asks more of an extension of type -1 (a time stamp) than the format does. */
+  /** None where the oracle is stricter about an extension of type -1 (a time stamp) than the format. */
   private def read(frame: Array[Byte]): Option[Value] =
     try Some(Wire.unpack(frame))
     catch case _: MessageFormatException | _: MessagePackException => None
@@ -102,7 +104,7 @@ object CodecFuzz:
       theirs.isArrayValue && items.length == theirs.asArrayValue.size &&
       items.indices.forall(i => same(items(i), theirs.asArrayValue.get(i)))
     case Obj(entries) =>
-      // A key that comes twice keeps its last value in ours; the oracle's list of pairs has both.
+      // A duplicate key keeps its last value in ours; the oracle's list of pairs has both.
       theirs.isMapValue && entries.forall: (key, item) =>
         theirs.asMapValue.entrySet.asScala.exists(e => same(key, e.getKey) && same(item, e.getValue))
     case Ext(-1, _) =>

@@ -22,7 +22,7 @@ class FramerLaws extends munit.FunSuite:
     val found  = Wire.framed(framer, frames.flatten.map(ByteString(_)))
     assertEquals(texts(found), frames.map(hex))
 
-  test("a cut message is seen as such"):
+  test("a truncated message is recognised"):
     val framer = Framer()
     framer.offer(ByteString(0x92, 0x01))
     assertEquals(framer.next(), Framed.NeedsMore)
@@ -96,7 +96,7 @@ class FramerLaws extends munit.FunSuite:
       0x80
     )
 
-  test("what is held of an unfinished message is told, and what a finished one takes once decoded"):
+  test("the bytes held for an unfinished message, and the memory of a decoded one, are reported"):
     val framer = Framer()
     val frame  = ByteString(Wire.pack(Arr(Binary(new Array[Byte](5000)), Obj(), Null)))
     framer.offer(frame.take(3000))

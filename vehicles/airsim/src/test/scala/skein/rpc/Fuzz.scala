@@ -5,7 +5,8 @@ import skein.airsim.ImageFuzz
 import skein.link.PreciseScheduler
 
 /** The long fuzz: mutated byte sequences against the codec, the reader of images and scans, a live server and
-  * a live client. Ends with an error that names the seed when anything crashes, hangs, or comes out wrong.
+  * a live client. Fails with an error that names the seed when anything crashes, hangs, or has a wrong
+  * result.
   *
   * Arguments: sequences for the codec and for the reader (default 1,000,000), for each of server and client
   * (default 20,000), the first seed (default 1).

@@ -3,7 +3,7 @@ package skein.rpc
 import org.apache.pekko.actor.ActorSystem
 import skein.link.PreciseScheduler
 
-/** Mutated sequences over loopback sockets; a quick share of what [[Fuzz]] does at length. */
+/** Mutated sequences over loopback sockets; a short version of [[Fuzz]]. */
 class FuzzLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("rpc-fuzz", PreciseScheduler.config)
 

@@ -1,6 +1,6 @@
 package skein.rpc
 
-/** A quick share of what [[Fuzz]] does at length. */
+/** A short version of [[Fuzz]], without sockets. */
 class FuzzSuite extends munit.FunSuite:
 
   test("20,000 mutated sequences: the codec reads what the oracle reads, and refuses the rest"):

@@ -4,7 +4,7 @@ import scala.util.Random
 
 class HoldingsSuite extends munit.FunSuite:
 
-  test("each holds its own part whatever the others do, and more as long as the common part lasts"):
+  test("each may hold its own part whatever the others do, and more while the common part suffices"):
     val holdings = Holdings(each = 10, common = 100)
     val greedy   = holdings.Holding()
     val modest   = holdings.Holding()
@@ -18,7 +18,7 @@ class HoldingsSuite extends munit.FunSuite:
     assert(greedy.resize(0) && modest.resize(0))
     assertEquals((holdings.bytes, holdings.mostBytes), (0L, 120L))
 
-  test("what is there already is held, granted or not, and given back"):
+  test("existing bytes are held, granted or not, and given back"):
     val holdings = Holdings(each = 10, common = 5)
     val one      = holdings.Holding()
     one.force(50)

@@ -11,9 +11,7 @@ import skein.link.Address
 import skein.units.*
 import upack.{Arr, Binary, Float32, Float64, Int32, Int64, Msg, Null, Obj, Str}
 
-/** A client whose peer means ill: what it holds stays bounded, and each call ends with a reason that can be
-  * read.
-  */
+/** A client with a hostile peer: its memory stays bounded, and each call ends with a readable reason. */
 class HostileServerSuite extends munit.FunSuite:
   private given system: ActorSystem = ManualTime.system("hostile-server")
 
@@ -29,7 +27,7 @@ class HostileServerSuite extends munit.FunSuite:
     val client         = RpcClient(transport, Address("sim", 41451), time, quick, 1, events.put)
     private var called = Option.empty[Future[Either[RpcError, Msg]]]
 
-    /** Calls, and gives the peer with the call's id. */
+    /** Makes a call; returns the peer with the call's id. */
     def call(): (Peer, Long) =
       called = Some(client.call("read", Seq.empty))
       val peer = transport.peer()

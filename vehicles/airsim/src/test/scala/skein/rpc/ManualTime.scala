@@ -9,7 +9,7 @@ import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.FiniteDuration
 import skein.units.*
 
-/** A scheduler and clock that stand still until the test moves them. */
+/** A scheduler and clock that advance only when the test advances them. */
 final class ManualTime(config: Config, log: LoggingAdapter, threads: ThreadFactory) extends Scheduler
     with Clock:
   // Pekko makes a scheduler with exactly these arguments.
@@ -27,7 +27,7 @@ final class ManualTime(config: Config, log: LoggingAdapter, threads: ThreadFacto
 
   def now(): Instant = synchronized(current)
 
-  /** Runs everything that is due up to then, in order. */
+  /** Advances time and runs everything due, in order. */
   def advance(span: Span): Unit =
     val due = synchronized:
       current = current + span

@@ -8,7 +8,7 @@ class MessageReaderSuite extends munit.FunSuite:
   private def read[A](bytes: Array[Byte])(by: MessageReader => A): Either[String, A] =
     MessageReader.read(Received(bytes, 0))(by)
 
-  test("whatever the oracle encodes is passed over to its end"):
+  test("any value that the oracle encodes is skipped to its end"):
     for seed <- 1 to 500 do
       val random = Random(seed)
       val bytes  = Wire.pack(Arr(Wire.randomMsg(random), Int32(77)))
@@ -24,7 +24,7 @@ class MessageReaderSuite extends munit.FunSuite:
     val numbers = Arr(Float32(1.5f), Float64(-2.25), Int32(3), Int32(-4000))
     assertEquals(read(Wire.pack(numbers))(_.floats().toSeq), Right(Seq(1.5f, -2.25f, 3f, -4000f)))
 
-  test("binary is given where it stands"):
+  test("binary is returned without a copy"):
     val frame  = Wire.pack(Binary(Array[Byte](1, 2, 3)))
     val binary = read(frame)(_.binary()).fold(fail(_), identity)
     frame(frame.length - 1) = 9
@@ -32,14 +32,14 @@ class MessageReaderSuite extends munit.FunSuite:
     assert(binary.buffer.isReadOnly)
     intercept[IndexOutOfBoundsException](binary(3))
 
-  test("what came instead is told, with the field it stood in"):
+  test("an unexpected value is reported with its field"):
     val map = Wire.pack(Obj(Str("width") -> Str("wide")))
     assertEquals(
       read(map)(in => in.fields { case "width" => in.int(): Unit }),
       Left("width: expected an integer, came a value that begins with 0xa4")
     )
 
-  test("of mutated bytes nothing is thrown, and nothing is allocated that cannot be there"):
+  test("mutated bytes throw nothing, and no memory is allocated for elements that cannot exist"):
     for seed <- 1 to 20_000 do
       val random = Random(seed)
       val bytes  = Mutation.of(random, Mutation.request)

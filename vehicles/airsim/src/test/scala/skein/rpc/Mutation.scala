@@ -3,10 +3,10 @@ package skein.rpc
 import scala.util.Random
 import upack.*
 
-/** Byte sequences that are almost, or not at all, what a peer should send. */
+/** Byte sequences that are similar to, or very different from, what a peer should send. */
 object Mutation:
 
-  /** A few messages of one kind, changed in a few places; one in eight is left whole, one in eight is noise.
+  /** A few messages of one kind, changed in a few places; one in eight is unchanged, one in eight is noise.
     */
   def of(random: Random, message: Random => Msg): Array[Byte] =
     val stream = Array.concat(Seq.fill(1 + random.nextInt(3))(Wire.pack(message(random)))*)
@@ -21,7 +21,7 @@ object Mutation:
     case _ =>
       Arr(Int32(0), Int64(random.nextInt().toLong >>> random.nextInt(32)), Str("echo"), Arr(value(random)))
 
-  /** A reply to the call with this id, mostly. */
+  /** Usually a reply to the call with this id. */
   def reply(id: Long)(random: Random): Msg = random.nextInt(8) match
     case 0 => Arr(Int32(1), Int64(random.nextInt(100)), Null, value(random))
     case 1 => Arr(Int32(1), Int64(id), Str("refused"), Null)
@@ -30,7 +30,7 @@ object Mutation:
 
   private def value(random: Random): Msg = Wire.randomMsg(random, depth = 2, longest = 40)
 
-  /** Changed in one place. */
+  /** The bytes with a change in one place. */
   def mutated(bytes: Array[Byte], random: Random): Array[Byte] =
     val at = random.nextInt(bytes.length + 1)
     random.nextInt(7) match

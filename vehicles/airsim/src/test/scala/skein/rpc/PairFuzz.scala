@@ -17,12 +17,11 @@ object PairFuzz:
 
   /** @param sequences each on a connection of its own
     * @param closedWithReason connections that the server closed with a logged reason, as expected for each
-    * @param healthy answers a well-behaved client got meanwhile, every one right
+    * @param healthy correct answers to a well-behaved client meanwhile
     */
   final case class ServerFigures(sequences: Int, closedWithReason: Long, replies: Long, healthy: Long)
 
-  /** Every connection must end, with the reason that its bytes deserve, and the other client notice nothing.
-    */
+  /** Checks that every connection ends with the correct reason, and that the other client is unaffected. */
   def server(sequences: Int, seed: Long)(using system: ActorSystem): ServerFigures =
     val transport = TcpTransport()
     val closings  = LinkedBlockingQueue[ServerEvent.Closed]()
@@ -70,12 +69,12 @@ object PairFuzz:
     Await.result(server.close(), 10.seconds)
     ServerFigures(sequences, reasons, replies, healthy)
 
-  /** @param right results, each the one that was sent for this very call
-    * @param failed calls that ended with an error, each as its bytes deserve
+  /** @param right results, each sent for exactly this call
+    * @param failed calls that ended with the correct error
     */
   final case class ClientFigures(sequences: Int, right: Int, refused: Int, failed: Int)
 
-  /** Every call must end, and with a result only if exactly that result was sent for it. */
+  /** Checks that every call ends, and with a result only if exactly that result was sent for it. */
   def client(sequences: Int, seed: Long)(using system: ActorSystem): ClientFigures =
     val socket = ServerSocket(0, 50, InetAddress.getLoopbackAddress)
     val sent   = LinkedBlockingQueue[(Long, Array[Byte])]()
@@ -159,7 +158,7 @@ object PairFuzz:
           case other                       => throw AssertionError(s"not a request: $other")
     id.get
 
-  /** Values up to the first malformed one, and why it is. */
+  /** Values up to the first malformed one, and the reason why it is malformed. */
   private def decoded(
       bytes: Array[Byte],
       decode: Array[Byte] => RpcMessage
@@ -174,7 +173,7 @@ object PairFuzz:
     val cut    = Option.when(framer.midway)("the peer stopped in the middle of a message")
     (messages.takeWhile(!_.isInstanceOf[RpcMessage.Malformed]), reason.orElse(cut))
 
-  /** Before the first request nothing else may come; what its first byte shows to be foreign is not read. */
+  /** Before the first request nothing else may be sent; data whose first byte is foreign are not read. */
   private def expectedReason(bytes: Array[Byte]): Option[String] =
     FirstBytes.verdict(ByteString.fromArrayUnsafe(bytes), ServerConnection.Starts) match
       case FirstBytes.Foreign(what) => Some(s"expected a message of MessagePack-RPC, came $what")

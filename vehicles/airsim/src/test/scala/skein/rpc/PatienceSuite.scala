@@ -10,7 +10,7 @@ class PatienceSuite extends munit.FunSuite:
     idle = Span.ofSeconds(100)
   )
 
-  /** After how many watches it ends, and why. */
+  /** Number of watches until it ends, and the reason. */
   private def lasts(watch: Int => Option[(ServerLimit, String)]): (Int, ServerLimit, String) =
     Iterator
       .from(1)
@@ -18,7 +18,7 @@ class PatienceSuite extends munit.FunSuite:
       .collectFirst { case Some(end) => end }
       .get
 
-  test("a message may be under way for its time, whether bytes trickle in or not"):
+  test("a message may take its time limit, whether bytes trickle in or not"):
     for trickles <- Seq(true, false) do
       val patience = Patience(limits)
       val end      = lasts: _ =>
@@ -26,7 +26,7 @@ class PatienceSuite extends munit.FunSuite:
         patience.watch(forMessage = true, forTaking = false, forNothing = false)
       assertEquals(end, (11, ServerLimit.Time, "a message under way for more than 10 s"))
 
-  test("many messages one after another may take as long as they like"):
+  test("many consecutive messages may take any time together"):
     val patience = Patience(limits)
     for i <- 1 to 1000 do
       if i % 9 == 0 then patience.completed()
@@ -37,14 +37,14 @@ class PatienceSuite extends munit.FunSuite:
     for i <- 1 to 1000 do
       assertEquals(patience.watch(forMessage = i % 9 != 0, forTaking = false, forNothing = false), None)
 
-  test("replies may wait for their time, and anew whenever some are taken"):
+  test("replies may wait for their time limit, which restarts whenever some are taken"):
     val patience = Patience(limits)
     for _ <- 1 to 25 do patience.watch(forMessage = false, forTaking = true, forNothing = false)
     patience.taken()
     val end = lasts(_ => patience.watch(forMessage = false, forTaking = true, forNothing = false))
     assertEquals(end, (31, ServerLimit.Time, "replies not taken for more than 30 s"))
 
-  test("silence is counted while nothing is under way, until something comes"):
+  test("silence is counted while nothing is in progress, until bytes are received"):
     val patience = Patience(limits)
     def quiet()  = patience.watch(forMessage = false, forTaking = false, forNothing = true)
     for _ <- 1 to 7 do quiet()

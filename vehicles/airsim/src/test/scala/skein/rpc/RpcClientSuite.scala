@@ -30,7 +30,6 @@ class RpcClientSuite extends munit.FunSuite:
     def call(method: String, options: CallOptions = CallOptions()): Future[Either[RpcError, Msg]] =
       client.call(method, Seq.empty, options)
 
-    /** Waits for an event of this kind. */
     def await[E <: RpcEvent: reflect.ClassTag](): Unit =
       Iterator
         .continually(events.poll(5, java.util.concurrent.TimeUnit.SECONDS))
@@ -134,7 +133,7 @@ class RpcClientSuite extends munit.FunSuite:
       assertEquals(r.client.stats.ignored, 3L)
       assertEquals(r.client.stats.unexpected, 1L)
 
-  test("where nothing answers, a call fails saying where and why"):
+  test("without a server a call fails with the address and the reason"):
     val transport = ScriptedTransport()
     transport.refuse = Some(RuntimeException("connection refused"))
     val client = RpcClient(transport, address, time)

@@ -64,7 +64,7 @@ class RpcLiveSuite extends munit.FunSuite:
           assertEquals(answers, (1 to 10_000).toVector)
           assertEquals(client.stats.answered, 10_000L)
 
-  test("eight megabytes come back as they were sent, on the bulk channel"):
+  test("eight megabytes return unchanged on the bulk channel"):
     val image = Array.tabulate(8 << 20)(i => (i * 31).toByte)
     withPair: (_, client) =>
       client
@@ -73,7 +73,7 @@ class RpcLiveSuite extends munit.FunSuite:
           case Right(Binary(back)) => assert(java.util.Arrays.equals(back, image))
           case other               => fail(s"$other")
 
-  test("where nobody listens a call fails at once, saying where"):
+  test("without a listener a call fails immediately with the address"):
     val client = RpcClient(transport, Address("127.0.0.1", 1), Clock.system)
     client.call("ping", Seq.empty).map {
       case Left(RpcError.Unreachable(address, _)) => assertEquals(address, Address("127.0.0.1", 1))
@@ -81,7 +81,8 @@ class RpcLiveSuite extends munit.FunSuite:
     }
 
   test(
-    "one connection too many is turned away and counted; when the server closes, calls fail and none hangs"
+    "a connection beyond the limit is refused and counted; when the server closes, calls fail and none " +
+      "hangs"
   ):
     val one = RpcSettings(controlConnections = 1)
     for

@@ -47,7 +47,7 @@ class RpcMessageSuite extends munit.FunSuite:
       Seq("Request", "Notification", "Request")
     )
 
-  test("requests and notifications are told by their length, whatever the type field says"):
+  test("requests and notifications are distinguished by their length, whatever the type field is"):
     val params = Arr(Int32(1))
     assertEquals(
       fromClient(Arr(Str("?"), Int64(0xffffffffL), Str("f"), params)),
@@ -55,7 +55,7 @@ class RpcMessageSuite extends munit.FunSuite:
     )
     assertEquals(fromClient(Arr(Int32(9), Str("f"), params)), RpcMessage.Notification("f", Vector(Int32(1))))
 
-  test("a method name may come as binary, params as nil or an empty map"):
+  test("a method name may be sent as binary, params as nil or an empty map"):
     val none = RpcMessage.Request(1, "ping", Vector.empty)
     assertEquals(fromClient(Arr(Int32(0), Int32(1), Binary("ping".getBytes), Arr())), none)
     assertEquals(fromClient(Arr(Int32(0), Int32(1), Str("ping"), Null)), none)

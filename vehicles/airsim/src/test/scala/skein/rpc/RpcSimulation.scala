@@ -19,14 +19,14 @@ class RpcSimulation extends munit.FunSuite:
   private val address            = Address("simulator", 41451)
   private val calls              = 600
 
-  /** What one flight of calls came to: each call's end, in order of ending, and all that was observed. */
+  /** The log of one run: each call's end, in order of ending, and all observed events. */
   private final case class Log(
       ends: Seq[(Int, Either[RpcError, Msg], Long)],
       events: Seq[RpcEvent],
       stats: RpcStats
   )
 
-  /** Calls every 10 ms, each echoing its number from a server that takes its time, over a bad VPN. */
+  /** Runs calls every 10 ms, each echoing its number from a slow server, over a bad VPN. */
   private def fly(seed: Long): Log =
     VirtualTime
       .run(seed): system =>
@@ -81,11 +81,11 @@ class RpcSimulation extends munit.FunSuite:
     val cameUp = Seq[RpcStats => Long](_.timedOut, _.late, _.lost, _.sentAgain).map(logs.map(_).sum)
     assert(cameUp.forall(_ > 0), s"timed out, late, lost, sent again: $cameUp")
 
-  test("the same seed gives the same calls, events and times to the nanosecond, another seed others"):
+  test("equal seeds give equal calls, events and times to the nanosecond, different seeds different ones"):
     assertEquals(fly(7), fly(7))
     assertNotEquals(fly(7), fly(8))
 
-  test("a flow with more calls under way than the windows hold passes over none"):
+  test("a flow with more calls in progress than the windows hold skips none"):
     val (answers, stats) = VirtualTime
       .run(seed = 3): system =>
         given ActorSystem = system

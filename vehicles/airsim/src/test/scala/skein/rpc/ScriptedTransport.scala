@@ -12,7 +12,7 @@ import scala.concurrent.Future
 import skein.link.{Address, Incoming, Listening, Transport}
 import upack.{Msg, Null}
 
-/** Connections whose other end is the test. */
+/** Connections whose peer the test plays. */
 final class ScriptedTransport(using ActorSystem) extends Transport:
   private val opened = LinkedBlockingQueue[Peer]()
 
@@ -38,13 +38,12 @@ final class ScriptedTransport(using ActorSystem) extends Transport:
   def peer(): Peer =
     Option(opened.poll(5, SECONDS)).getOrElse(throw AssertionError("no connection was opened"))
 
-/** The server's end of one connection: reads requests as they were written, answers as the test says. */
+/** The server's end of one connection: decodes requests, and sends the test's answers. */
 final class Peer(requests: TestSubscriber.Probe[ByteString], replies: TestPublisher.Probe[ByteString]):
   private val framer  = Framer()
   private val writer  = MessageWriter()
   private val pending = scala.collection.mutable.Queue.empty[RpcMessage.Request]
 
-  /** The next request; waits for it. */
   def request(): RpcMessage.Request =
     while pending.isEmpty do
       for case Framed.Complete(frame) <- Wire.framed(framer, Seq(requests.requestNext())) do

@@ -15,7 +15,7 @@ class ServerConnectionSuite extends munit.FunSuite:
   override def afterAll(): Unit =
     val _ = system.terminate()
 
-  /** One served connection whose handler answers when the test says so. */
+  /** One served connection whose handler answers at the test's command. */
   private final class Rig(limits: ServerLimits = ServerLimits()):
     val asked    = LinkedBlockingQueue[(RpcRequest, Promise[Either[String, Msg]])]()
     val events   = LinkedBlockingQueue[ServerEvent]()
@@ -77,7 +77,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     slow._2.success(Left("no"))
     assertEquals(r.reply(), RpcMessage.Reply(1, Str("no"), Null))
 
-  test("a handler that throws or fails answers in rpclib's words and the connection lives"):
+  test("a handler that throws or fails answers in rpclib's words and the connection survives"):
     val r     = Rig()
     val words =
       "rpclib: function 'throw' (called with 0 arg(s)) threw an exception. " +
@@ -97,7 +97,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.ask(3, "now")
     assertEquals(r.reply(), RpcMessage.Reply(3, Null, Int32(1)))
 
-  test("values that are no messages are counted and the connection lives"):
+  test("values that are no messages are counted and the connection survives"):
     val r = Rig()
     r.ask(0, "now")
     assertEquals(r.reply(), RpcMessage.Reply(0, Null, Int32(1)))
@@ -134,7 +134,7 @@ class ServerConnectionSuite extends munit.FunSuite:
       assert(r.asked.isEmpty)
       assertEquals(r.counters.snapshot.malformed, 1L)
 
-  test("before the first request no other message is borne"):
+  test("before the first request no other message is accepted"):
     val r = Rig()
     r.send(ByteString(0xdc, 0, 2, 1, 2) ++ ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("slow"), Arr()))))
     val _ = r.replies.ensureSubscription().expectComplete()
@@ -176,7 +176,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val _ = r.next()
     assertEquals(r.counters.snapshot.requests, 3L)
 
-  test("a peer that takes no replies is not read further"):
+  test("from a peer that takes no replies nothing more is read"):
     val r       = Rig(ServerLimits(unsentBytesPerConnection = 1000))
     val request = ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("slow"), Arr())))
     r.send(request ++ request ++ request)
@@ -188,7 +188,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val _ = r.next()
     assertEquals(r.counters.snapshot.requests, 4L)
 
-  test("after the peer has finished sending, what it asked is still answered"):
+  test("after the peer has finished sending, its requests are still answered"):
     val r = Rig()
     r.ask(1, "slow")
     r.requests.sendComplete()

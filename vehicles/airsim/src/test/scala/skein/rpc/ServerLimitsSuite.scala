@@ -10,7 +10,7 @@ import scala.concurrent.{Future, Promise}
 import skein.link.Places
 import upack.{Arr, Binary, Int32, Msg, Null, Str}
 
-/** What a server does to connections that ask too much of its memory or its patience, in manual time. */
+/** A server's treatment of connections that demand too much memory or time, in manual time. */
 class ServerLimitsSuite extends munit.FunSuite:
 
   /** A server without sockets: connections share memory and places. */
@@ -60,7 +60,7 @@ class ServerLimitsSuite extends munit.FunSuite:
       def ask(method: String): Unit =
         send(ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str(method), Arr()))))
 
-      /** Asks and has its answer: all it was sent before has been seen too. */
+      /** Sends a request and awaits its answer: everything sent before has then been handled, too. */
       def ping(): Unit =
         ask("ping")
         val _ = replies.expectNext()
@@ -119,7 +119,7 @@ class ServerLimitsSuite extends munit.FunSuite:
   private def never(id: Int): ByteString =
     ByteString(Wire.pack(Arr(Int32(0), Int32(id), Str("never"), Arr())))
 
-  /** A connection whose large request is being handled, and nothing else of it held. */
+  /** A connection whose large request is in progress, and that holds nothing else. */
   private def waits(r: Rig): r.Connection =
     val before     = r.holdings.bytes
     val connection = r.Connection()

@@ -8,7 +8,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Random
 import upack.*
 
-/** Random MessagePack values, and the independent implementation that judges ours. */
+/** Random MessagePack values, and an independent implementation as an oracle. */
 object Wire:
 
   /** The value as the oracle represents it; its equality is by number, not by the width of the encoding. */
@@ -27,7 +27,6 @@ object Wire:
     case Arr(items)  => ValueFactory.newArray(items.map(toValue).asJava)
     case Obj(pairs)  => ValueFactory.newMap(pairs.map((k, v) => toValue(k) -> toValue(v)).toMap.asJava)
 
-  /** The oracle's encoding. */
   def pack(msg: Msg): Array[Byte] =
     val out    = ByteArrayOutputStream()
     val packer = MessagePack.newDefaultPacker(out)
@@ -73,7 +72,7 @@ object Wire:
     case 2 => 28 + random.nextInt(8)
     case _ => random.nextInt(20)
 
-  /** The bytes in random pieces, from single bytes to all at once. */
+  /** The bytes in random segments, from single bytes to a single segment. */
   def segments(bytes: Array[Byte], random: Random): Seq[ByteString] =
     val longest = 1 + random.nextInt(1 << random.nextInt(18))
     val pieces  = Seq.newBuilder[ByteString]
@@ -84,7 +83,7 @@ object Wire:
       at += size
     pieces.result()
 
-  /** Everything the framer makes of the segments, up to and including a refusal. */
+  /** Everything that the framer returns for the segments, up to and including a refusal. */
   def framed(framer: Framer, segments: Seq[ByteString]): Seq[Framed] =
     val all     = Seq.newBuilder[Framed]
     val pending = segments.iterator

@@ -4,19 +4,18 @@ import skein.mavlink.*
 import skein.units.*
 import skein.vehicle.{GoTo, Setpoint}
 
-/** The decisions of an autopilot that behaves to the outside as PX4 does, as values: what it is told and what
-  * its vehicle does goes in, what it answers and what its vehicle is to do comes out. It knows no socket and
-  * no clock.
+/** The decisions of an autopilot that behaves like PX4, as values: messages and the vehicle's motion go in,
+  * answers and the vehicle's setpoint come out. It knows no socket and no clock.
   *
-  * As PX4's, offboard begins only where setpoints come already, and ends [[Parameters.OffboardLoss]] after
-  * the last one: the vehicle then holds its position, as PX4 does without a remote control where it is told
-  * so (`COM_OBL_RC_ACT`).
+  * Like PX4's, offboard begins only while setpoints arrive, and ends [[Parameters.OffboardLoss]] after the
+  * last one: the vehicle then holds its position, as PX4 does without a remote control when so configured
+  * (`COM_OBL_RC_ACT`).
   *
   * @param system 1 to 255
   * @param home where it started: the origin of its own frame
-  * @param anchor the place that its mode flies to, own frame
-  * @param enteredAt when it took its mode
-  * @param heardAt when the last setpoint came
+  * @param anchor the position that its mode flies to, own frame
+  * @param enteredAt when it entered its mode
+  * @param heardAt when the last setpoint was received
   * @param stillSince since when it stands still while it lands
   * @param groundedAt since when it is armed and on the ground
   * @param hasFlown whether it has flown since it was armed
@@ -42,7 +41,7 @@ final case class Autopilot(
   import Autopilot.*
   import CommonDialect.{Command, Result, Severity}
 
-  /** What comes of a message that is meant for this vehicle, or for all.
+  /** Handles a message that is addressed to this vehicle, or to all.
     *
     * @param from system and component of the sender
     */
@@ -75,15 +74,15 @@ final case class Autopilot(
             case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
             case Some(Left(why))     => refused(why)
 
-  /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never
-    * armed.
+  /** What the vehicle is to do now; to be called every 20 ms, after all received messages. None where it was
+    * never armed.
     */
   def steer(motion: VehicleMotion): (heard: Heard, setpoint: Option[Setpoint]) =
     val asked         = transferred(transfer.passed(motion.sinceBoot))
     val (after, told) = asked.next.onItsOwn(motion)
     (Heard(after, news = asked.news ++ told), after.goal(motion))
 
-  /** In its own clock's time, whether setpoints come. */
+  /** Whether setpoints arrive often enough, by its own clock. */
   def isCommanded(motion: VehicleMotion): Boolean =
     heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
 
@@ -210,7 +209,6 @@ final case class Autopilot(
             )
           )
 
-  /** Takes a mode, or says why not. */
   private def enter(wanted: FlightMode, motion: VehicleMotion): Either[Refusal, Heard] =
     def rejected(why: String) = Left(Refusal(Result.Rejected, s"Switching to ${wanted.title} denied: $why"))
     wanted match
@@ -225,7 +223,7 @@ final case class Autopilot(
           copy(
             mode = wanted,
             enteredAt = motion.sinceBoot,
-            // What it held, it goes on holding.
+            // A vehicle that already holds keeps its position.
             anchor = if mode == FlightMode.Hold && wanted == mode then anchor else motion.state.positionNed,
             turn = OffboardSetpoint.Turn.None,
             stillSince = None,
@@ -233,7 +231,7 @@ final case class Autopilot(
           )
         ))
 
-  /** What it does without being told. */
+  /** Changes that the autopilot makes without a command. */
   private def onItsOwn(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val now = motion.sinceBoot
     if !isArmed then (this, Vector.empty)
@@ -248,7 +246,7 @@ final case class Autopilot(
         (off.next, off.news)
       else noted.proceed(motion)
 
-  /** On the ground only for as long as the rotors take. */
+  /** Whether it stays on the ground only until the rotors have spun up. */
   private def isRising: Boolean = mode == FlightMode.Takeoff || mode == FlightMode.Mission
 
   private def proceed(motion: VehicleMotion): (Autopilot, Vector[Message]) =
@@ -341,7 +339,7 @@ final case class Autopilot(
         case FlightMode.Return =>
           val height = -parameters(Parameters.ReturnAltitude)
           val away   = here.copy(z = 0).norm
-          // First up, then across; who is near already goes down where it is.
+          // First up, then across; a vehicle that is near already descends in place.
           if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
           else to(Vector3.Zero.copy(z = here.z), OffboardSetpoint.Turn.None)
         case FlightMode.Mission if !motion.isFlying =>
@@ -359,11 +357,11 @@ final case class Autopilot(
     else OffboardSetpoint.Turn.None
 
 object Autopilot:
-  /** What comes of what was heard.
+  /** The result of a message or of passing time.
     *
-    * @param answers for who has asked
-    * @param news for everybody
-    * @param interval the message that the asker wants so often, µs: −1 never, 0 as usual
+    * @param answers to the sender
+    * @param news to every peer
+    * @param interval the message that the sender requests at this interval, µs: −1 never, 0 as usual
     */
   final case class Heard(
       next: Autopilot,
@@ -372,25 +370,27 @@ object Autopilot:
       interval: Option[(Int, Double)] = None
   )
 
-  /** A command, and its seven numbers; places in degrees.
+  /** A command with its seven numbers; positions in degrees.
     *
-    * @param frame of its place, where it names one
+    * @param frame of its position, if it names one
     */
   private final case class Order(command: Int, numbers: Vector[Double], frame: Option[Int]):
     def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0
     def isOne(index: Int): Boolean = numbers(index) == 1
 
-  /** @param more lines
+  /** Why a command is refused.
+    *
+    * @param more further lines of the reason
     */
   private final case class Refusal(result: Int, why: String, more: Vector[String] = Vector.empty)
 
-  /** A line for a person, in one piece. */
+  /** A status text for a person, in one piece. */
   private[autopilot] def text(severity: Int, line: String): Message = Statustext(severity, line.take(50))
 
-  /** Nearer than this it is there, m; slower than this it stands, m/s. */
+  /** Position tolerances, m, and the speed below which it stands, m/s. */
   private val NearM     = 0.3
   private val NearHomeM = 3.0
   private val StillMps  = 0.05
 
-  /** Still for so long while it lands, it stands on the ground. */
+  /** After standing still for this long while it lands, it is on the ground. */
   private val TouchedAfter = Span.ofMillis(500)

@@ -4,11 +4,12 @@ import scala.collection.mutable
 import skein.mavlink.*
 import skein.units.*
 
-/** What one peer hears of some vehicles, and how often: bytes for it, cut into datagrams. Not thread-safe.
+/** What one peer receives from some vehicles, and how often: bytes for it, cut into datagrams. Not
+  * thread-safe.
   *
   * @param systems the vehicles that it sees
-  * @param isDatagrams whether what it sends comes in datagrams, of which each ends where it ends, and not in
-  *   pieces of a stream
+  * @param isDatagrams whether the peer sends datagrams, each of which ends its frames, and not pieces of a
+  *   stream
   * @param mostBytes of a datagram
   */
 final class MavlinkChannel(
@@ -24,7 +25,7 @@ final class MavlinkChannel(
   private var piece   = Array.emptyByteArray
   private var waiting = 0
 
-  /** Whether more wait to be taken than a peer could take: what it asks for now need not be made. */
+  /** Whether more datagrams wait than a peer could take: messages it requests now need not be encoded. */
   def isFull: Boolean = waiting >= MavlinkChannel.MostWaiting
 
   for system <- systems; (id, interval) <- Telemetry.intervals do
@@ -33,16 +34,15 @@ final class MavlinkChannel(
 
   private val reader = FrameReader()
 
-  /** The frames of what it sent. */
   def read(bytes: Array[Byte]): Vector[Frame] =
     if isDatagrams then reader.readDatagram(bytes) else reader.read(bytes)
 
-  /** Frames from the peer with a wrong checksum, of an unknown message or of a wrong content. */
+  /** Frames from the peer with a wrong checksum, an unknown message or invalid content. */
   def damaged: Long =
     val counts = reader.counts
     counts.badChecksum + counts.unknown + counts.notUnderstood
 
-  /** Changes how often a message is told.
+  /** Changes the interval of a message.
     *
     * @param micros −1 never, 0 as usual
     */
@@ -54,15 +54,15 @@ final class MavlinkChannel(
       every((system, id)) = asked.max(Telemetry.Shortest)
       due((system, id)) = now
 
-  /** The earliest time at which something is to be told. */
+  /** The earliest time at which a message is due. */
   def nextDue: Option[Span] = due.valuesIterator.minOption
 
-  /** The messages that are due, by vehicle and number; each is next due an interval later. */
+  /** Takes the messages that are due, by vehicle and number; each is next due one interval later. */
   def takeDue(now: Span): Vector[(system: Int, id: Int)] =
     val ready = due.iterator.collect { case (key, at) if at <= now => key }.toVector.sorted
     for key <- ready do
       val next = due(key) + every(key)
-      // What was late is not made up for.
+      // Missed messages are not sent later.
       due(key) = if next > now then next else now + every(key)
     ready.map((system, id) => (system = system, id = id))
 
@@ -72,7 +72,7 @@ final class MavlinkChannel(
       if piece.length + frame.length > mostBytes then cut()
       piece = piece ++ frame
 
-  /** The datagrams since this was asked before. */
+  /** Takes the datagrams written since the last call. */
   def take(): Vector[Array[Byte]] =
     cut()
     val all = pieces.result()
@@ -87,5 +87,5 @@ final class MavlinkChannel(
     piece = Array.emptyByteArray
 
 object MavlinkChannel:
-  /** Datagrams; some 10 ms to make. */
+  /** Datagrams that may wait; they take some 10 ms to encode. */
   private val MostWaiting = 64

@@ -4,10 +4,10 @@ import skein.mavlink.*
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** A mission that can be flown.
+/** A mission with its progress.
   *
-  * @param current the item that is flown to
-  * @param reachedAt since when the vehicle is there
+  * @param current the item it flies to
+  * @param reachedAt since when the vehicle is at that item
   */
 final case class Mission(
     items: Vector[MissionItemInt] = Vector.empty,
@@ -22,13 +22,12 @@ final case class Mission(
   def told: Message = MissionCurrent((current.min(items.size - 1)).max(0), items.size)
 
 object Mission:
-  /** Items that a mission has at most. */
   val Most = 1000
 
-  /** The mission's kind, beside which there are fences and rally points: they are not known here. */
+  /** The mission type of missions; fences and rally points, the other types, are not supported. */
   val Kind = 0
 
-  /** Of acknowledgements. */
+  /** Results in acknowledgements (`MAV_MISSION_RESULT`). */
   object Ack:
     val Accepted         = 0
     val Failed           = 1
@@ -39,12 +38,12 @@ object Mission:
     val OutOfOrder       = 13
     val Cancelled        = 15
 
-  /** From home to an item, m: beyond it a mission is one for another home. Far more than a mission takes, and
-    * far less than to another town.
+  /** Greatest distance of an item from home, m: a mission beyond it belongs to another home. Far more than
+    * any mission needs, and less than the distance to another town.
     */
   val FarthestM = 20_000.0
 
-  /** Why an item cannot be flown: the acknowledgement's kind, and lines of at most 50 letters. */
+  /** Why an item is refused: the acknowledgement's result, and lines of at most 50 characters. */
   def mistake(item: MissionItemInt, home: GeoLocation): Option[(Int, Vector[String])] =
     import CommonDialect.Command.*
     import CommonDialect.Frame
@@ -71,7 +70,7 @@ object Mission:
 
   private def isHere(item: MissionItemInt) = item.x == 0 && item.y == 0
 
-  /** Where an item is, in the vehicle's own frame; a place of 0, 0 is where it is already. */
+  /** An item's position in the vehicle's own frame; latitude and longitude of 0 mean the current position. */
   def place(item: MissionItemInt, home: GeoLocation, hereNed: Vector3): Vector3 =
     val altitude = OffboardSetpoint.heightOf(item.frame, item.z, home).getOrElse(home.altitude)
     val at       = GeoLocation(item.x * 1e-7, item.y * 1e-7, altitude).nedFrom(home)

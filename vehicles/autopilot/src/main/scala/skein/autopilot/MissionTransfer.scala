@@ -4,12 +4,12 @@ import skein.mavlink.*
 import skein.mavlink.CommonDialect.Severity
 import skein.units.*
 
-/** How missions come to the vehicle and are read from it, by MAVLink's mission protocol, as a value: messages
-  * go in, and what the vehicle has then and what it answers come out.
+/** Upload and download of missions by MAVLink's mission protocol, as a value: messages go in, the vehicle's
+  * mission and the answers come out.
   *
-  * @param mission that it has
-  * @param upload of another one, which takes its place when all items have come
-  * @param home of the vehicle: items are near it
+  * @param mission that the vehicle has
+  * @param upload of another mission, which replaces it once all items have been received
+  * @param home of the vehicle: items must be near it
   */
 private[autopilot] final case class MissionTransfer(
     mission: Mission,
@@ -20,7 +20,7 @@ private[autopilot] final case class MissionTransfer(
   import Autopilot.text
 
   /** @param from system and component of the sender
-    * @return none where the message is not of the protocol
+    * @return None where the message does not belong to the protocol
     */
   def heard(message: Message, from: (system: Int, component: Int), sinceBoot: Span): Option[Told] =
     message match
@@ -35,7 +35,7 @@ private[autopilot] final case class MissionTransfer(
         Some(Told(cleared, Vector(ack(from, Mission.Ack.Accepted, kind))))
       case _ => None
 
-  /** Time has passed: asks again for an item that does not come. */
+  /** Advances time: requests an item again that has not been received. */
   def passed(sinceBoot: Span): Told = upload match
     case Some(going) if sinceBoot - going.askedAt >= Upload.AskAgain =>
       if going.tries >= Upload.MostTries then
@@ -91,10 +91,10 @@ private[autopilot] final case class MissionTransfer(
       case _ => Told(this, Vector(ack(from, Mission.Ack.OutOfOrder)))
 
 private[autopilot] object MissionTransfer:
-  /** What comes of a message.
+  /** The result of a message.
     *
-    * @param answers for who has sent it
-    * @param news for everybody
+    * @param answers to the sender
+    * @param news to every peer
     */
   final case class Told(
       next: MissionTransfer,
@@ -102,10 +102,10 @@ private[autopilot] object MissionTransfer:
       news: Vector[Message] = Vector.empty
   )
 
-/** A mission on its way to the vehicle: items are asked for one by one, again where one does not come.
+/** A mission being uploaded: items are requested one by one, and again if they are not received.
   *
-  * @param system who sends it
-  * @param askedAt when the next item was asked for last
+  * @param system of the sender
+  * @param askedAt when the next item was last requested
   */
 final case class Upload(
     system: Int,

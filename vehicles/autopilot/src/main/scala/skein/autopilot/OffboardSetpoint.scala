@@ -5,10 +5,10 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.{GoTo, Setpoint}
 
-/** What somebody outside wants the vehicle to do now, in offboard. */
+/** A setpoint from outside the autopilot, for offboard mode. */
 enum OffboardSetpoint:
-  /** Per axis a place, a velocity, or nothing; in the vehicle's own frame. A place and a velocity together
-    * are flown to with that velocity added.
+  /** Per axis a position, a velocity, or nothing; in the vehicle's own frame. With both, the vehicle flies to
+    * the position with the velocity added.
     *
     * @param inBody whether the velocity is front, right and down
     */
@@ -21,10 +21,10 @@ enum OffboardSetpoint:
       turn: OffboardSetpoint.Turn
   )
 
-  /** Thrust is a share of the most. */
+  /** Attitude with a thrust; thrust is a fraction of full thrust. */
   case Attitude(rollRad: Double, pitchRad: Double, yawRad: Double, thrust: Double)
 
-  /** Body rates. */
+  /** Body rates with a thrust; thrust is a fraction of full thrust. */
   case Rates(rollRadps: Double, pitchRadps: Double, yawRadps: Double, thrust: Double)
 
 object OffboardSetpoint:
@@ -33,10 +33,10 @@ object OffboardSetpoint:
     case Towards(yawRad: Double)
     case Turning(radps: Double)
 
-  /** What a message asks for.
+  /** Reads a setpoint from a message.
     *
     * @param home the origin of the vehicle's own frame
-    * @return None where it is no setpoint, or why it cannot be flown
+    * @return None where it is no setpoint; Left states why it is refused
     */
   def of(message: Message, home: GeoLocation): Option[Either[String, OffboardSetpoint]] = message match
     case one: SetPositionTargetLocalNed =>
@@ -93,7 +93,7 @@ object OffboardSetpoint:
         ))
     case _ => None
 
-  /** Above the sea, of an altitude in one of the frames that are known. */
+  /** Altitude above the sea, m, of an altitude in one of the supported frames. */
   private[autopilot] def heightOf(frame: Int, altitudeM: Double, home: GeoLocation): Option[Metres] =
     import CommonDialect.Frame.*
     if frame == Global || frame == GlobalInt then Some(Metres(altitudeM))
@@ -101,7 +101,7 @@ object OffboardSetpoint:
       Some(Metres(home.altitude.value + altitudeM))
     else None
 
-  /** Over the ground from home to a place, m: of a sphere. */
+  /** Distance over the ground from home to a position, m, on a sphere. */
   private[autopilot] def awayM(latitudeDeg: Double, longitudeDeg: Double, home: GeoLocation): Double =
     val (from, to) = (math.toRadians(home.latitudeDeg), math.toRadians(latitudeDeg))
     val north      = StrictMath.sin((to - from) / 2)
@@ -109,7 +109,7 @@ object OffboardSetpoint:
     val chord      = north * north + StrictMath.cos(from) * StrictMath.cos(to) * east * east
     2 * GeoLocation.EarthRadiusM * StrictMath.asin(math.sqrt(chord.min(1)))
 
-  /** What who names a place that is far off is told: the vehicle's home, and what sets it. */
+  /** Lines for a sender whose position is too far away: the vehicle's home, and how to set it. */
   private[autopilot] def whereHomeIs(home: GeoLocation): Vector[String] = Vector(
     s"home is ${home.latitudeDeg.fixed(6)}, ${home.longitudeDeg.fixed(6)}",
     "OriginGeopoint in settings.json sets home"
@@ -117,10 +117,10 @@ object OffboardSetpoint:
 
   private val IgnoreAttitude = 128
 
-  /** No vehicle is sent farther, m, or faster, m/s. */
+  /** Greatest position coordinate, m, and greatest speed, m/s, that a setpoint may have. */
   private[autopilot] val Most = 1e5
 
-  /** No vehicle turns faster. */
+  /** Greatest turn rate that a setpoint may have. */
   private val MostTurnRadPerS = 100.0
 
   private def moveOf(
@@ -155,9 +155,9 @@ object OffboardSetpoint:
   extension (move: OffboardSetpoint.Move)
     private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
 
-  /** What the flight controller is told for it.
+  /** Converts a target to the flight controller's setpoint.
     *
-    * @param cruise the fastest that places are flown to
+    * @param cruise the greatest speed towards positions
     */
   def setpoint(target: OffboardSetpoint, motion: VehicleMotion, cruise: MetresPerSecond): Setpoint =
     target match

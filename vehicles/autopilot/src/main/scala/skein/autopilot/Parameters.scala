@@ -10,12 +10,12 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
 
   def all: Vector[Message] = known.map(message)
 
-  /** By its name, or by its place where that is not negative. */
+  /** The message for one parameter: by its name, or by its index if that is not negative. */
   def one(name: String, index: Int): Option[Message] =
     (if index >= 0 then known.lift(index) else known.find(_.name == name)).map(message)
 
-  /** @param value as it stands in a message: the bits of an integer
-    * @return the parameters with it, and what is told; or why not
+  /** @param value as encoded in a message: the bits of an integer
+    * @return the changed parameters and the answer; Left states why not
     */
   def set(name: String, value: Float): Either[String, (Parameters, Message)] =
     known.find(_.name == name) match
@@ -41,7 +41,9 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
       known.indexOf(parameter)
     )
 
-/** @param default in the unit that PX4's reference states
+/** A parameter with its default and range.
+  *
+  * @param default in the unit of PX4's reference
   */
 final case class Parameter(
     name: String,
@@ -55,28 +57,28 @@ object Parameters:
   private val Int32  = 6
   private val Real32 = 9
 
-  /** To which it takes off, m above the ground. */
+  /** Height of a takeoff, m above the ground. */
   val TakeoffAltitude = Parameter("MIS_TAKEOFF_ALT", 2.5, 0.5, 500)
 
-  /** m/s */
+  /** Speeds of flights to positions, of takeoff and of landing, m/s. */
   val Cruise       = Parameter("MPC_XY_CRUISE", 5, 0.5, 20)
   val TakeoffSpeed = Parameter("MPC_TKO_SPEED", 1.5, 0.3, 5)
   val LandSpeed    = Parameter("MPC_LAND_SPEED", 0.7, 0.2, 2)
 
-  /** At which it returns, m above home. */
+  /** Height at which it returns, m above home. */
   val ReturnAltitude = Parameter("RTL_RETURN_ALT", 30, 0, 500)
 
-  /** A waypoint is reached so near, m. */
+  /** A waypoint is reached within this distance, m. */
   val AcceptanceRadius = Parameter("NAV_ACC_RAD", 2, 0.2, 200)
 
-  /** Offboard ends so long after the last setpoint, s. */
+  /** Offboard ends this long after the last setpoint, s. */
   val OffboardLoss = Parameter("COM_OF_LOSS_T", 1, 0.1, 60)
 
-  /** It disarms so long after landing, and where it was armed and does not take off, s; never below 0. */
+  /** It disarms this long after landing, or after arming without a takeoff, s; never below 0. */
   val DisarmLanded    = Parameter("COM_DISARM_LAND", 2, -1, 20)
   val DisarmPreflight = Parameter("COM_DISARM_PRFLT", 10, -1, 600)
 
-  /** Nothing comes of it; ground stations read it. */
+  /** Has no effect; ground stations read it. */
   val Airframe = Parameter("SYS_AUTOSTART", 4001, 4001, 4001, isInteger = true)
 
   val known: Vector[Parameter] = Vector(

@@ -3,12 +3,11 @@ package skein.autopilot
 import skein.mavlink.FlightMode
 import skein.units.GeoLocation
 
-/** What an autopilot tells of itself. */
+/** The part of an autopilot's state that telemetry reports. */
 trait Status:
-  /** 1 to 255 */
+  /** MAVLink's system number, 1 to 255 */
   def system: Int
 
-  /** Where its own frame has its origin. */
   def home: GeoLocation
   def mode: FlightMode
   def isArmed: Boolean

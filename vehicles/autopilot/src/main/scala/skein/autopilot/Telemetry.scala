@@ -3,11 +3,11 @@ package skein.autopilot
 import skein.mavlink.*
 import skein.units.*
 
-/** What an autopilot tells of itself and its vehicle, by the messages' numbers. */
+/** The messages that an autopilot sends of itself and its vehicle, by their numbers. */
 object Telemetry:
   private val boundedInt = (number: Double) => number.max(Int.MinValue).min(Int.MaxValue).round.toInt
 
-  /** How often what is told unasked, about as PX4 does; ms. */
+  /** Intervals of the messages that are sent without a request, similar to PX4's; ms. */
   val intervals: Map[Int, Span] = Map(
     0   -> 1000, // HEARTBEAT
     1   -> 1000, // SYS_STATUS
@@ -25,10 +25,10 @@ object Telemetry:
     331 -> 50    // ODOMETRY
   ).view.mapValues(millis => Span.ofMillis(millis)).toMap
 
-  /** No message is told more often. */
+  /** The shortest interval at which any message is sent. */
   val Shortest: Span = Span.ofMillis(5)
 
-  /** Absent where it is none of its messages. */
+  /** Encodes a message; None where the number is not one of these messages. */
   def of(id: Int, autopilot: Status, motion: VehicleMotion): Option[Message] =
     val state  = motion.state
     val bootMs = motion.sinceBoot.toNanos / 1_000_000
@@ -179,7 +179,7 @@ object Telemetry:
       0
     )
 
-  /** With the number of a PX4 whose interface this follows, and Skein's own vehicle number. */
+  /** Version of the PX4 release whose interface this follows; the unique id is the system number. */
   def version(autopilot: Status): Message =
     // Float and integer missions, commands as integers, setpoints of attitude and in the local frame and of
     // the globe, termination, MAVLink 2.
@@ -204,7 +204,7 @@ object Telemetry:
   private val BatteryMv      = 16_200
   private val BatteryPercent = 100
 
-  /** A covariance that nobody has estimated begins with no number. */
+  /** An unknown covariance: MAVLink marks it by NaN in the first element. */
   private val unknown = Float.NaN +: Vector.fill(20)(0f)
 
   private def degrees(value: Double): Int = boundedInt(value * 1e7)

@@ -3,10 +3,10 @@ package skein.autopilot
 import skein.signal.Kinematics
 import skein.units.Span
 
-/** What an autopilot knows of its vehicle: in a simulator, the truth.
+/** An autopilot's knowledge of its vehicle: in a simulator, the truth.
   *
   * @param sinceBoot its clock
-  * @param state in its own frame, whose origin is where it started
+  * @param state in its own frame, whose origin is its start
   * @param isFlying whether it has taken off and not landed since
   */
 final case class VehicleMotion(sinceBoot: Span, state: Kinematics, isFlying: Boolean)

@@ -5,7 +5,7 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{HorizontalMode, Setpoint, VerticalMode}
 
-/** An autopilot's decisions, one message and one look at the vehicle at a time. */
+/** An autopilot's decisions, one message and one vehicle state at a time. */
 class AutopilotSuite extends munit.FunSuite:
   private val home  = GeoLocation(47.641468, -122.140165, Metres(122))
   private val gcs   = (system = 245, component = 190)
@@ -60,10 +60,7 @@ class AutopilotSuite extends munit.FunSuite:
     assertEquals(rising.flown(at(4, Vector3(0, 0, -1.5), flying = true)).mode, FlightMode.Takeoff)
     assertEquals(inAir.mode, FlightMode.Hold)
 
-  test(
-    "what it refuses is refused with a reason: takeoff unarmed, " +
-      "disarming in the air, a mission that it has not"
-  ):
+  test("refusals have a reason: takeoff unarmed, disarming in the air, a mission that does not exist"):
     for (autopilot, message, motion, why) <- Seq(
         (fresh, takeoff, at(1), "Switching to Takeoff denied: vehicle is disarmed"),
         (inAir, command(400, 0), at(6, flying = true), "Disarming denied: not landed"),
@@ -92,7 +89,7 @@ class AutopilotSuite extends munit.FunSuite:
     assertEquals(dead.isArmed, false)
     assertEquals(dead.steer(at(6.02, flying = true)).setpoint, Some(Setpoint.Disarmed))
 
-  test("offboard begins only where setpoints come, and ends a second after the last one"):
+  test("offboard begins only while setpoints arrive, and ends a second after the last one"):
     val streaming = inAir.told(velocity(3), at(6, flying = true)).next
     val flying    = streaming.told(offboard, at(6.1, flying = true)).next
     assertEquals(flying.mode, FlightMode.Offboard)
@@ -111,14 +108,14 @@ class AutopilotSuite extends munit.FunSuite:
     val flying  = inAir.told(message, at(6, flying = true)).next.told(offboard, at(6, flying = true)).next
     assertEquals(flying.steer(at(6.02, flying = true)).setpoint, Some(Setpoint.velocityZ(4, 1, -20)))
 
-  test("setpoints that are no numbers, or none at all, are refused and change nothing"):
+  test("setpoints of NaN, and empty ones, are refused and change nothing"):
     val streaming = inAir.told(velocity(3), at(6, flying = true)).next
     for bad <- Seq(velocity(Float.PositiveInfinity), velocity(3, 0xfff), velocity(1e9f)) do
       val heard = streaming.told(bad, at(6.1, flying = true))
       assertEquals(heard.next, streaming)
       assertEquals(texts(heard.answers).size, 1)
 
-  test("nobody who does not take off stays armed, and nobody who has landed"):
+  test("a vehicle that does not take off, or has landed, is disarmed"):
     val armed = fresh.told(arm, at(1)).next
     assertEquals(armed.flown(at(10.9)).isArmed, true)
     assertEquals(armed.flown(at(11.1)).isArmed, false)
@@ -146,7 +143,7 @@ class AutopilotSuite extends munit.FunSuite:
       up
     )
 
-  test("a mission comes item by item, is given back as it came, and is flown to its end"):
+  test("a mission is uploaded item by item, read back unchanged, and flown to its end"):
     val items   = Vector(item(0, 16, 20, 5), item(1, 178, 0, 0).copy(param2 = 2), item(2, 16, 40, 5))
     val counted = inAir.told(MissionCount(1, 1, 3), at(6, flying = true))
     assertEquals(counted.answers, Vector(MissionRequestInt(245, 190, 0)))
@@ -169,7 +166,7 @@ class AutopilotSuite extends munit.FunSuite:
       (FlightMode.Hold, Vector("Mission finished, loitering"))
     )
 
-  test("an item that does not come is asked for again, ten times; one that cannot be flown is refused"):
+  test("a missing item is requested again, ten times; one that cannot be flown is refused"):
     val counted    = inAir.told(MissionCount(1, 1, 2), at(6, flying = true)).next
     val (heard, _) = counted.steer(at(6.3, flying = true))
     assertEquals(heard.news, Vector(MissionRequestInt(245, 190, 0)))
@@ -183,7 +180,7 @@ class AutopilotSuite extends munit.FunSuite:
       Vector(MissionAck(245, 190, 4))
     )
 
-  test("what is far from home is refused, with home and the key that sets it"):
+  test("a position far from home is refused, with home and the setting that changes it"):
     val zurich  = (latitude = 473_977_420, longitude = 85_455_940)
     val item    = this.item(0, 16, 20, 5).copy(x = zurich.latitude, y = zurich.longitude)
     val mission =
@@ -203,11 +200,11 @@ class AutopilotSuite extends munit.FunSuite:
     val held = inAir.told(MissionCount(1, 1, 1), at(6, flying = true)).next.told(here, at(6, flying = true))
     assertEquals(held.answers, Vector(MissionAck(245, 190, 0)))
 
-  test("it answers TIMESYNC by its own clock, and tells no time that it was not asked for"):
+  test("it answers TIMESYNC by its own clock, and sends no unrequested time"):
     assertEquals(fresh.told(Timesync(0, 77), at(2)).answers, Vector(Timesync(2_000_000_000L, 77)))
     assertEquals(fresh.told(Timesync(5, 77), at(2)).answers, Vector.empty)
 
-  test("parameters are listed, set within their limits, and integers stand in a number's bits"):
+  test("parameters are listed, set within their limits, and integers are encoded in a number's bits"):
     assertEquals(fresh.told(ParamRequestList(1, 1), at(1)).answers.size, Parameters.known.size)
     val set = fresh.told(ParamSet(1, 1, "MIS_TAKEOFF_ALT", 7, 9), at(1)).next
     assertEquals(set.parameters(Parameters.TakeoffAltitude), 7.0)

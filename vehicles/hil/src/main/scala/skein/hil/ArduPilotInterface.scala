@@ -5,13 +5,13 @@ import java.nio.{ByteBuffer, ByteOrder}
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** ArduPilot's interface to simulators in JSON (its `SIM_JSON`): a datagram with the servos' pulses comes,
-  * physics runs on by one frame, and a line with the state goes back. So ArduPilot sets the pace. It is told
-  * the truth, and adds its sensors' errors itself; the inertial sensors have ours as well.
+/** ArduPilot's JSON interface to simulators (its `SIM_JSON`): a datagram with the servos' pulses arrives,
+  * physics advances by one frame, and a line with the state is returned. So ArduPilot sets the pace. It
+  * receives the truth and adds its sensors' errors itself; the inertial sensors have ours as well.
   *
-  * A frame lasts as long as ArduPilot says, in whole milliseconds. One that is repeated, because its answer
-  * was lost, gets the same answer. While it was given up physics runs by the clock, and it is told the state
-  * as often as it asks.
+  * A frame lasts as long as ArduPilot states, in whole milliseconds. A repeated frame, whose answer was lost,
+  * gets the same bytes again. While ArduPilot is given up, physics follows the clock, and every request is
+  * answered with the current state.
   *
   * @param before how often an autopilot of this vehicle was given up before
   */
@@ -58,7 +58,7 @@ final class ArduPilotInterface(sensors: Sensors, from: Span, before: Int = 0) ex
   def isByClock: Boolean = !trust.isGiven
   def losses: Int        = trust.losses
 
-  /** Where it has not asked there is nothing to be told. */
+  /** Without a request no state is due. */
   def stop(until: Span): Span = if hasToAsk then until + LongestFrame else due
   def damaged: Long           = notRead
 
@@ -79,10 +79,10 @@ final class ArduPilotInterface(sensors: Sensors, from: Span, before: Int = 0) ex
     answered
 
 object ArduPilotInterface:
-  /** Of the first vehicle; each further one's is ten higher. */
+  /** The first vehicle's port; each further vehicle's is ten higher. */
   val Port = 9002
 
-  /** Whether a datagram is one of its frames. */
+  /** Whether a datagram is one of ArduPilot's frames. */
   private[hil] def isFrame(bytes: Array[Byte]): Boolean =
     bytes.length >= HeaderLength && {
       val magic = (bytes(0) & 0xff) | (bytes(1) & 0xff) << 8
@@ -91,10 +91,10 @@ object ArduPilotInterface:
 
   private val HeaderLength = 8
 
-  /** Pulses for so many servos follow. */
+  /** Number of servos by the frame's magic number. */
   private val ServosByMagic = Map(18458 -> 16, 29569 -> 32)
 
-  /** Of a rotor that stands, and of one that runs at full speed, µs. */
+  /** Pulses of a rotor at rest and at full speed, µs. */
   private val LeastPulse = 1000.0
   private val MostPulse  = 2000.0
 

@@ -3,22 +3,21 @@ package skein.hil
 import skein.mavlink.FrameReader
 import skein.units.Span
 
-/** Autopilots whose interface the simulator speaks. */
+/** Autopilots whose simulator interfaces are supported. */
 enum AutopilotKind(val label: String):
   /** PX4's simulator interface, MAVLink in lockstep. */
   case Px4 extends AutopilotKind("px4")
 
-  /** ArduPilot's JSON interface. */
   case ArduPilot extends AutopilotKind("ardupilot")
 
-  /** The interface of Betaflight's SITL. */
+  /** The simulator interface of Betaflight's SITL. */
   case Betaflight extends AutopilotKind("betaflight")
 
-  /** One vehicle's.
+  /** One vehicle's interface.
     *
     * @param system its number, from 1
     * @param from when it begins
-    * @param speed of the simulator's clock against the real one
+    * @param speed of the simulator's clock relative to the real one
     * @param losses how often an autopilot of this vehicle was given up before
     */
   def interface(
@@ -32,7 +31,7 @@ enum AutopilotKind(val label: String):
     case ArduPilot  => ArduPilotInterface(sensors, from, losses)
     case Betaflight => BetaflightInterface(sensors, from, speed)
 
-  /** Whether a datagram, or a piece of a stream, holds a message of it. */
+  /** Whether a datagram, or a piece of a stream, contains one of its messages. */
   def speaks(bytes: Array[Byte]): Boolean = this match
     case Px4        => FrameReader.isSpoken(bytes)
     case ArduPilot  => ArduPilotInterface.isFrame(bytes)

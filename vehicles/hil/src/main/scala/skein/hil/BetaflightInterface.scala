@@ -5,19 +5,19 @@ import skein.units.*
 import skein.vehicle.Setpoint
 
 /** The interface of Betaflight's SITL (its `fdm_packet` and `servo_packet`, 4.6): a datagram with the
-  * vehicle's state every 2 ms, one with four rotors' controls back. Nobody waits for the other, so what is
-  * late is left out, not made up for.
+  * vehicle's state every 2 ms, one with four rotors' controls back. Neither side waits for the other; late
+  * data is dropped.
   *
-  * Betaflight takes the rate of its clock from the difference of two states' times over that of when they
-  * come, which for two that come close together is a hundredfold (`updateState` in its `sitl.c`). Where their
-  * times are equal it keeps the rate that it has, at first the real clock's. So all states are told of one
-  * time. At another speed than the real clock's, the rate is told once, by two states far apart, as soon as
-  * Betaflight is heard.
+  * Betaflight estimates its clock rate as the difference of two states' times over that of their arrivals,
+  * which for two that arrive close together is a hundredfold too large (`updateState` in its `sitl.c`). Where
+  * their times are equal it keeps its rate, at first the real clock's. So all states carry one constant time.
+  * At another speed than the real clock's, the rate is conveyed once, by two states far apart, as soon as
+  * Betaflight has sent a message.
   *
-  * Gyroscope, accelerometer and barometer have their errors; the attitude is the truth, which Betaflight
-  * takes from the simulator.
+  * Gyroscope, accelerometer and barometer have their errors; the attitude, which Betaflight takes from the
+  * simulator, is the truth.
   *
-  * @param speed of the simulator's clock against the real one
+  * @param speed of the simulator's clock relative to the real one
   */
 final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1) extends AutopilotInterface:
   import AutopilotInterface.Step
@@ -40,7 +40,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
     else
       val values = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
       controls = AutopilotInterface.rotors(Vector.fill(4)(values.getFloat().toDouble))
-      // It may have been started anew.
+      // It may have been restarted.
       if speed != 1 && heardAt.forall(before => up - before > silence) then rateDue = true
       heardAt = Some(up)
     Vector.empty
@@ -64,16 +64,16 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
     val packet   = ByteBuffer.allocate(StateLength).order(ByteOrder.LITTLE_ENDIAN)
     packet.putDouble(told.toSeconds)
     put(packet, rates.x, rates.y, rates.z)
-    // What it measures, with x to the front, y to the left and z up, and then the sign turned.
+    // The measured values, with x to the front, y to the left and z up, and then negated.
     put(packet, -force.x, force.y, force.z)
-    // Betaflight's own axes are others, but for the SITL it turns the signs (`imuComputeRotationMatrix`).
+    // Betaflight's own axes differ, but for the SITL it swaps the signs (`imuComputeRotationMatrix`).
     put(packet, turn.w, turn.x, turn.y, turn.z)
     put(packet, velocity.y, velocity.x, -velocity.z)
     put(packet, truth.place.longitudeDeg, truth.place.latitudeDeg, truth.place.altitude.value)
     put(packet, sensors.pressurePa(truth))
     Vector(packet.array)
 
-  /** When the state after that of `up` is due, where need be with the clock's rate. */
+  /** When the next state after `up` is due, including states that convey the clock rate. */
   private def nextAfter(up: Span): Span =
     for first <- rateFrom do
       rateFrom = None
@@ -88,26 +88,25 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
   private def put(to: ByteBuffer, values: Double*): Unit = values.foreach(to.putDouble)
 
 object BetaflightInterface:
-  /** Where it sends the rotors' controls, on the simulator's machine. */
+  /** The port on the simulator's machine to which it sends the rotors' controls. */
   val Port = 9002
 
-  /** Where it takes the state. */
+  /** The port on which it receives the state. */
   val StatePort = 9003
 
   private val Period = Span.ofMillis(2)
 
-  /** Of real time. */
+  /** Silence after which it counts as gone, s of real time. */
   private val SilenceS = 0.25
 
-  /** Two states that tell the clock's rate: the farther apart, the less it matters that they come a little
-    * late.
+  /** Distance of the two states that convey the clock rate: the farther apart, the less their delay matters.
     */
   private val ApartMs = 15
 
-  /** Betaflight takes no rate from states that are so far apart. */
+  /** Betaflight derives no rate from states this far apart. */
   private val TooFarApart = Span.ofMillis(20)
 
-  /** Nor from a state that comes half a second of real time after the last. */
+  /** Nor from a state that arrives half a second of real time after the last. */
   private val MostApartRealMs = 400
 
   private[hil] def isPacket(bytes: Array[Byte]): Boolean = bytes.length == ServoLength

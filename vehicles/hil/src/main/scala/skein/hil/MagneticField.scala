@@ -4,12 +4,12 @@ import skein.units.{GeoLocation, Vector3}
 
 /** The Earth's magnetic field: the International Geomagnetic Reference Field of its 13th generation (Alken et
   * al., Earth, Planets and Space 73:49, 2021) at its epoch 2020, up to degree 6, on a spherical Earth at sea
-  * level. Autopilots correct their heading by such a model: a dipole's direction is off by tens of degrees.
-  * This one is off by some 2° where people live, and by 0.02 gauss (`MagneticFieldSuite`).
+  * level. Autopilots correct their heading by such a model; a dipole's direction errs by tens of degrees.
+  * This one errs by some 2° where people live, and by 0.02 gauss (`MagneticFieldSuite`).
   */
 object MagneticField:
 
-  /** NED, gauss. At the poles themselves, where there is no north, that of 1 m beside them. */
+  /** The field at a place: NED, gauss. At the poles, where north is undefined, the field 1 m beside them. */
   def ned(place: GeoLocation): Vector3 =
     val colatitude = math.toRadians(90 - place.latitudeDeg).max(1e-7).min(math.Pi - 1e-7)
     val longitude  = math.toRadians(place.longitudeDeg)
@@ -46,10 +46,10 @@ object MagneticField:
 
   private val GaussPerNanotesla = 1e-5
 
-  /** The model's sphere over the Earth's. */
+  /** Radius of the model's sphere over the Earth's. */
   private val RadiusRatio = 6371.2e3 / GeoLocation.EarthRadiusM
 
-  /** g and h, nT, for m from 0 to n, for n from 1. */
+  /** The coefficients g and h, nT: for n from 1, each for m from 0 to n. */
   private val Coefficients: Vector[(Double, Double)] = Vector(
     (-29404.8, 0),
     (-1450.9, 4652.5),

@@ -7,19 +7,18 @@ import skein.vehicle.{Airframe, Setpoint}
 
 /** PX4's simulator interface (its `simulator_mavlink`; the simulator listens, PX4 connects by TCP):
   * HIL_SENSOR at 250 Hz, HIL_GPS at 8 Hz, SYSTEM_TIME once a second, and HIL_STATE_QUATERNION as often as PX4
-  * asks. PX4's clock is the time of the first sensors; it answers each with HIL_ACTUATOR_CONTROLS and waits
-  * for the next.
+  * requests. PX4's clock is the time of the first sensors; it answers each HIL_SENSOR with
+  * HIL_ACTUATOR_CONTROLS and waits for the next.
   *
-  * Until the first answer physics runs by the clock, for PX4 starts by the sensors' time. From then on, as
-  * long as the answers say that PX4 runs in lockstep, physics waits for the answer to the newest sensors: PX4
-  * tells their time in it. What was sent before the first answer is answered, too, and later; were each
-  * answer taken for the newest sensors', PX4's controls would be late by all of that for the rest of the
-  * flight.
+  * Until the first answer physics follows the clock, because PX4 starts by the sensors' time. From then on,
+  * as long as the answers state lockstep, physics waits for the answer to the newest sensors, whose time it
+  * carries. Sensors sent before the first answer are answered too, later; if each answer counted for the
+  * newest sensors, PX4's controls would lag by all of these for the rest of the flight.
   *
-  * One that is silent, or whose answers have other times, is given up: it is not waited for until it has
-  * answered for a second in time, and for longer each further time ([[Trust]]).
+  * A PX4 that is silent, or whose answers carry other times, is given up: it is not waited for until it has
+  * answered in time for a second, and for longer each further time ([[Trust]]).
   *
-  * @param system the number that frames are sent under
+  * @param system the system number of sent frames
   * @param before how often an autopilot of this vehicle was given up before
   */
 final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int = 0)
@@ -78,7 +77,7 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
 
-  /** While it catches up it is waited for, within reason. */
+  /** An autopilot that catches up is waited for, a bounded number of times. */
   def giveUp(): Unit =
     if catchesUp && postponed < MostPostponed then postponed += 1
     else
@@ -163,7 +162,7 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
 
   private def state(truth: SensorTruth): Option[Message] =
     stateInterval.filter(_ => stateDue <= truth.up).map: interval =>
-      // What was late is not made up for.
+      // Late messages are not made up for.
       stateDue = if stateDue + interval > truth.up then stateDue + interval else truth.up + interval
       val seen         = truth.kinematics
       val turn         = seen.orientation
@@ -192,48 +191,47 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
     SystemTime(truth.at.toNanos / 1000, truth.up.toNanos / 1_000_000)
 
 object Px4Interface:
-  /** Between two HIL_SENSOR. */
+  /** Interval of HIL_SENSOR messages. */
   val Period: Span = Span.ofMillis(4)
 
-  /** Of the first vehicle; each further one's is one higher. */
+  /** The first vehicle's port; each further vehicle's is one higher. */
   val Port = 4560
 
-  /** That of PX4's plugin for Gazebo. */
+  /** MAVLink's component number, as in PX4's plugin for Gazebo. */
   private val Component = 200
 
   private val LockstepFlag = 1L
 
-  /** Answers that are later than this are not in time, where time does not wait. */
+  /** While physics does not wait, an answer later than this does not count as in time. */
   private val MostLateTicks = 25
   private val PeriodUsec    = Period.toNanos / 1000
   private val MostLateUsec  = MostLateTicks * PeriodUsec
 
-  /** Times that one that catches up is waited for again. */
+  /** How often an autopilot that catches up is waited for again. */
   private val MostPostponed = 10
 
   private val StateId = 115
 
-  /** Magnetometer and barometer at 50 Hz, as AirSim's. */
+  /** Magnetometer and barometer at 50 Hz, as in AirSim. */
   private val TicksPerSlowReading = 5
 
-  /** As PX4's own simulated receiver. */
+  /** Interval of satellite fixes, as in PX4's simulated receiver. */
   private val FixInterval = Span.ofMillis(125)
 
-  /** What PX4's estimator takes for granted (`EKF2_GPS_DELAY`). */
+  /** The latency that PX4's estimator assumes (`EKF2_GPS_DELAY`). */
   private val FixLatency = Span.ofMillis(110)
 
-  /** After the beginning, as AirSim's. */
+  /** Time of the first satellite fix, as in AirSim. */
   private val FirstFix = Span.ofSeconds(1)
 
   private val SystemTimeInterval = Span.ofSeconds(1)
 
-  /** Bits of HIL_SENSOR's `fieldsUpdated`. */
   private object Updated:
     val Inertial = 0x3fL
     val Magnetic = 0x1c0L
     // Pressure, altitude by pressure, temperature.
     val Pressure = 0x1a00L
-    // The vehicle was put elsewhere: estimators begin anew.
+    // The vehicle was moved: estimators must restart.
     val Reset = 0x80000000L
 
   private def micros(up: Span): Long = up.toNanos / 1000
@@ -242,6 +240,6 @@ object Px4Interface:
 
   private def short(value: Double): Int = math.round(value.max(-32767).min(32767)).toInt
 
-  /** m, of the International Standard Atmosphere (ISO 2533). */
+  /** Altitude of a pressure, m, by the International Standard Atmosphere (ISO 2533). */
   private def pressureAltitudeM(pressurePa: Double): Double =
     288.15 / 0.0065 * (1 - StrictMath.pow(pressurePa / 101325, 0.190263))

@@ -1,9 +1,9 @@
 package skein.hil
 
-/** How far sensors are off: white noise, and biases that wander. Defaults are AirSim's for inertial sensors,
+/** Sensor errors: white noise, and biases that drift. Defaults are AirSim's for inertial sensors,
   * magnetometer and barometer (`ImuSimpleParams`, an MPU-6000; `MagnetometerSimpleParams`;
-  * `BarometerSimpleParams`, an MS5611) and PX4's for satellite positioning (its `sensor_gps_sim`): what the
-  * estimators of autopilots are flown with in simulation.
+  * `BarometerSimpleParams`, an MS5611) and PX4's for satellite positioning (its `sensor_gps_sim`): the values
+  * against which autopilots' estimators are tested in simulation.
   *
   * @param gyroRadpsPerRootHz white noise of the gyroscope, rad/s/√Hz: 0.3°/√h
   * @param gyroBiasRadpsPerRootS random walk of its bias, rad/s/√s: 4.6°/h over the root of 500 s
@@ -31,5 +31,5 @@ final case class SensorNoise(
 )
 
 object SensorNoise:
-  /** Sensors that show the truth. */
+  /** Sensors without errors: every reading is the truth. */
   val None: SensorNoise = SensorNoise(0, 0, 0, 0, 0, 0, 0, 0, 0)

@@ -4,16 +4,16 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.Airframe
 
-/** What a vehicle's sensors would show if they were without error.
+/** Error-free readings of a vehicle's sensors.
   *
   * @param at on the simulator's clock
-  * @param up since the simulator's start: the time that autopilots are told
+  * @param up since the simulator's start: the clock of autopilots
   * @param kinematics in the vehicle's own NED frame, whose origin is its start
   * @param accelerationNed m/s², zero for a vehicle at rest
   * @param place where it is on the globe
   * @param pressurePa of the air, Pa
   * @param temperatureK of the air, K
-  * @param jumped whether it was put elsewhere, or back to its start, since its sensors were read last
+  * @param jumped whether it was moved to another place, or back to its start, since the last sensor reading
   */
 final case class SensorTruth(
     at: Instant,
@@ -25,6 +25,6 @@ final case class SensorTruth(
     temperatureK: Double,
     jumped: Boolean = false
 ):
-  /** What an accelerometer measures, FRD, m/s²: (0, 0, −9.81) at rest. */
+  /** Specific force as an accelerometer measures it, FRD, m/s²: (0, 0, −9.81) at rest. */
   def specificForceFrd: Vector3 =
     kinematics.orientation.toBody(accelerationNed - Vector3(0, 0, Airframe.Gravity))

@@ -3,8 +3,8 @@ package skein.hil
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.units.*
 
-/** The sensors of one vehicle, with their errors. Readings depend on the seed and on what was read before;
-  * equal seeds and equal truths give equal readings. Not thread-safe.
+/** The sensors of one vehicle, with their errors. Readings depend on the seed and on earlier readings; equal
+  * seeds and equal truths give equal readings. Not thread-safe.
   */
 final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
   import Sensors.*
@@ -17,7 +17,7 @@ final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
   private var velocityOff  = Vector3.Zero
   private var pressureRead = Option.empty[Instant]
 
-  /** What gyroscope and accelerometer show on the average over `periodS`, s. */
+  /** Gyroscope and accelerometer readings, averaged over `periodS`, s. */
   def inertial(truth: SensorTruth, periodS: Double): Inertial =
     val root = math.sqrt(periodS)
     gyroBias = gyroBias + normal3(noise.gyroBiasRadpsPerRootS * root)
@@ -27,11 +27,11 @@ final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
       truth.kinematics.angularVelocityFrd + gyroBias + normal3(noise.gyroRadpsPerRootHz / root)
     )
 
-  /** The magnetic field, FRD, gauss. */
+  /** A magnetometer reading of the field, FRD, gauss. */
   def magneticFrd(truth: SensorTruth): Vector3 =
     truth.kinematics.orientation.toBody(MagneticField.ned(truth.place)) + normal3(noise.magneticGauss)
 
-  /** Pa */
+  /** A barometer reading of the air pressure, Pa. */
   def pressurePa(truth: SensorTruth): Double =
     val keep = StrictMath.exp(-pressureRead.fold(Span.Zero)(before =>
       truth.at.since(before)
@@ -40,7 +40,7 @@ final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
     pressureRead = Some(truth.at)
     truth.pressurePa + drift + normal(noise.pressurePa)
 
-  /** A satellite fix of now. */
+  /** A satellite fix of the current position and velocity. */
   def fix(truth: SensorTruth): Fix =
     positionOff = positionOff * PositionKept + scaled(normal3(noise.positionM), 1.5)
     velocityOff = velocityOff * VelocityKept + scaled(normal3(noise.velocityMps), 1.2)
@@ -49,7 +49,7 @@ final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
   private def scaled(v: Vector3, vertically: Double) = Vector3(v.x, v.y, v.z * vertically)
 
   private def normal3(deviation: Double) =
-    // In this order, whatever the compiler makes of arguments.
+    // Evaluated in this order, independent of the compiler's order of arguments.
     val x = normal(deviation)
     val y = normal(deviation)
     Vector3(x, y, normal(deviation))
@@ -59,10 +59,12 @@ final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
     deviation * NormalQuantile(random.nextDouble().max(1e-17))
 
 object Sensors:
-  /** m/s² and rad/s, FRD. */
+  /** Readings of accelerometer and gyroscope: m/s² and rad/s, FRD. */
   final case class Inertial(specificForceFrd: Vector3, angularVelocityFrd: Vector3)
 
-  /** @param velocityNed m/s
+  /** A satellite fix.
+    *
+    * @param velocityNed m/s
     */
   final case class Fix(at: Instant, place: GeoLocation, velocityNed: Vector3)
 

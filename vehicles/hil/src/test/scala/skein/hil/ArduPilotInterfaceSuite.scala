@@ -7,7 +7,7 @@ import skein.units.*
 import skein.vehicle.Setpoint
 
 object ArduPilotInterfaceSuite:
-  /** As ArduPilot sends it. */
+  /** A datagram with servo pulses, encoded as by ArduPilot. */
   def servos(frame: Long, rate: Int, pulses: Seq[Int], magic: Int = 18458, count: Int = 16): Array[Byte] =
     val packet = ByteBuffer.allocate(8 + 2 * count).order(ByteOrder.LITTLE_ENDIAN)
     packet.putShort(magic.toShort).putShort(rate.toShort).putInt(frame.toInt)
@@ -22,7 +22,7 @@ class ArduPilotInterfaceSuite extends munit.FunSuite:
 
   private val hover = Seq(1500, 1250, 2300, 900)
 
-  test("physics waits for the servos, runs on by a frame in whole milliseconds, and answers in a line"):
+  test("physics waits for the servos, advances by a frame in whole milliseconds, and answers in a line"):
     for (rate, millis) <- Seq(1200 -> 1, 400 -> 3, 250 -> 4, 50 -> 20, 1 -> 20, 0 -> 20, 65535 -> 1) do
       val one = interface
       assert(one.isWaiting)
@@ -42,7 +42,7 @@ class ArduPilotInterfaceSuite extends munit.FunSuite:
     assert(told.contains(""""attitude":[0.0,0.0,0.0]"""), told)
     assert(one.isWaiting)
 
-  test("a frame that comes again gets the same answer, and nothing runs"):
+  test("a repeated frame gets its first answer again, and physics does not advance"):
     val one = interface
     one.hear(servos(4, 1000, hover), Span.Zero)
     val answer = one.sense(atRest(Span.ofMillis(1)))
@@ -51,7 +51,7 @@ class ArduPilotInterfaceSuite extends munit.FunSuite:
     one.hear(servos(0, 1000, hover), Span.ofMillis(1))
     assert(!one.isWaiting, "ArduPilot has started again")
 
-  test("packets of 32 servos are read, what is none of either is counted and moves nothing"):
+  test("packets of 32 servos are read, invalid ones are counted and move nothing"):
     val one = interface
     one.hear(servos(0, 1000, hover, magic = 29569, count = 32), Span.Zero)
     assert(!one.isWaiting)

@@ -16,7 +16,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     controls.foreach(packet.putFloat)
     packet.array
 
-  test("the state is due every 2 ms; what is late is left out"):
+  test("the state is due every 2 ms; missed ones are left out"):
     val one = interface
     assertEquals(one.stop(Span.Zero), Span.ofMillis(5))
     assertEquals(one.stop(Span.ofMillis(20.4)), Span.ofMillis(20))
@@ -24,7 +24,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     assertEquals(one.stop(Span.ofMillis(20.4)), Span.ofMillis(22))
     assert(!one.isWaiting && one.isByClock)
 
-  test("the state is told in Betaflight's frames"):
+  test("the state is sent in Betaflight's frames"):
     val truth = atRest(Span.ofMillis(5)).copy(
       kinematics = Kinematics(
         Vector3(1, 2, -3),
@@ -46,7 +46,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
       ByteBuffer.wrap(interface.sense(atRest(Span.ofMillis(5))).head).order(ByteOrder.LITTLE_ENDIAN)
     assertEquals(resting.getDouble(6 * 8), -9.80665)
 
-  test("Betaflight reads the attitude as it is: roll to the right, nose down, heading clockwise"):
+  test("Betaflight reads the true attitude: roll to the right, nose down, heading clockwise"):
     val random = Random(11)
     for _ <- 1 to 200 do
       def one()  = random.nextGaussian()
@@ -56,7 +56,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
       val told   = ByteBuffer.wrap(packet).order(ByteOrder.LITTLE_ENDIAN)
       val (w, x) = (told.getDouble(7 * 8), told.getDouble(8 * 8))
       val (y, z) = (told.getDouble(9 * 8), told.getDouble(10 * 8))
-      // As imuComputeRotationMatrix and imuUpdateEulerAngles have it where the simulator gives the attitude.
+      // The formulas of imuComputeRotationMatrix and imuUpdateEulerAngles for a simulated attitude.
       val (m00, m10) = (1 - 2 * (y * y + z * z), -2 * (x * y + w * z))
       val m20        = -2 * (x * z - w * y)
       val (m21, m22) = (2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
@@ -64,7 +64,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
       assertEqualsDouble(math.Pi / 2 - math.acos(-m20), -turn.pitchRad, 1e-7)
       assertEqualsDouble(-math.atan2(m10, m00), turn.yawRad, 1e-9)
 
-  /** What it tells, and when: its due states up to a time, with the vehicle at rest. */
+  /** The due states up to a time with their send times, for a vehicle at rest. */
   private def states(one: BetaflightInterface, from: Int, until: Int): Vector[(upMs: Long, toldMs: Long)] =
     Iterator
       .iterate(one.stop(Span.ofMillis(from)))(up => one.stop(up + Span.ofMillis(1)))
@@ -74,12 +74,12 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
         (upMs = up.toNanos / 1_000_000, toldMs = (packet.getDouble * 1000).round)
       .toVector
 
-  test("at the real clock's speed Betaflight's time stands still, so that it keeps the real clock"):
+  test("at the real clock's speed the sent time is constant, so that Betaflight keeps the real clock"):
     val one = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero)
     one.hear(servos(0, 0, 0, 0), Span.ofMillis(3))
     assertEquals(states(one, 4, 100).map(_.toldMs).distinct, Vector(0L))
 
-  test("at another speed two states tell its clock's rate, each time that it is heard anew"):
+  test("at another speed two states convey the clock's rate, each time that Betaflight starts to send"):
     val one   = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero, 0.5)
     val heard = servos(0, 0, 0, 0)
     assertEquals(states(one, 1, 50).map(_.toldMs).distinct, Vector(0L), "it may not be there")
@@ -92,13 +92,13 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     one.hear(heard, Span.ofMillis(540))
     assertEquals(states(one, 541, 600).map(_.toldMs).distinct, Vector(15L, 30L))
 
-  test("two states that come too far apart tell no rate, and the next two do"):
+  test("two states too far apart convey no rate, and the next two do"):
     val one = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero, 0.5)
     one.hear(servos(0, 0, 0, 0), Span.ofMillis(3))
     assertEquals(states(one, 4, 4).map(_.toldMs), Vector(0L))
     assertEquals(states(one, 30, 50), Vector((30L, 0L), (45L, 15L), (47L, 15L), (49L, 15L)))
 
-  test("controls are taken as they come, between 0 and 1; of any other length they are counted"):
+  test("controls are applied as received, clamped to 0 to 1; datagrams of another length are counted"):
     val one = interface
     one.hear(servos(0.5f, Float.NaN, 2, -1), Span.Zero)
     assertEquals(one.rotors, Setpoint.rotors(0.5, 0, 1, 0))

@@ -13,13 +13,13 @@ class MagneticFieldSuite extends munit.FunSuite:
     (-80.0, 240.0, Vector3(5940.6, 15772.1, -52480.8))
   )
 
-  test("it is off the World Magnetic Model's test values by less than 0.02 gauss"):
+  test("the field deviates from the World Magnetic Model's test values by less than 0.02 gauss"):
     for (latitude, longitude, nanotesla) <- published do
       val field = MagneticField.ned(GeoLocation(latitude, longitude, Metres(0)))
       val off   = (field - nanotesla * 1e-5).norm
       assert(off < 0.02, s"at $latitude, $longitude: $field, off by $off gauss")
 
-  test("it is finite everywhere, the poles included"):
+  test("the field is finite everywhere, including the poles"):
     for latitude <- -90 to 90 by 10; longitude <- -180 to 180 by 20 do
       val field = MagneticField.ned(GeoLocation(latitude, longitude, Metres(0)))
       assert(field.norm > 0.2 && field.norm < 0.7, s"at $latitude, $longitude: $field")

@@ -16,7 +16,6 @@ class Px4InterfaceSuite extends munit.FunSuite:
     def say(message: Message): Unit =
       assertEquals(interface.hear(writer.write(message), Span.Zero), Vector.empty)
 
-    /** The next stop. */
     def tick(): Vector[Message] =
       val up = interface.stop(Span.Zero)
       sensedUsec = up.toNanos / 1000
@@ -24,7 +23,6 @@ class Px4InterfaceSuite extends munit.FunSuite:
 
     private var sensedUsec = 0L
 
-    /** Answers the newest sensors. */
     def answers(flags: Long = 1): Unit = say(answer(sensedUsec, 1, flags))
 
     def ticks(seconds: Double): Vector[Message] = Vector.fill((seconds * 250).toInt)(tick()).flatten
@@ -36,7 +34,8 @@ class Px4InterfaceSuite extends munit.FunSuite:
     HilActuatorControls(toUsec, values.toVector, mode, flags)
 
   test(
-    "sensors come every 4 ms of its time, each with accelerometer and gyroscope, a fifth with the slow ones"
+    "sensors are sent every 4 ms of its time, each with accelerometer and gyroscope, a fifth with the " +
+      "slow ones"
   ):
     val sensors = Peer(Span.ofMillis(7)).ticks(1).collect { case one: HilSensor => one }
     assertEquals(sensors.map(_.timeUsec), Vector.tabulate(250)(tick => 8000L + 4000 * tick))
@@ -47,7 +46,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assertEqualsFloat(sensors.last.absPressure, 998.63f, 0.5f)
     assertEqualsFloat(sensors.last.pressureAlt, 122f, 5f)
 
-  test("satellite fixes come eight times a second, a second after the beginning, of 110 ms before"):
+  test("satellite fixes are sent eight times a second, from a second on, 110 ms old"):
     val gps = Peer().ticks(3).collect { case one: HilGps => one }
     assertEquals(gps.size, 16)
     assertEquals((gps.head.fixType, gps.head.vel, gps.head.satellitesVisible), (3, gps.head.vel, 10))
@@ -56,7 +55,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assertEqualsDouble(gps.head.cog.toDouble, 30687, 400)
     assertEquals(gps.head.timeUsec, 1_001_000_000L)
 
-  test("the truth comes as often as it is asked for, and never unasked"):
+  test("the truth is sent as often as requested, and never without a request"):
     val peer               = Peer()
     def states(s: Double)  = peer.ticks(s).collect { case one: HilStateQuaternion => one }
     def ask(micros: Float) = peer.say(CommandLong(0, 0, 511, 0, 115, micros, 0, 0, 0, 0, 0))
@@ -69,7 +68,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     ask(-1)
     assertEquals(states(1).size, 0)
 
-  test("it does not wait before the first answer, then for each, until answers say that nobody waits"):
+  test("it waits for no answer before the first, then for each, until answers state that lockstep has ended"):
     val peer = Peer()
     peer.ticks(2)
     assert(!peer.interface.isWaiting)
@@ -88,7 +87,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     peer.tick()
     assert(!peer.interface.isWaiting)
 
-  test("it waits for the answer to the newest sensors, whatever is answered before"):
+  test("it waits for the answer to the newest sensors, not for earlier ones"):
     val peer   = Peer()
     val sensed = peer.ticks(1).collect { case one: HilSensor => one.timeUsec }
     for (at, count) <- sensed.init.zipWithIndex do
@@ -100,7 +99,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     peer.say(answer(sensed.last, 1, 1))
     assert(!peer.interface.isWaiting)
 
-  test("one that tells other times is waited for once, and then time goes on without it"):
+  test("a PX4 that answers with other times is waited for once, and then time continues without it"):
     val peer = Peer()
     peer.ticks(1)
     peer.say(answer(7, 1, 1))
@@ -112,7 +111,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
       peer.tick()
       peer.say(answer(time, 1, 1))
 
-  test("one that answers once and then never is not waited for again"):
+  test("a PX4 that answers once and then never is not waited for again"):
     val peer = Peer()
     peer.ticks(1)
     peer.say(controls(1, 1))
@@ -124,7 +123,10 @@ class Px4InterfaceSuite extends munit.FunSuite:
       assert(!peer.interface.isWaiting, s"tick $tick")
     assertEquals(peer.interface.losses, 1)
 
-  test("one that was given up is waited for again once it has answered for a second, then for two, in time"):
+  test(
+    "a PX4 that was given up is waited for again once it has answered for a second, then for two, in " +
+      "time"
+  ):
     val peer = Peer()
     peer.say(controls(1, 1))
     for (seconds, loss) <- Seq(1, 2, 4).zipWithIndex do
@@ -136,12 +138,12 @@ class Px4InterfaceSuite extends munit.FunSuite:
         val sensed = peer.tick().collect { case one: HilSensor => one.timeUsec }.head
         if !peer.interface.isWaiting then
           peer.say(answer(sensed, 1, 1))
-          // A second answer to the same sensors is none.
+          // A second answer to these sensors does not count.
           peer.say(answer(sensed, 1, 1))
           answers += 1
       assertEquals(answers, 250 * seconds)
 
-  test("one that answers now and then is not waited for, and what it was is known when it comes again"):
+  test("a PX4 that answers rarely is not waited for, also after it reconnects"):
     val peer = Peer()
     peer.say(controls(1, 1))
     peer.tick()
@@ -157,7 +159,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assert(!again.isWaiting)
 
   for (name, absurd) <- Seq("0" -> 0L, "2^63 - 1" -> Long.MaxValue) do
-    test(s"times of $name hold time up once at most, and with silence behind them it is given up"):
+    test(s"answers with times of $name delay physics at most once, and then silence gives up the autopilot"):
       val peer = Peer()
       peer.ticks(1)
       var waits = 0
@@ -173,7 +175,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
       peer.tick()
       assert(!peer.interface.isWaiting)
 
-  test("rotors turn while it is armed, each between 0 and 1, and stand for what is no number"):
+  test("rotors turn while it is armed, each between 0 and 1, and stop for NaN"):
     val peer = Peer()
     peer.say(controls(1, 1, 0.5f, 0.5f, 0.5f, 0.5f))
     assertEquals(peer.interface.rotors, AutopilotInterface.MotorsOff)
@@ -190,7 +192,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
       frame(random.nextInt(frame.length)) = random.nextInt(256).toByte
       peer.interface.hear(frame.take(1 + random.nextInt(frame.length)), Span.Zero)
     assert(peer.interface.damaged > 1000)
-    // Whatever a damaged one has claimed, these end it.
+    // Enough bytes to end any damaged frame, whatever its stated length.
     for _ <- 1 to 40 do peer.say(controls(129, 1, 0.5f, 0.5f, 0.5f, 0.5f))
     assertEquals(peer.interface.rotors, Setpoint.rotors(0.5, 0.5, 0.5, 0.5))
     assert(peer.ticks(1).nonEmpty)

@@ -6,7 +6,7 @@ import skein.units.*
 object SensorsSuite:
   private[hil] val home = GeoLocation(47.641468, -122.140165, Metres(122))
 
-  /** Of a vehicle at rest, so long after the start. */
+  /** The truth of a vehicle at rest, at a time since the start. */
   private[hil] def atRest(up: Span, velocityNed: Vector3 = Vector3.Zero): SensorTruth = SensorTruth(
     Instant.ofNanos(1_000_000_000_000L) + up,
     up,
@@ -33,7 +33,7 @@ class SensorsSuite extends munit.FunSuite:
     assertEquals(sensors.magneticFrd(truth), MagneticField.ned(home))
     assertEquals(sensors.fix(truth).place, home)
 
-  test("noise is as large as it says, whatever the rate of readings"):
+  test("noise has the stated size, independent of the rate of readings"):
     for rate <- Seq(250, 1000) do
       val noise   = SensorNoise()
       val sensors = Sensors(7)
@@ -55,7 +55,7 @@ class SensorsSuite extends munit.FunSuite:
     val (first, last) = (pressures.take(500).sum / 500, pressures.takeRight(500).sum / 500)
     assert((first - last).abs < 12, s"$first Pa, then $last Pa")
 
-  test("equal seeds give equal readings, others do not"):
+  test("equal seeds give equal readings, different seeds different ones"):
     def shown(seed: Long) =
       val sensors = Sensors(seed)
       Vector.tabulate(100)(tick => sensors.inertial(atRest(Span.ofMillis(4.0 * tick)), 0.004))

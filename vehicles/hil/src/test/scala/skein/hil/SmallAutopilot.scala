@@ -3,10 +3,10 @@ package skein.hil
 import skein.mavlink.*
 import skein.units.*
 
-/** The other side of PX4's simulator interface: an autopilot that knows its sensors alone, arms when it knows
-  * where it is, climbs to its goal and stays there. It answers every HIL_SENSOR once.
+/** The other side of PX4's simulator interface: an autopilot that only uses its sensors, arms once it knows
+  * its position, climbs to its goal and stays there. It answers every HIL_SENSOR once.
   *
-  * @param asksForState as PX4 does
+  * @param asksForState whether it requests the true state, as PX4 does
   */
 final class SmallAutopilot(
     goalNed: Vector3 = Vector3(0, 0, -5),
@@ -20,24 +20,24 @@ final class SmallAutopilot(
 
   val estimator: SmallEstimator = SmallEstimator()
 
-  /** All HIL_SENSOR, with the times that they tell. */
+  /** Times in all received HIL_SENSOR messages. */
   var heard: Vector[Long] = Vector.empty
 
-  /** The newest truth that it was told. */
+  /** The newest received true state of the vehicle. */
   var state: Option[HilStateQuaternion] = None
 
   var isArmed = false
 
-  /** How many of each it was told. */
+  /** Number of received messages by kind. */
   var counts: Map[String, Int] = Map.empty
 
-  /** What it says when it begins. */
+  /** Its first messages on a connection. */
   def greeting: Array[Byte] =
     val state = CommandLong(0, 0, CommonDialect.Command.SetMessageInterval, 0, 115, 5000, 0, 0, 0, 0, 0)
     writer.write(Heartbeat(0, 12, 0, 0, 0, 3)) ++ (if asksForState then writer.write(state)
                                                    else Array.empty[Byte])
 
-  /** Its answer to what came. */
+  /** Its answer to received bytes. */
   def hear(bytes: Array[Byte]): Array[Byte] =
     reader.read(bytes).flatMap(frame => answer(frame.message)).flatMap(writer.write).toArray
 

@@ -3,13 +3,13 @@ package skein.hil
 import skein.units.*
 import skein.vehicle.{Airframe, Atmosphere}
 
-/** The controls of a quadrotor's rotors that hold a place: position, velocity, tilt, rate, each proportional
-  * to the error of the one before; altitude and place with an integral.
+/** Rotor controls of a quadrotor that holds a position: a cascade of position, velocity, tilt and rate, each
+  * proportional to the error of the previous one; altitude and position with an integral.
   */
 final class SmallController(airframe: Airframe = Airframe()):
   private var integral = Vector3.Zero
 
-  /** Front right, rear left, front left, rear right. */
+  /** Rotor controls: front right, rear left, front left, rear right. */
   def rotors(
       goalNed: Vector3,
       positionNed: Vector3,

@@ -3,9 +3,9 @@ package skein.hil
 import scala.collection.mutable
 import skein.units.*
 
-/** What a small autopilot makes of sensors that are off: a complementary filter of attitude (Mahony, Hamel,
-  * Pflimlin, IEEE Transactions on Automatic Control 53, 2008) and one of position and velocity, which take
-  * inertial sensors for what is fast and the others for what is slow.
+/** A small autopilot's estimator for noisy sensors: a complementary filter of attitude (Mahony, Hamel,
+  * Pflimlin, IEEE Transactions on Automatic Control 53, 2008) and one of position and velocity, which use
+  * inertial sensors for fast changes and the others for slow ones.
   */
 final class SmallEstimator:
   import SmallEstimator.*
@@ -24,7 +24,7 @@ final class SmallEstimator:
 
   def orientation: Quaternion = attitude
 
-  /** It has stood long enough to know how, and where. */
+  /** Whether it has stood still long enough to know its attitude and position. */
   def isReady: Boolean = aligned >= Alignment && fixes >= 8
 
   def inertial(specificForceFrd: Vector3, gyroFrd: Vector3, dtS: Double): Unit =
@@ -54,13 +54,13 @@ final class SmallEstimator:
 
   def altitude(aboveSeaM: Double): Unit =
     val zero = ground.getOrElse(aboveSeaM)
-    // As long as it stands, it learns where the ground is.
+    // While it stands still, it learns the ground's altitude.
     ground = Some(if aligned < Alignment then zero + (aboveSeaM - zero) * 0.05 else zero)
     val off = zero - aboveSeaM - positionNed.z
     positionNed = positionNed + Vector3(0, 0, off * 0.02)
     velocityNed = velocityNed + Vector3(0, 0, off * 0.02)
 
-  /** A fix of a while ago. */
+  /** Uses a delayed satellite fix. */
   def fix(place: GeoLocation, velocity: Vector3): Unit =
     val zero = first.getOrElse(place)
     first = Some(zero)
@@ -86,10 +86,10 @@ final class SmallEstimator:
 object SmallEstimator:
   private val G = 9.80665
 
-  /** Readings of the inertial sensors at rest. */
+  /** Number of inertial readings at rest for alignment. */
   private val Alignment = 500
 
-  /** How many readings of the inertial sensors a fix is old. */
+  /** Age of a fix in inertial readings. */
   private val FixTicks = 28
 
   private def cross(a: Vector3, b: Vector3) =

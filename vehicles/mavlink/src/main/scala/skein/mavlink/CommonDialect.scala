@@ -1,10 +1,10 @@
 package skein.mavlink
 
-/** Numbers of the common dialect (mavlink.io, `common.xml`). */
+/** Constants of MAVLink's common dialect (mavlink.io, `common.xml`). */
 object CommonDialect:
   val Autopilot1 = 1
 
-  /** The kind of autopilot in a heartbeat of what is none. */
+  /** A heartbeat's autopilot field when the sender is no autopilot. */
   val NoAutopilot = 8
 
   object Command:
@@ -44,16 +44,16 @@ object CommonDialect:
     val BodyNed           = 8
     val BodyFrd           = 12
 
-  /** Of a text, as syslog has them. */
+  /** Severities of status texts, as in syslog. */
   object Severity:
     val Critical = 2
     val Warning  = 4
     val Info     = 6
 
-  /** In the parameter of a command to arm or disarm: whatever speaks against it. */
+  /** The parameter that makes arming or disarming ignore all checks. */
   val Force = 21196
 
-  /** Of a heartbeat's base mode. */
+  /** Bits of the base mode in a heartbeat. */
   object ModeFlag:
     val Custom     = 1
     val Automatic  = 4
@@ -61,7 +61,7 @@ object CommonDialect:
     val Stabilized = 16
     val Armed      = 128
 
-  /** Bits of a setpoint's mask: what to ignore. */
+  /** Bits of a setpoint's type mask: fields to ignore. */
   object Ignore:
     val X        = 1
     val Y        = 2

@@ -6,8 +6,8 @@ import scala.compiletime.{constValue, constValueTuple}
 import scala.deriving.Mirror
 import scala.reflect.ClassTag
 
-/** One kind of message: its number, its name and how its fields lie in a payload. On the wire the fields are
-  * ordered by the size of their elements, the greatest first, and extensions follow as published.
+/** One kind of message: its number, its name and the layout of its fields in a payload. On the wire the
+  * fields are ordered by the size of their elements, the greatest first, and extensions follow as published.
   */
 final class Definition[A <: Message] private (
     val id: Int,
@@ -17,7 +17,7 @@ final class Definition[A <: Message] private (
     make: Product => A,
     private[mavlink] val of: Class[?]
 ):
-  /** Such as `LOCAL_POSITION_NED`. */
+  /** The published name, such as `LOCAL_POSITION_NED`. */
   val name: String = Definition.snake(label).toUpperCase(java.util.Locale.ROOT)
 
   private val (base, extensions) = fields.indices.toVector.partition(!fields(_).isExtension)
@@ -25,7 +25,9 @@ final class Definition[A <: Message] private (
 
   val length: Int = fields.map(_.length).sum
 
-  /** Two peers whose definitions differ must not understand one another: this goes into every checksum. */
+  /** A hash of the definition that enters every checksum, so that peers with different definitions reject
+    * each other's frames.
+    */
   val crcExtra: Int =
     val described = ordered.foldLeft(Checksum.Start.add(s"$name ".getBytes(US_ASCII))): (sum, index) =>
       val field = fields(index)
@@ -33,14 +35,13 @@ final class Definition[A <: Message] private (
       if field.count == 0 then named else named.add(field.count)
     (described.value & 0xff) ^ (described.value >> 8)
 
-  /** The payload, without the zeros at its end; at least one byte. */
+  /** The payload without trailing zeros; at least one byte. */
   def encode(message: A): Array[Byte] =
     val bytes = ByteBuffer.allocate(length).order(ByteOrder.LITTLE_ENDIAN)
     for index <- ordered ++ extensions do write(fields(index), bytes, message.productElement(index))
     bytes.array.take(bytes.array.lastIndexWhere(_ != 0).max(0) + 1)
 
-  /** Of any bytes: what is missing is zero, what is too much belongs to extensions that are not known here.
-    */
+  /** Decodes any bytes: missing ones count as zero, surplus ones belong to unknown extensions. */
   def decode(payload: Array[Byte]): A =
     val bytes  = ByteBuffer.wrap(payload.padTo(length, 0.toByte)).order(ByteOrder.LITTLE_ENDIAN)
     val values = new Array[Any](fields.size)

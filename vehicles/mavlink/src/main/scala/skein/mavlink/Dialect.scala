@@ -3,7 +3,7 @@ package skein.mavlink
 import skein.mavlink.Definition.define
 import skein.mavlink.Field.*
 
-/** The messages that are known here, all of the common dialect. */
+/** The supported messages, all of the common dialect. */
 object Dialect:
 
   val all: Vector[Definition[? <: Message]] = Vector(
@@ -72,7 +72,7 @@ object Dialect:
   private val byClass: Map[Class[?], Definition[? <: Message]] =
     all.map(definition => definition.of -> definition).toMap
 
-  /** Absent where the number is not known: its checksum cannot be checked then. */
+  /** The definition of a message number; None if it is unknown, and its checksum cannot be verified. */
   def of(id: Int): Option[Definition[? <: Message]] = byId.get(id)
 
   def of[A <: Message](message: A): Definition[A] = byClass(message.getClass).asInstanceOf[Definition[A]]

@@ -4,12 +4,12 @@ import java.nio.ByteBuffer
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.compiletime.ops.int.S
 
-/** How one field of a message lies on the wire, little-endian.
+/** The wire layout of one field of a message, little-endian.
   *
   * @param typeName as in the published definitions
   * @param size of one element, bytes
-  * @param count of elements; 0 where it is no array
-  * @param isExtension whether it came later: such fields lie behind all others and are no part of the
+  * @param count of elements; 0 if it is not an array
+  * @param isExtension whether it is a later addition: such fields follow all others and are not part of the
   *   message's [[Definition.crcExtra]]
   */
 final class Field[A] private (
@@ -24,7 +24,6 @@ final class Field[A] private (
 
   def extension: Field[A] = new Field(typeName, size, count, true, read, write)
 
-  /** `count` consecutive fields of this type. */
   def times[N <: Int & Singleton](count: N): Field.Repeated[N, A] =
     Tuple.fromArray(Array.fill(count)(this)).asInstanceOf[Field.Repeated[N, A]]
 
@@ -47,7 +46,7 @@ object Field:
   def u16s(count: Int): Field[Vector[Int]]   = many(u16, count, 0)
   def f32s(count: Int): Field[Vector[Float]] = many(f32, count, 0f)
 
-  /** Text of at most `count` bytes, ended by a zero if shorter. Longer text is cut. */
+  /** Text of at most `count` bytes, terminated by a zero if shorter. Longer text is cut. */
   def chars(count: Int): Field[String] = new Field(
     "char",
     1,
@@ -66,7 +65,7 @@ object Field:
       write: (ByteBuffer, A) => ByteBuffer
   ): Field[A] = new Field(typeName, size, 0, false, read, (to, value) => write(to, value): Unit)
 
-  /** As many as there are room for; what is missing is zero. */
+  /** An array of `count` elements; missing elements become zero, surplus ones are dropped. */
   private def many[A](element: Field[A], count: Int, zero: A): Field[Vector[A]] = new Field(
     element.typeName,
     element.size,

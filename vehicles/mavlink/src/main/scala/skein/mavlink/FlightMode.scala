@@ -1,6 +1,6 @@
 package skein.mavlink
 
-/** What an autopilot does by itself, with PX4's numbers of its main and sub modes (`px4_custom_mode.h`). */
+/** An autopilot's flight modes, with PX4's numbers of main and sub modes (`px4_custom_mode.h`). */
 enum FlightMode(val main: Int, val sub: Int, val title: String):
   case Takeoff  extends FlightMode(4, 2, "Takeoff")
   case Hold     extends FlightMode(4, 3, "Hold")

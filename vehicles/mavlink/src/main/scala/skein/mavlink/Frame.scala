@@ -1,11 +1,11 @@
 package skein.mavlink
 
-/** A message that came, and from whom.
+/** A received message and its sender.
   *
   * @param system 1 to 255: a vehicle, or a ground station
   * @param component a part of it; 1 is the autopilot
   * @param sequence 0 to 255, one more with every frame of that component
-  * @param isSigned whether it bore a signature that is right
+  * @param isSigned whether it had a valid signature
   */
 final case class Frame(
     system: Int,
@@ -16,7 +16,7 @@ final case class Frame(
 )
 
 object Frame:
-  /** The first byte of every frame of MAVLink 2, and of MAVLink 1. */
+  /** The first byte of every MAVLink 2 frame, and of every MAVLink 1 frame. */
   private[mavlink] val Start         = 0xfd
   private[mavlink] val StartVersion1 = 0xfe
 
@@ -24,7 +24,7 @@ object Frame:
   private[mavlink] val ChecksumLength  = 2
   private[mavlink] val SignatureLength = 13
 
-  /** Of the flags that a receiver must know, the one that is known: a signature follows. */
+  /** The only supported one of the flags that a receiver must understand: a signature follows. */
   private[mavlink] val Signed = 0x01
 
   val MostLength: Int = HeaderLength + 255 + ChecksumLength + SignatureLength

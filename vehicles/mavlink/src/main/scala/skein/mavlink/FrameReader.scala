@@ -2,14 +2,14 @@ package skein.mavlink
 
 import scala.collection.mutable
 
-/** What a reader came upon.
+/** Counts of a reader.
   *
-  * @param frames that were right and known
-  * @param lost that were missing by the numbers of those that came
-  * @param unknown frames of messages that are not known here, and cannot be checked
-  * @param badChecksum what looked like a frame and was none, or was damaged
-  * @param badSignature frames without a signature, with a wrong one, or sent before
-  * @param notUnderstood frames with flags that a receiver must know
+  * @param frames valid frames of known messages
+  * @param lost frames missing by the sequence numbers of those received
+  * @param unknown frames of unknown messages, which cannot be verified
+  * @param badChecksum damaged frames, or other bytes that looked like one
+  * @param badSignature frames without a signature, with a wrong one, or replayed
+  * @param notUnderstood frames with flags that a receiver must understand
   * @param version1 frames of MAVLink 1
   * @param garbageBytes outside of frames
   */
@@ -24,10 +24,10 @@ final case class ReaderCounts(
     garbageBytes: Long = 0
 )
 
-/** Bytes in, frames out; whatever comes, it goes on at the next frame. Holds less than one frame. Not
+/** Decodes bytes to frames; after invalid input it resumes at the next frame. Holds less than one frame. Not
   * thread-safe.
   *
-  * @param signing with it, a frame that is not signed rightly is refused
+  * @param signing with it, a frame without a valid signature is refused
   */
 final class FrameReader(signing: Option[Signing] = None):
   import Frame.*
@@ -54,7 +54,7 @@ final class FrameReader(signing: Option[Signing] = None):
     pending = all.drop(at)
     frames.result()
 
-  /** A datagram: nothing of it belongs to the next. */
+  /** Reads a datagram: its bytes never continue in the next one. */
   def readDatagram(bytes: Array[Byte]): Vector[Frame] =
     val frames = read(bytes)
     counted = counted.copy(garbageBytes = counted.garbageBytes + pending.length)
@@ -121,7 +121,7 @@ final class FrameReader(signing: Option[Signing] = None):
     counted = counted.copy(frames = counted.frames + 1, lost = counted.lost + gap)
 
 object FrameReader:
-  /** Whether these bytes hold a whole frame of a message that is known here, of either version. */
+  /** Whether these bytes contain a whole frame of a known message, of either version. */
   def isSpoken(bytes: Array[Byte]): Boolean =
     val reader = FrameReader()
     reader.read(bytes).nonEmpty || reader.counts.version1 > 0

@@ -1,6 +1,6 @@
 package skein.mavlink
 
-/** Frames of one component, counted. Not thread-safe.
+/** Encodes frames of one component with sequence numbers. Not thread-safe.
   *
   * @param signing without it frames are not signed
   */
@@ -10,7 +10,7 @@ final class FrameWriter(system: Int, component: Int, signing: Option[Signing] = 
 
   private var sequence = 0
 
-  /** The frame's bytes, at most [[Frame.MostLength]]. */
+  /** Encodes a message as a frame of at most [[Frame.MostLength]] bytes. */
   def write(message: Message): Array[Byte] =
     val definition = Dialect.of(message)
     val payload    = definition.encode(message)

@@ -1,13 +1,13 @@
 package skein.mavlink
 
-/** A message of the common dialect. Fields stand in the published order, by their published names; units are
-  * those of the definitions (mavlink.io, `common.xml`), which are not the same everywhere. Unsigned numbers
-  * of up to 32 bits are positive; of 64 bits they are the bits. Fields with a default are extensions, which
-  * older peers do not know.
+/** A message of the common dialect. Fields have the published order and names; units are those of the
+  * definitions (mavlink.io, `common.xml`), which vary from message to message. Unsigned numbers of up to 32
+  * bits are positive; of 64 bits they are the bits. Fields with a default are extensions, which older peers
+  * do not know.
   */
 sealed trait Message extends Product
 
-/** Who it is and what state it is in, once a second. */
+/** Kind, mode and state of the sender, once a second. */
 final case class Heartbeat(
     `type`: Int,
     autopilot: Int,
@@ -17,7 +17,7 @@ final case class Heartbeat(
     mavlinkVersion: Int
 ) extends Message
 
-/** What of it works, and the battery: volts in mV, current in cA, what is left in %. */
+/** Health of sensors, and the battery: volts in mV, current in cA, remaining charge in %. */
 final case class SysStatus(
     onboardControlSensorsPresent: Long,
     onboardControlSensorsEnabled: Long,
@@ -40,7 +40,7 @@ final case class SysStatus(
 /** The sender's clock: µs since 1970, and ms since its start. */
 final case class SystemTime(timeUnixUsec: Long, timeBootMs: Long) extends Message
 
-/** Asks for a parameter, by its name where the index is −1. */
+/** Requests a parameter: by its name if the index is −1. */
 final case class ParamRequestRead(targetSystem: Int, targetComponent: Int, paramId: String, paramIndex: Int)
     extends Message
 
@@ -85,7 +85,7 @@ final case class GpsRawInt(
     yaw: Int = 0
 ) extends Message
 
-/** Roll, pitch, yaw in rad, rates in rad/s. */
+/** Attitude: roll, pitch and yaw in rad, rates in rad/s. */
 final case class Attitude(
     timeBootMs: Long,
     roll: Float,
@@ -96,7 +96,7 @@ final case class Attitude(
     yawspeed: Float
 ) extends Message
 
-/** From body FRD to NED: w, x, y, z; rates in rad/s. */
+/** Rotation from body FRD to NED: w, x, y, z; rates in rad/s. */
 final case class AttitudeQuaternion(
     timeBootMs: Long,
     q1: Float,
@@ -133,7 +133,7 @@ final case class GlobalPositionInt(
     hdg: Int
 ) extends Message
 
-/** Continues the mission at this item. */
+/** Continues the mission at the item with this number. */
 final case class MissionSetCurrent(targetSystem: Int, targetComponent: Int, seq: Int) extends Message
 
 /** The mission item that the vehicle is flying to. */
@@ -148,18 +148,18 @@ final case class MissionRequestList(targetSystem: Int, targetComponent: Int, mis
 final case class MissionCount(targetSystem: Int, targetComponent: Int, count: Int, missionType: Int = 0)
     extends Message
 
-/** Deletes the mission on the vehicle. */
+/** Deletes the mission that is on the vehicle. */
 final case class MissionClearAll(targetSystem: Int, targetComponent: Int, missionType: Int = 0)
     extends Message
 
-/** The vehicle has reached a mission item. */
+/** Reports that the vehicle has reached a mission item. */
 final case class MissionItemReached(seq: Int) extends Message
 
-/** How the transfer of a mission ended; 0 is well. */
+/** The result of a mission transfer; 0 is success. */
 final case class MissionAck(targetSystem: Int, targetComponent: Int, `type`: Int, missionType: Int = 0)
     extends Message
 
-/** Where on the globe the vehicle's local frame has its origin: degrees × 10⁷, mm above the sea. */
+/** The geographic origin of the vehicle's local frame: degrees × 10⁷, mm above the sea. */
 final case class GpsGlobalOrigin(latitude: Int, longitude: Int, altitude: Int, timeUsec: Long = 0)
     extends Message
 
@@ -167,7 +167,7 @@ final case class GpsGlobalOrigin(latitude: Int, longitude: Int, altitude: Int, t
 final case class MissionRequestInt(targetSystem: Int, targetComponent: Int, seq: Int, missionType: Int = 0)
     extends Message
 
-/** An item: a command and a place, degrees × 10⁷ or m × 10⁴. */
+/** A mission item: a command and a position, degrees × 10⁷ or m × 10⁴. */
 final case class MissionItemInt(
     targetSystem: Int,
     targetComponent: Int,
@@ -228,7 +228,7 @@ final case class CommandAck(
     targetComponent: Int = 0
 ) extends Message
 
-/** Attitude (w, x, y, z), body rates and thrust to keep; bits of the mask say what to ignore. */
+/** Attitude (w, x, y, z), body rates and thrust to hold; mask bits name fields to ignore. */
 final case class SetAttitudeTarget(
     timeBootMs: Long,
     targetSystem: Int,
@@ -241,7 +241,7 @@ final case class SetAttitudeTarget(
     thrust: Float
 ) extends Message
 
-/** Position, velocity, acceleration and yaw to keep, SI; bits of the mask say what to ignore. */
+/** Position, velocity, acceleration and yaw to hold, SI; mask bits name fields to ignore. */
 final case class SetPositionTargetLocalNed(
     timeBootMs: Long,
     targetSystem: Int,
@@ -299,13 +299,13 @@ final case class SetPositionTargetGlobalInt(
     yawRate: Float
 ) extends Message
 
-/** A question with `tc1` 0 and the asker's time in `ts1`; its answer repeats `ts1` and has the answerer's
+/** A request with `tc1` 0 and the requester's time in `ts1`; the answer repeats `ts1` and has the answerer's
   * time in `tc1`, ns.
   */
 final case class Timesync(tc1: Long, ts1: Long, targetSystem: Int = 0, targetComponent: Int = 0)
     extends Message
 
-/** Cells in mV, current in cA, temperature in cdeg C. */
+/** Battery: cells in mV, current in cA, temperature in cdeg C. */
 final case class BatteryStatus(
     id: Int,
     batteryFunction: Int,
@@ -354,23 +354,23 @@ final case class HomePosition(
     timeUsec: Long = 0
 ) extends Message
 
-/** How often a message is sent; −1 is never, 0 the default. */
+/** The interval at which a message is sent; −1 is never, 0 the default. */
 final case class MessageInterval(messageId: Int, intervalUs: Int) extends Message
 
-/** On the ground (1), in the air (2), taking off (3) or landing (4). */
+/** Landed state: on the ground (1), in the air (2), taking off (3) or landing (4). */
 final case class ExtendedSysState(vtolState: Int, landedState: Int) extends Message
 
-/** A line for a person; a long one in several pieces of one `id`. */
+/** A line of text for a person; a long one in several pieces with one `id`. */
 final case class Statustext(severity: Int, text: String, id: Int = 0, chunkSeq: Int = 0) extends Message
 
-/** Motors and servos of a simulated vehicle, from its autopilot: 0 to 1 each, or −1 to 1; the mode is a
-  * heartbeat's, and the first flag says that the autopilot waits for the next sensors.
+/** Motor and servo controls of a simulated vehicle, from its autopilot: 0 to 1 each, or −1 to 1; the mode is
+  * a heartbeat's, and the first flag states lockstep.
   */
 final case class HilActuatorControls(timeUsec: Long, controls: Vector[Float], mode: Int, flags: Long)
     extends Message
 
-/** What sensors of a simulated vehicle show: m/s², rad/s, gauss, hPa, m, °C; `fieldsUpdated` has a bit for
-  * each field that is new.
+/** Sensor readings of a simulated vehicle: m/s², rad/s, gauss, hPa, m, °C; `fieldsUpdated` has a bit for each
+  * new field.
   */
 final case class HilSensor(
     timeUsec: Long,
@@ -430,7 +430,7 @@ final case class HilStateQuaternion(
     zacc: Int
 ) extends Message
 
-/** Position, attitude and velocity, each in the frame that is named; rates in rad/s. */
+/** Position, attitude and velocity, each in the stated frame; rates in rad/s. */
 final case class Odometry(
     timeUsec: Long,
     frameId: Int,

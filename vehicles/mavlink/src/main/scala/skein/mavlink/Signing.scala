@@ -3,15 +3,14 @@ package skein.mavlink
 import java.security.MessageDigest
 import scala.collection.mutable
 
-/** Signatures of one link, made and checked: the first 48 bits of a SHA-256 over the key, the frame, the
-  * link's number and a time that never runs backwards. One for each link and direction's end; not
-  * thread-safe.
+/** Makes and verifies the signatures of one link: the first 48 bits of a SHA-256 over the key, the frame, the
+  * link's number and a time that never runs backwards. One for each link and end; not thread-safe.
   *
-  * A frame is refused whose time is not later than that of the frame before it of the same system, component
-  * and link, or, for the first of these, more than a minute behind this end's time. No more than
-  * [[Signing.MostStreams]] are kept apart.
+  * A frame is refused unless its time is later than that of the previous frame of its system, component and
+  * link, or, for the first of these, at most a minute behind this end's time. Times of at most
+  * [[Signing.MostStreams]] streams are kept.
   *
-  * @param key 32 bytes, the same at both ends
+  * @param key 32 bytes, equal at both ends
   * @param link its number, 0 to 255
   * @param now in units of 10 µs since the start of 2015, UTC: see [[Signing.timeOf]]
   */
@@ -23,15 +22,13 @@ final class Signing(key: Array[Byte], link: Int, now: () => Long):
   private val heard  = mutable.HashMap.empty[(Int, Int, Int), Long]
   private var newest = 0L
 
-  /** What follows a frame that ends with its checksum. */
+  /** The signature to append to a frame that ends with its checksum. */
   private[mavlink] def sign(frame: Array[Byte]): Array[Byte] =
     newest = now().max(newest + 1)
     val stamp = link.toByte +: Array.tabulate(6)(index => (newest >> (8 * index)).toByte)
     stamp ++ digest(frame, stamp)
 
-  /** Whether a frame, up to and with its checksum, is what the other end signed, and not one that was sent
-    * before.
-    */
+  /** Whether a frame, up to and including its checksum, has a valid signature and is no replay. */
   private[mavlink] def accepts(
       frame: Array[Byte],
       signature: Array[Byte],
@@ -54,10 +51,10 @@ final class Signing(key: Array[Byte], link: Int, now: () => Long):
     sha.digest().take(6)
 
 object Signing:
-  /** Systems, components and links of whom times are remembered. */
+  /** Most streams (system, component and link) whose times are remembered. */
   val MostStreams = 1024
 
   private val Tolerance = 6_000_000L
 
-  /** A signature's time of a Unix time in milliseconds. */
+  /** Converts a Unix time in milliseconds to a signature's time. */
   def timeOf(unixMillis: Long): Long = (unixMillis - 1_420_070_400_000L) * 100

@@ -3,14 +3,14 @@ package skein.mavlink
 class FrameReaderSuite extends munit.FunSuite:
   private val beat = FrameWriter(245, 190).write(Heartbeat(6, 8, 0, 0, 4, 3))
 
-  /** The same in MAVLink 1. */
+  /** A frame with this message in MAVLink 1. */
   private val older =
     val payload = Array[Byte](0, 0, 0, 0, 6, 8, 0, 4, 3)
     val frame   = Array[Byte](0xfe.toByte, 9, 0, 245.toByte, 190.toByte, 0) ++ payload
     val sum     = Checksum.Start.add(frame, 1, frame.length).add(50).value
     frame ++ Array(sum.toByte, (sum >> 8).toByte)
 
-  test("a whole frame of either version is speech, wherever it lies, and nothing else is"):
+  test("a whole frame of either version is recognised at any position, and nothing else is"):
     for bytes <- Seq(beat, older, Array[Byte](1, 2, 3) ++ beat, beat ++ beat.take(5)) do
       assert(FrameReader.isSpoken(bytes))
     for bytes <- Seq(Array.emptyByteArray, beat.take(beat.length - 1), older.init, Array.fill[Byte](100)(0))

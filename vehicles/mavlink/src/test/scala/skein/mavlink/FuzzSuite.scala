@@ -2,16 +2,14 @@ package skein.mavlink
 
 import scala.util.Random
 
-/** Streams that are almost, or not at all, what a peer should send. */
+/** Streams that are similar to, or very different from, what a peer should send. */
 class FuzzSuite extends munit.FunSuite:
 
-  test(
-    "damaged frames of each kind harm nothing: they are refused or whole, and the next are read"
-  ):
+  test("damaged frames of each kind are refused or still valid, and the next frames are read"):
     for (definition, kind) <- Dialect.all.zipWithIndex do
       val random = Random(kind)
       val writer = FrameWriter(1, 1)
-      // Whatever length a damaged one has claimed, so many that follow end it.
+      // Enough bytes to end any damaged frame, whatever its stated length.
       val after = Vector.tabulate(25)(index => ParamRequestList(index, 0))
       val tail  = after.flatMap(writer.write).toArray
       var whole = 0
@@ -25,7 +23,7 @@ class FuzzSuite extends munit.FunSuite:
         whole += read.count(_ == message)
       assert(whole < 125, s"${definition.name}: $whole of 250 were not damaged")
 
-  test("noise is skipped and counted, a byte at a time as well as all at once"):
+  test("noise is skipped and counted, in single bytes as well as in one piece"):
     val random = Random(7)
     for _ <- 1 to 200 do
       val noise            = random.nextBytes(random.nextInt(2000))
@@ -34,7 +32,7 @@ class FuzzSuite extends munit.FunSuite:
       assertEquals(noise.grouped(1).flatMap(byByte.read).toVector, frames)
       assertEquals(byByte.counts, atOnce.counts)
 
-  test("a frame that claims flags or a message which are not known is counted and passed over"):
+  test("a frame with unknown flags or an unknown message is counted and skipped"):
     val writer  = FrameWriter(1, 1)
     val good    = writer.write(MissionItemReached(1))
     val flagged = good.updated(2, 0x02.toByte)
@@ -51,7 +49,7 @@ class FuzzSuite extends munit.FunSuite:
     assertEquals(reader.read(version1 ++ Array(sum.toByte, (sum >> 8).toByte)), Vector.empty)
     assertEquals(reader.counts, ReaderCounts(version1 = 1))
 
-  test("what is left of a datagram is no part of the next"):
+  test("the rest of a datagram does not continue in the next"):
     val frame  = FrameWriter(1, 1).write(MissionItemReached(1))
     val reader = FrameReader()
     assertEquals(reader.readDatagram(frame.dropRight(3)), Vector.empty)

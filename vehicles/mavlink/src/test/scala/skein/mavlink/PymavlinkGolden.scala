@@ -3,7 +3,7 @@ package skein.mavlink
 import java.util.HexFormat
 import scala.io.Source
 
-/** Frames and values that pymavlink made: `pymavlink.py` beside them. */
+/** Frames and values made by pymavlink; `pymavlink.py` beside them makes them. */
 class PymavlinkGolden extends munit.FunSuite:
   private case class Made(name: String, isSigned: Boolean, bytes: Array[Byte], fields: Vector[String])
 
@@ -33,7 +33,7 @@ class PymavlinkGolden extends munit.FunSuite:
         Vector(one.name)
       )
 
-  test("every field is read as pymavlink meant it"):
+  test("every field is read with pymavlink's value"):
     val signed = signing
     for one <- made do
       val frame = FrameReader(Option.when(one.isSigned)(signed)).read(one.bytes).head
@@ -44,7 +44,7 @@ class PymavlinkGolden extends munit.FunSuite:
         one.name
       )
 
-  test("what is read is written as the same bytes, its signature included"):
+  test("a frame that was read is written with equal bytes, including its signature"):
     val (reading, writing) = (signing, signing)
     val (plain, signed)    = (FrameWriter(42, 191), FrameWriter(42, 191, Some(writing)))
     for one <- made do

@@ -2,11 +2,11 @@ package skein.mavlink
 
 import scala.util.Random
 
-/** Any message, by what its fields can hold. */
+/** Random messages over the full range of each field. */
 private object RandomMessage:
   def draw(random: Random): Message = draw(Dialect.all(random.nextInt(Dialect.all.size)), random)
 
-  /** Any payload is one message. */
+  /** Draws a message by decoding a random payload. */
   def draw[A <: Message](definition: Definition[A], random: Random): A =
     val zeros = random.nextInt(definition.length + 1)
     definition.decode(Array.tabulate(definition.length)(index =>

@@ -4,7 +4,7 @@ import scala.util.Random
 
 class RoundTripLaws extends munit.FunSuite:
 
-  test("what is written is read, however the stream is cut"):
+  test("written frames are read back for any segmentation of the stream"):
     val random = Random(1)
     for _ <- 1 to 300 do
       val sent   = Vector.fill(1 + random.nextInt(8))(RandomMessage.draw(random))
@@ -17,12 +17,12 @@ class RoundTripLaws extends munit.FunSuite:
       assertEquals(read.map(_.sequence), sent.indices.toVector)
       assertEquals(reader.counts, ReaderCounts(frames = sent.size))
 
-  test("zeros at a payload's end are not sent, and one byte always is"):
+  test("trailing zeros of a payload are not sent, except for one byte"):
     val writer = FrameWriter(1, 1)
     assertEquals(writer.write(Timesync(0, 5)).length, 10 + 9 + 2)
     assertEquals(writer.write(MissionItemReached(0)).length, 10 + 1 + 2)
 
-  test("a payload that is longer than is known here is read as far as it is known"):
+  test("a payload longer than its known fields is read up to these"):
     val heartbeat = Heartbeat(2, 12, 81, 1, 4, 3)
     val longer    = Dialect.of(heartbeat).encode(heartbeat) ++ Array[Byte](1, 2, 3)
     assertEquals(Dialect.of(heartbeat).decode(longer), heartbeat)
@@ -34,7 +34,7 @@ class RoundTripLaws extends munit.FunSuite:
       Vector(text.copy(text = "x" * 50))
     )
 
-  test("frames that were lost are counted by their numbers"):
+  test("lost frames are counted by the sequence numbers"):
     val writer = FrameWriter(1, 1)
     val sent   = Vector.tabulate(600)(index => writer.write(MissionItemReached(index)))
     val reader = FrameReader()

@@ -10,17 +10,17 @@ class SigningSuite extends munit.FunSuite:
     assertEquals(reader.read(bytes), Vector.empty)
     assertEquals(reader.counts, ReaderCounts(frames = reader.counts.frames, badSignature = 1))
 
-  test("the right key opens, a wrong one and none do not"):
+  test("frames are accepted with the right key, and refused with a wrong one or none"):
     val bytes = FrameWriter(1, 1, Some(signing())).write(message)
     assertEquals(FrameReader(Some(signing())).read(bytes), Vector(Frame(1, 1, 0, message, isSigned = true)))
     refused(FrameReader(Some(signing(Array.fill[Byte](32)(8)))), bytes)
     refused(FrameReader(Some(signing())), FrameWriter(1, 1).write(message))
 
-  test("a signed frame is read by who asks for no signature"):
+  test("a signed frame is read by a reader without signing"):
     val bytes = FrameWriter(1, 1, Some(signing())).write(message)
     assertEquals(FrameReader().read(bytes ++ bytes).map(_.message), Vector(message, message))
 
-  test("a frame that is sent again is refused"):
+  test("a replayed frame is refused"):
     val bytes  = FrameWriter(1, 1, Some(signing())).write(message)
     val reader = FrameReader(Some(signing()))
     assertEquals(reader.read(bytes).size, 1)
@@ -31,6 +31,6 @@ class SigningSuite extends munit.FunSuite:
     now += 6_000_001
     refused(FrameReader(Some(signing())), bytes)
 
-  test("times of signatures are told from Unix time"):
+  test("times of signatures are computed from Unix time"):
     assertEquals(Signing.timeOf(1_420_070_400_000L), 0L)
     assertEquals(Signing.timeOf(1_420_070_401_000L), 100_000L)

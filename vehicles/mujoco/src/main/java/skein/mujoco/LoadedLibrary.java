@@ -2,7 +2,7 @@ package skein.mujoco;
 
 import java.nio.file.Path;
 
-/** Which library {@link MujocoCalls} loads when it is first called: to be set before. */
+/** The library that {@link MujocoCalls} loads on its first call; must be set before. */
 final class LoadedLibrary {
   static volatile Path path;
 

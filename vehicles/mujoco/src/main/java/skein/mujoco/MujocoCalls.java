@@ -141,7 +141,7 @@ final class MujocoCalls {
     }
   }
 
-  /** The first ones, or those of {@code ids}; returns how many failed. */
+  /** Steps the first {@code count} simulations, or those of {@code ids}; returns how many failed. */
   static int step(MemorySegment batch, MemorySegment ids, int count, int steps) {
     try {
       return (int) STEP.invokeExact(batch, ids, count, steps, 0);
@@ -150,7 +150,7 @@ final class MujocoCalls {
     }
   }
 
-  /** All of them, with controls for each and every step (n × steps × size); returns how many failed. */
+  /** Steps all simulations with controls for every step (n × steps × size); returns how many failed. */
   static int rollout(MemorySegment batch, int steps, MemorySegment controls, int controlSpec) {
     try {
       return (int)

@@ -2,14 +2,14 @@ package skein.mujoco
 
 import skein.identify.LinearSystem
 
-/** How actuators' controls turn a vehicle, and which controls are the least that turn it as is wanted.
+/** Maps wanted accelerations to the smallest actuator controls that produce them.
   *
-  * @param inverse actuators × 4: what is added to a control for 1 m/s² upwards, and for 1 rad/s² about front,
-  *   right and down
+  * @param inverse actuators × 4: change of a control for 1 m/s² upwards, and for 1 rad/s² about front, right
+  *   and down
   */
 private[mujoco] final class Allocation private (inverse: Array[Array[Double]]):
 
-  /** What is added to the control of an actuator for these accelerations. */
+  /** Change of an actuator's control that produces these accelerations. */
   def control(actuator: Int, up: Double, front: Double, right: Double, down: Double): Double =
     val row = inverse(actuator)
     row(0) * up + row(1) * front + row(2) * right + row(3) * down
@@ -17,11 +17,11 @@ private[mujoco] final class Allocation private (inverse: Array[Array[Double]]):
 private[mujoco] object Allocation:
   private val axes = Vector("lifts", "rolls", "pitches", "yaws")
 
-  /** By the pseudo-inverse, B⁺ = Bᵀ (B Bᵀ)⁻¹.
+  /** Computes the allocation by the pseudo-inverse, B⁺ = Bᵀ (B Bᵀ)⁻¹.
     *
-    * @param effects B, 4 × actuators, row by row: what one more of each control adds to the acceleration
-    *   upwards, m/s², and to the angular accelerations about front, right and down, rad/s²
-    * @return or what these actuators cannot do
+    * @param effects B, 4 × actuators, row by row: change per unit of each control in upward acceleration,
+    *   m/s², and in the angular accelerations about front, right and down, rad/s²
+    * @return Left states what these actuators cannot do
     */
   def of(effects: Array[Array[Double]]): Either[String, Allocation] =
     val most = effects.map(row => row.map(math.abs).max)
@@ -41,8 +41,8 @@ private[mujoco] object Allocation:
             ))
           .toRight("expected actuators that lift, roll, pitch and yaw it each by itself")
 
-  /** Of the greatest effect on any axis. */
+  /** Smallest effect on an axis that counts, relative to the greatest on any axis. */
   private val Least = 1e-3
 
-  /** Pivots of effects that are at most 1. */
+  /** Smallest pivot of a regular matrix, whose effects are at most 1. */
   private val Singular = 1e-9

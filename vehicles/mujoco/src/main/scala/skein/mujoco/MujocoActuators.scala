@@ -1,13 +1,13 @@
 package skein.mujoco
 
-/** A model's actuators, and what was measured of them.
+/** A model's actuators, and their measured effects.
   *
-  * @param lowest of each control; −∞ where it is not limited
-  * @param highest likewise; ∞
-  * @param resting the control of each that is closest to none
-  * @param effects of each, what one more of its control adds: upwards, m/s², about front, right and down,
+  * @param lowest of each control; −∞ where it is unlimited
+  * @param highest of each control; ∞ where it is unlimited
+  * @param resting the value of each control closest to zero
+  * @param effects of each actuator, per unit of its control: upwards, m/s², about front, right and down,
   *   rad/s²
-  * @param weightMps2 what it falls with while they rest
+  * @param weightMps2 downward acceleration while all controls rest
   */
 private[mujoco] final class MujocoActuators(
     val lowest: Array[Double],
@@ -21,18 +21,18 @@ private[mujoco] final class MujocoActuators(
 
   private val lifting = effects.map(_(0)).toArray
 
-  /** The rotors front right, rear left, front left, rear right, where these four are all there are. */
+  /** The rotors front right, rear left, front left, rear right, if there are exactly these four. */
   val rotors: Option[Array[Int]] =
     val corners = effects.map(effect => (math.signum(effect(1)), math.signum(effect(2))))
     val found   = MujocoActuators.Corners.map(corners.indexOf)
     Option.when(count == 4 && found.forall(_ >= 0) && lifting.forall(_ > 0))(found.toArray)
 
-  /** The controls by which it hovers. */
+  /** The controls that hold the vehicle in hover. */
   val hovering: Array[Double] =
     Array.tabulate(count)(i => resting(i) + allocation.control(i, weightMps2, 0, 0, 0))
 
-  /** How fast it can begin to turn about an axis while it hovers, rad/s²: the lesser of both ways, all its
-    * actuators used as far as their ranges go.
+  /** Greatest angular acceleration about an axis in hover, rad/s²: the lesser of both directions, all
+    * actuators used to their limits.
     *
     * @param axis 1 front, 2 right, 3 down
     */
@@ -50,18 +50,18 @@ private[mujoco] final class MujocoActuators(
     .sum
     way(1).min(way(-1))
 
-  /** What full control is, where it is not limited, too. */
+  /** An actuator's full control, defined for unlimited ones too. */
   def full(actuator: Int): Double =
     if highest(actuator).isInfinite then resting(actuator) + 1 else highest(actuator)
 
-  /** Whether what they are told lifts it off the ground. */
+  /** Whether these controls lift the vehicle off the ground. */
   def lifts(controls: Array[Double]): Boolean =
     var lift = 0.0
     for i <- controls.indices do lift += lifting(i) * (controls(i) - resting(i))
     lift >= weightMps2
 
 private object MujocoActuators:
-  /** Signs of what each rotor does about the front and the right axis: front right, rear left, front left,
+  /** Signs of each rotor's effect about the front and the right axis: front right, rear left, front left,
     * rear right.
     */
   private val Corners = Vector((-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0))

@@ -3,13 +3,12 @@ package skein.mujoco
 import java.lang.foreign.ValueLayout.{JAVA_BYTE, JAVA_DOUBLE, JAVA_INT}
 import java.lang.foreign.{Arena, MemorySegment}
 
-/** So many simulations of one model: MuJoCo's `mjBatch`, stepped by the thread that asks. A row of numbers is
-  * the state of one. Its memory is freed when nobody refers to it any more. Not thread-safe.
+/** A batch of simulations of one model: MuJoCo's `mjBatch`, stepped by the calling thread. A row of numbers
+  * is the state of one simulation. Its memory is freed once it is unreachable. Not thread-safe.
   */
 private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: Int, arena: Arena):
   import MujocoBatch.*
 
-  /** Numbers of a row. */
   val row: Int = MujocoCalls.rowSize(batch)
 
   private val rows = MujocoCalls.state(batch).reinterpret(count.toLong * row * 8, arena, null)
@@ -26,20 +25,17 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
   def setRow(place: Int, values: Array[Double]): Unit =
     MemorySegment.copy(values, 0, rows, JAVA_DOUBLE, place.toLong * row * 8, row)
 
-  /** Where a part of the state is in a row, and how long it is. */
+  /** The offset and length of a part of the state in a row. */
   def part(component: Int): Part =
     val size  = arena.allocate(JAVA_INT)
     val start = MujocoCalls.component(batch, component, size)
     Part(((start.address - rows.address) / 8).toInt, size.get(JAVA_INT, 0))
 
-  /** A field of the model, of doubles. */
   def doubles(field: String): Array[Double] =
     fieldOf(field, 8)((at, index) => at.getAtIndex(JAVA_DOUBLE, index))
 
-  /** Likewise, of integers. */
   def ints(field: String): Array[Int] = fieldOf(field, 4)((at, index) => at.getAtIndex(JAVA_INT, index))
 
-  /** Likewise, of truth values. */
   def flags(field: String): Array[Boolean] =
     fieldOf(field, 1)((at, index) => at.get(JAVA_BYTE, index) != 0)
 
@@ -55,18 +51,18 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
 
   def reset(): Unit = check(MujocoCalls.reset(batch))
 
-  /** This one is stepped by the next [[step]]. */
+  /** Marks a simulation to be stepped by the next [[step]]. */
   def mark(place: Int): Unit =
     ids.setAtIndex(JAVA_INT, due.toLong, place)
     due += 1
 
-  /** Steps those that were marked since the last time. */
+  /** Steps the simulations marked since the last call. */
   def step(): Unit =
     if due > 0 then check(MujocoCalls.step(batch, ids, due, 1))
     due = 0
 
-  /** Steps all of them as often, each with its own control (`mjSTATE_CTRL`, count × steps × their number) in
-    * each step.
+  /** Steps all simulations `steps` times, each with its own control in each step (`mjSTATE_CTRL`, count ×
+    * steps × its size).
     */
   def rollout(steps: Int, controls: MemorySegment): Unit =
     check(MujocoCalls.rollout(batch, steps, controls, MujocoBatch.Controls))
@@ -78,13 +74,13 @@ private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: In
       )
       throw MujocoFailed(s"MuJoCo: ${reasons.find(_.nonEmpty).getOrElse("failed")}")
 
-/** MuJoCo could not step a model. */
+/** Thrown when MuJoCo could not step a model. */
 private[mujoco] final class MujocoFailed(reason: String) extends IllegalStateException(reason)
 
 private[mujoco] object MujocoBatch:
-  /** MuJoCo copies the model.
+  /** Makes a batch; MuJoCo copies the model.
     *
-    * @return or why MuJoCo makes none of it
+    * @return Left states why MuJoCo cannot make it
     */
   def of(model: MemorySegment, count: Int, threads: Int = 1): Either[String, MujocoBatch] =
     val arena  = Arena.ofAuto()
@@ -98,7 +94,7 @@ private[mujoco] object MujocoBatch:
       error.getString(0).trim
     )
 
-  /** Parts of the state (`mjtState`). */
+  /** Bits of the parts of the state (`mjtState`). */
   val Time       = 1 << 0
   val Positions  = 1 << 1
   val Velocities = 1 << 2

@@ -3,12 +3,12 @@ package skein.mujoco
 import skein.units.Vector3
 import skein.vehicle.{Environment, FlightController, HorizontalMode, Quadrotor, QuadrotorState, Setpoint}
 
-/** So many bodies of a model. Between two steps all that is known of a vehicle is in its
-  * [[skein.vehicle.QuadrotorState]], but for what else moves in the model; MuJoCo computes the step between.
-  * Ground is flat, as AirSim's, and met as there.
+/** A batch of bodies of one model. Between two steps a vehicle's state is its
+  * [[skein.vehicle.QuadrotorState]], together with the state of the model's other moving parts; MuJoCo
+  * computes the step. The ground is flat, with AirSim's contact.
   *
   * MuJoCo's world has x to the north, y to the west and z up; its body x to the front, y to the left and z
-  * up. Wind is a world that moves: MuJoCo is given velocities relative to the air, whose density the model
+  * up. Wind moves the whole world: MuJoCo receives velocities relative to the air, whose density the model
   * states.
   */
 private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
@@ -21,7 +21,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
   private val (place0, speed0, told0) = (body.place.at, body.velocity.at, body.controls.at)
   private val stepS                   = model.stepS
 
-  /** As [[skein.vehicle.Rotorcraft.hover]] says. */
+  /** Sets a hovering state, as [[skein.vehicle.Rotorcraft.hover]] specifies. */
   def hover(place: Int, state: QuadrotorState, goalNed: Vector3, yawRad: Double): Unit =
     state.copyFrom(reference.hovering(goalNed, yawRad, seaLevelAt(goalNed.z)))
     batch.setRow(place, body.hoveringRow)
@@ -34,7 +34,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
 
   def hoverSagM(downM: Double): Double = reference.hoverSagM(downM, seaLevelAt(downM))
 
-  /** Takes in what a step begins with. */
+  /** Writes a step's initial state into the batch. */
   def begin(place: Int, state: QuadrotorState, environment: Environment): Unit =
     before(place).copyFrom(state)
     val told = controls.of(state, isDirect(place))
@@ -53,7 +53,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
       batch(place, speed0 + 3) = state.wx
       batch(place, speed0 + 4) = -state.wy
       batch(place, speed0 + 5) = -state.wz
-      // MuJoCo begins anew where a state diverges; its time shows that.
+      // MuJoCo resets a diverging state; its time shows that.
       batch(place, body.time.at) = Running
       var i = 0
       while i < told.length do
@@ -62,10 +62,10 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
       batch.mark(place)
     else if body.actuators.lifts(told) then state.grounded = false
 
-  /** Steps those in the air. */
+  /** Steps the bodies that are in the air. */
   def step(): Unit = batch.step()
 
-  /** Gives what a step has led to, and lets the controller set the next one's controls. */
+  /** Reads the state after the step, and lets the controller set the next controls. */
   def end(
       place: Int,
       state: QuadrotorState,
@@ -104,11 +104,11 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
     state.thrust0 = state.control0; state.thrust1 = state.control1
     state.thrust2 = state.control2; state.thrust3 = state.control3
 
-  /** Between the down coordinate and the model's height, either way. */
+  /** Converts between the down coordinate and the model's height, in either direction. */
   private def heightM(down: Double, environment: Environment) =
     body.standsAtM + environment.groundDownM - down
 
   private def seaLevelAt(downM: Double) = Environment(originAltitudeM = downM)
 
-  /** s: above 0, which a state that began anew has. */
+  /** A time above 0, s: a state that was reset has 0. */
   private inline val Running = 1.0

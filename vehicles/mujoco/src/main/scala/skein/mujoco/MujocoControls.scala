@@ -2,19 +2,19 @@ package skein.mujoco
 
 import skein.vehicle.{Airframe, Environment, Quadrotor, QuadrotorState}
 
-/** What the rotors' controls of AirSim's flight controller are to a model's actuators. AirSim's controller
-  * wants a thrust and three torques of AirSim's quadrotor. The model gets the accelerations that these would
-  * give that one, with its weight in the place of the other's: so AirSim's gains fly it, whatever its mass.
+/** Converts the rotor controls of AirSim's flight controller to a model's actuators. The controller commands
+  * a thrust and three torques for AirSim's quadrotor. The model receives the accelerations that these would
+  * cause there, scaled to its own weight: so AirSim's gains fly any mass.
   */
 private[mujoco] final class MujocoControls(actuators: MujocoActuators):
   import MujocoControls.*
 
   private val values = Array.ofDim[Double](actuators.count)
 
-  /** Overwritten by the next call.
+  /** Controls of all actuators; the array is overwritten by the next call.
     *
-    * @param isDirect whether they are the rotors' own and not a controller's: then each is a share of its
-    *   actuator's range
+    * @param isDirect whether the state's controls are the rotors' own and not a controller's: then each is a
+    *   fraction of its actuator's range
     */
   def of(state: QuadrotorState, isDirect: Boolean): Array[Double] =
     import state.{control0 as c0, control1 as c1, control2 as c2, control3 as c3}
@@ -40,7 +40,6 @@ private[mujoco] final class MujocoControls(actuators: MujocoActuators):
 private[mujoco] object MujocoControls:
   private val airframe = Airframe()
 
-  /** In air of sea level. */
   private[mujoco] val SeaLevel = Environment(originAltitudeM = 0)
 
   private val torque         = airframe.rotorOffsetM * airframe.maxThrustN

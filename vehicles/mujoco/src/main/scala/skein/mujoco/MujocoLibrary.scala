@@ -5,12 +5,11 @@ import java.util.concurrent.TimeUnit
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
 
-/** Where MuJoCo's C library lies: the one that the system property `skein.mujoco` or the environment variable
-  * `SKEIN_MUJOCO` names, or that of PyPI's package `mujoco`, where `python3` finds it. Nothing of it is part
-  * of Skein.
+/** Locates MuJoCo's C library: the path in the system property `skein.mujoco` or the environment variable
+  * `SKEIN_MUJOCO`, or the library in PyPI's package `mujoco` of `python3`. Skein contains no part of it.
   */
 object MujocoLibrary:
-  /** The first with bodies in batches. */
+  /** The first version with batches of simulations. */
   private[mujoco] val LeastVersion = 4000000
 
   private val Named    = "SKEIN_MUJOCO"
@@ -30,7 +29,7 @@ object MujocoLibrary:
           s"mujoco (pip install mujoco), or the library's path in $Named"
       )
 
-  /** The library, or why there is none of the version that is needed. Looked for once. */
+  /** The library, or why none of the required version is found. Searched once. */
   lazy val find: Either[String, Path] = found.flatMap: path =>
     loadable(path).flatMap: _ =>
       val version = MujocoCalls.version()
@@ -49,7 +48,7 @@ object MujocoLibrary:
         val reason = Option(error.getCause).getOrElse(error)
         Left(s"$path: expected MuJoCo's library of version 4 or newer: ${reason.getMessage}")
 
-  /** The folder of the package. */
+  /** The folder of the Python package `mujoco`. */
   private def fromPython: Option[Path] = Try {
     val asked = ProcessBuilder(
       "python3",
@@ -62,7 +61,6 @@ object MujocoLibrary:
     finally asked.destroy()
   }.toOption.flatten
 
-  /** The library in that folder. */
   private[mujoco] def inside(folder: Path): Option[Path] =
     Using(Files.list(folder))(
       _.iterator.asScala

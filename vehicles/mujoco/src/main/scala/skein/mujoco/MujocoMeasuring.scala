@@ -4,13 +4,13 @@ import skein.units.Decimals.brief
 import skein.units.Expect
 import skein.vehicle.ControllerGains
 
-/** What a model's body is, as it was measured.
+/** A model's body, as measured.
   *
-  * @param stepS of a step, s
-  * @param place where a row has the body's position and attitude; likewise the next ones
-  * @param standsAtM the body's height in the model, m: where it stands on the ground
-  * @param hoveringRow of one that has long hovered
-  * @param standingRow of one that stands
+  * @param stepS duration of a step, s
+  * @param place of the body's position and attitude in a row; likewise the next ones
+  * @param standsAtM the body's height in the model when it stands on the ground, m
+  * @param hoveringRow state after a long hover
+  * @param standingRow state on the ground
   */
 private[mujoco] final class MujocoBody(
     val stepS: Double,
@@ -24,10 +24,10 @@ private[mujoco] final class MujocoBody(
     val standingRow: Array[Double]
 )
 
-/** Finds out whether a model can be flown. What its actuators do is measured: each is held at a control until
-  * it has settled, and the accelerations are read.
+/** Measures whether and how a model can fly: each actuator is held at a control until it has settled, and the
+  * accelerations are read.
   *
-  * @param one a simulation of it
+  * @param one a simulation of the model
   */
 private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
   import MujocoBatch.*
@@ -44,7 +44,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
     one.reset()
     one.rowOf(0).toVector
 
-  /** The body's height. */
+  /** The body's initial height in the model, m. */
   private def standsAtM = initial(place.at + 2)
 
   private val limited = one.flags("actuator_ctrllimited")
@@ -55,7 +55,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
     Array.tabulate(count)(i => if limited(i) then ranges(2 * i + 1) else Double.PositiveInfinity)
   private val resting = Array.tabulate(count)(i => 0.0.max(lowest(i)).min(highest(i)))
 
-  /** Or why it cannot be flown. */
+  /** The measured body, or why it cannot fly. */
   def body: Either[String, MujocoBody] =
     for
       _ <- expect(place.size >= 7 && one.ints("jnt_type").head == FreeJoint)(
@@ -92,7 +92,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
 
   private def named(actuator: Int)(reason: String) = s"actuator $actuator: $reason"
 
-  /** What one more of its control adds to the accelerations. */
+  /** Change of the accelerations per unit of an actuator's control. */
   private def effectOf(actuator: Int, falling: Array[Double]): Either[String, Array[Double]] =
     val rest              = resting(actuator)
     val full              = if highest(actuator).isInfinite then rest + 1 else highest(actuator)
@@ -110,7 +110,9 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
       )
     yield whole).left.map(named(actuator))
 
-  /** At rest, level, well above everything: upwards, m/s², about front, right and down, rad/s². */
+  /** Accelerations at rest, level and far above everything: upwards, m/s², about front, right and down,
+    * rad/s².
+    */
   private def accelerations(told: Array[Double]): Array[Double] =
     one.setRow(0, settled(told))
     for i <- 0 until velocity.size do one(0, velocity.at + i) = 0
@@ -120,7 +122,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
     def change(index: Int) = one(0, velocity.at + index) / stepS
     Array(change(2), change(3), -change(4), -change(5))
 
-  /** The row of one that was held at its initial place until its actuators had settled. */
+  /** The state after being held in place until the actuators have settled. */
   private def settled(told: Array[Double]): Array[Double] =
     one.reset()
     val held = initial.toArray
@@ -139,12 +141,13 @@ private object MujocoMeasuring:
   private def expect(holds: Boolean)(what: => String): Either[String, Unit] =
     Expect.that(holds)(s"expected $what")
 
-  /** `mjJNT_FREE` */
+  /** MuJoCo's number of a free joint, `mjJNT_FREE`. */
   private val FreeJoint = 0
 
   private val gains = ControllerGains()
 
-  /** About which axis, its name, and how strongly the actuators have to turn the vehicle at least, rad/s².
+  /** For each axis: its index, its name, and the least angular acceleration that the actuators must reach,
+    * rad/s².
     *
     * AirSim's controller turns a vehicle at up to `maxRate` ω. About the front and the right axis it begins
     * to brake 1/`angleP` before the angle that it wants, since its rate goal is ω·`angleP`·error. An

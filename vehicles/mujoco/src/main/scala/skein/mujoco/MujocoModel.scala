@@ -4,9 +4,8 @@ import java.lang.foreign.{Arena, MemorySegment}
 import java.nio.file.{Files, Path}
 import skein.units.Expect
 
-/** A multirotor in MuJoCo's XML. Its body is the one of the first joint, a free one; its z is up. What its
-  * actuators do is measured ([[MujocoMeasuring]]). MuJoCo's memory of it is freed when nobody refers to it
-  * any more.
+/** A multirotor in MuJoCo's XML. Its body is that of the first joint, a free one; its z is up. The effects of
+  * its actuators are measured ([[MujocoMeasuring]]). MuJoCo's memory is freed once the model is unreachable.
   *
   * @param text names it in messages
   */
@@ -15,21 +14,21 @@ final class MujocoModel private (
     compiled: MemorySegment,
     private[mujoco] val body: MujocoBody
 ):
-  /** Of a step, s. */
   def stepS: Double = body.stepS
 
-  /** Whether its actuators are four rotors, one at each corner, which can be told their controls one by one.
+  /** Whether its actuators are exactly four rotors, one at each corner, so that rotors can be controlled
+    * directly.
     */
   def hasRotors: Boolean = body.actuators.rotors.isDefined
 
-  /** So many simulations of it. A model of which there was one has more, but for want of memory. */
+  /** Allocates `count` simulations; fails only for lack of memory. */
   private[mujoco] def batch(count: Int): MujocoBatch =
     MujocoBatch.of(compiled, count).fold(reason => throw MujocoFailed(s"$text: $reason"), identity)
 
 object MujocoModel:
   /** Reads a model and measures its actuators: some 50 ms.
     *
-    * @return or why it cannot be flown, or that MuJoCo is not here
+    * @return Left states why it cannot fly, or that MuJoCo is not installed
     */
   def read(file: Path): Either[String, MujocoModel] =
     for

@@ -5,8 +5,8 @@ import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
-/** A model's multirotor in forward simulation, behind AirSim's API as the built-in simulator flies it; many
-  * of them by MuJoCo's batch, which gives the same bits.
+/** A model's multirotor in forward simulation, controlled through AirSim's API as in the built-in simulator;
+  * many at a time by MuJoCo's batch, with identical bits.
   */
 final class MujocoResponse(model: MujocoModel) extends SteppedResponse:
   def stepS: Double    = model.stepS
@@ -18,7 +18,7 @@ final class MujocoResponse(model: MujocoModel) extends SteppedResponse:
 
   override def handoverS: Double = Moves.Handover.toSeconds
 
-/** So many multirotors of a model, each with its flight controller's state. */
+/** A batch of multirotors of one model, each with its flight controller's state. */
 private[mujoco] final class MujocoVehicles(model: MujocoModel, vehicles: Int) extends SteppedVehicles:
   private val bodies     = MujocoBodies(model, vehicles)
   private val controller = FlightController(ControllerGains(), model.stepS)

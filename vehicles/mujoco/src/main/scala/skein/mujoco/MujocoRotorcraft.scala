@@ -3,8 +3,8 @@ package skein.mujoco
 import skein.units.Vector3
 import skein.vehicle.*
 
-/** One multirotor whose body is a model of MuJoCo's, flown by AirSim's flight controller ([[MujocoControls]])
-  * at each of the model's steps. One for each vehicle.
+/** One multirotor whose body is a MuJoCo model, controlled by AirSim's flight controller ([[MujocoControls]])
+  * at each of the model's steps. One instance for each vehicle.
   */
 final class MujocoRotorcraft private (
     model: MujocoModel,
@@ -34,11 +34,11 @@ final class MujocoRotorcraft private (
   def hoverSagM(downM: Double, environment: Environment): Double = bodies.hoverSagM(downM)
 
 object MujocoRotorcraft:
-  /** AirSim's: MuJoCo's shapes are not drawn. */
+  /** AirSim's airframe, for drawing: MuJoCo's shapes are not drawn. */
   private val looks       = Airframe()
   private val airSimGains = ControllerGains()
 
   def apply(model: MujocoModel): MujocoRotorcraft = new MujocoRotorcraft(model, MujocoBodies(model, 1), None)
 
-  /** Vehicles of this model, for a simulator. */
+  /** The kind of vehicle, for the built-in simulator. */
   def kind(model: MujocoModel): RotorcraftKind = RotorcraftKind(model.stepS, () => apply(model))

@@ -3,14 +3,14 @@ package skein.mujoco
 import java.lang.foreign.{Arena, MemorySegment}
 import java.util.concurrent.atomic.AtomicLong
 
-/** What MuJoCo has allocated for us. */
+/** Memory that MuJoCo has allocated for this process. */
 private[mujoco] object NativeMemory:
   private val count = AtomicLong()
 
-  /** Models and batches that have been freed. */
+  /** Number of models and batches that have been freed. */
   def freed: Long = count.get
 
-  /** The same, freed as soon as nobody refers to what is of this arena any more. */
+  /** Ties memory to an arena and frees it once nothing refers to the arena's segments any more. */
   def owned(allocated: MemorySegment, arena: Arena)(free: MemorySegment => Unit): MemorySegment =
     allocated.reinterpret(
       arena,

@@ -7,8 +7,8 @@ import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 
-/** What docs/engines.md says of MuJoCo's bodies beside its table: they fly as vehicles. `FlownByLanesSuite`
-  * holds the plants that need nothing installed to that table.
+/** Checks the statement in docs/engines.md that MuJoCo bodies are simulated as vehicles. `FlownByLanesSuite`
+  * checks its table for the plants that need nothing installed.
   */
 class FlownByVehiclesLiveSuite extends MujocoHere:
   private lazy val model = MujocoResponse(MujocoRotorcraftLiveSuite.example("quadrotor"))
@@ -21,7 +21,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
     LoopTiming.Predictive(predictor = model.predictor)
   )
 
-  test("duels fly vehicle by vehicle under every loop, and as the scalar engine flies them, to the bit"):
+  test("duels are simulated vehicle by vehicle under every loop, with the scalar engine's bits"):
     assumeMujoco()
     val duel = Duel.paper.copy(durationS = 2)
     for timing <- loops; shared <- Seq(true, false) do
@@ -46,7 +46,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
         val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
         assertEquals(flown.meanDistanceM(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
 
-  test("teams fly vehicle by vehicle under every loop, and as the scalar engine flies them, to the bit"):
+  test("teams are simulated vehicle by vehicle under every loop, with the scalar engine's bits"):
     assumeMujoco()
     val surround = Surround(4)
     val judged   = Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))

@@ -5,9 +5,9 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.testing.{PythonEnvironment, Unhurried}
 
-/** For tests with MuJoCo's library: the one that is found, or else PyPI's, installed for tests. */
+/** A base for tests with MuJoCo's library: an installed one, or else PyPI's, installed for tests. */
 trait MujocoHere extends munit.FunSuite, Unhurried:
-  // No test's limit is for what may have to be fetched first.
+  // A test's time limit must not include downloads.
   override def beforeAll(): Unit = MujocoHere.library: Unit
 
   protected def assumeMujoco(): Unit =

@@ -6,13 +6,13 @@ import skein.testing.Waiting
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
-/** The quadrotor's rigid body beside MuJoCo's, which knows nothing of it: AirSim's quadrotor as MJCF,
-  * integrated by Runge-Kutta's method of the fourth order. MuJoCo gets the rotors' thrusts, and the drag,
-  * which it has not; both take the same steps.
+/** The quadrotor's rigid body compared with MuJoCo's independent one: AirSim's quadrotor as MJCF, integrated
+  * by Runge-Kutta's method of the fourth order. MuJoCo receives the rotors' thrusts, and the drag, which it
+  * does not model; both take equal steps.
   *
-  * AirSim's velocity Verlet takes an acceleration that it has computed for the middle of a step for that of
-  * the step's end. So accelerations act half a step late, and its error is of the first order: it falls to a
-  * half with half the step. Where both lead, for steps that become ever smaller, is where MuJoCo is.
+  * AirSim's velocity Verlet uses an acceleration computed for the middle of a step as that of the step's end.
+  * So accelerations act half a step late, and its error is of the first order: it halves with half the step.
+  * In the limit of small steps both agree with MuJoCo.
   */
 class MujocoOracleLiveSuite extends MujocoHere, Waiting:
   import MujocoOracleLiveSuite.*
@@ -49,10 +49,10 @@ class MujocoOracleLiveSuite extends MujocoHere, Waiting:
   )
 
 private object MujocoOracleLiveSuite:
-  /** How it begins, and the rotors' controls in each second; None: they stand. */
+  /** The initial motion, and the rotors' controls in each second; None: rotors at rest. */
   final case class Fall(velocityNed: Vector3, ratesFrd: Vector3, rotors: Int => Option[Vector[Double]])
 
-  /** How far it is off MuJoCo's at one moment: m, and the vector of the rotation between both, rad. */
+  /** Deviation from MuJoCo at one instant: position, m, and the rotation vector between both, rad. */
   final case class Apart(position: Vector3, rotation: Vector3):
     def *(factor: Double): Apart = Apart(position * factor, rotation * factor)
     def -(other: Apart): Apart   = Apart(position - other.position, rotation - other.rotation)
@@ -64,10 +64,10 @@ private object MujocoOracleLiveSuite:
   def shown(apart: Seq[Apart]): String =
     s"${(positionM(apart) * 1e6).round} µm, ${(attitudeDeg(apart) * 1e6).round / 1e6}°"
 
-  /** `mjSTATE_XFRC_APPLIED` */
+  /** The state component of external forces, `mjSTATE_XFRC_APPLIED`. */
   private val ForcesFromOutside = 1 << 8
 
-  /** One simulation of a model, whose state is read and written by its parts. */
+  /** One simulation of a model, whose state is accessed by its parts. */
   final class World(xml: String):
     private val batch =
       val file = Files.createTempFile("model", ".xml")
@@ -94,7 +94,7 @@ private object MujocoOracleLiveSuite:
   private val environment  = Environment.Calm
   private val HoverControl = Quadrotor.AirSim.hoverControl(-altitudeM)
 
-  /** Every 0.3 s. */
+  /** Deviations every 0.3 s of a fall. */
   def flown(fall: Fall, stepS: Double, lastsS: Int): Vector[Apart] =
     val quadrotor = Quadrotor(stepS = stepS)
     val state     = QuadrotorState()
@@ -149,7 +149,9 @@ private object MujocoOracleLiveSuite:
   private def thrusts(state: QuadrotorState) =
     Vector(state.thrust0, state.thrust1, state.thrust2, state.thrust3)
 
-  /** Between north, east, down and MuJoCo's x, y, z, which here are north, west, up; likewise of the body. */
+  /** Converts between north, east, down and MuJoCo's x, y, z, which here are north, west, up; also for body
+    * axes.
+    */
   private def turned(v: Vector3): Seq[Double] = Seq(v.x, -v.y, -v.z)
 
   private def untold(v: Seq[Double]): Vector3 = Vector3(v(0), -v(1), -v(2))
@@ -171,7 +173,7 @@ private object MujocoOracleLiveSuite:
       face(airframe.dragDown, body.z)
     ))
 
-  /** From a to b, a small one. */
+  /** The rotation vector of a small rotation from a to b. */
   private def between(a: Quaternion, b: Quaternion): Vector3 =
     val w = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z
     Vector3(

@@ -6,7 +6,7 @@ import skein.testing.Waiting
 import skein.units.Vector3
 import skein.vehicle.*
 
-/** Models of MuJoCo's as bodies, flown by AirSim's flight controller. */
+/** MuJoCo models as bodies, controlled by AirSim's flight controller. */
 class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
   import MujocoRotorcraftLiveSuite.*
 
@@ -48,7 +48,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
         state.ax
     fly(6, Setpoint.velocity(5, 0, 0))
     val braking = fly(6, Setpoint.velocity(0, 0, 0)).drop((3 / rotorcraft.stepS).toInt)
-    // Once the controller alone would have it at rest, the load still pulls to both sides.
+    // When the controller alone would be at rest, the load still pulls to both sides.
     assert(braking.max > 0.05 && braking.min < -0.05, s"${braking.min} to ${braking.max} m/s²")
 
   flying("it stands on the ground, takes off, lands and stands again, and an object's place is not MuJoCo's"):
@@ -115,7 +115,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       val state      = QuadrotorState()
       rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
       rotorcraft.step(state, Setpoint.hold(Vector3(0, 0, -20)), Environment.Calm)
-    // Each has a model, what it was measured by, and what it flies by.
+    // Each consists of a model, a batch for measuring, and a batch for flying.
     val until = System.nanoTime + 60_000_000_000L
     while NativeMemory.freed < before + 9 && System.nanoTime < until do
       System.gc()
@@ -189,7 +189,7 @@ private object MujocoRotorcraftLiveSuite:
     file.toFile.deleteOnExit()
     Files.writeString(file, xml)
 
-  /** Crazyflie 2's body, turned about front, right and down by these accelerations at most, rad/s². */
+  /** Crazyflie 2's model, with these greatest angular accelerations about front, right and down, rad/s². */
   def crazyflie(turning: Seq[Double]): String =
     val moments = turning.zip(Seq(2.3951e-5, 2.3951e-5, 3.2347e-5)).map((rate, inertia) =>
       java.math.BigDecimal(rate * inertia).toPlainString

@@ -5,9 +5,9 @@ import java.lang.foreign.Arena
 import java.nio.file.Path
 import skein.units.Decimals.fixed
 
-/** Steps a second on one thread: vehicles of a model with their flight controllers, told a velocity every 100
-  * ms, beside MuJoCo's own batch, which gets the same number of steps at once, with controls as its rotors
-  * would have. The two take turns; of each the best of some rounds counts.
+/** Steps a second on one thread: vehicles of a model with their flight controllers and a new velocity every
+  * 100 ms, beside MuJoCo's own batch, which makes equally many steps in one call, with rotor-like controls.
+  * The two take turns; the best of several rounds counts for each.
   *
   * @param file a model
   * @param vehicles side by side

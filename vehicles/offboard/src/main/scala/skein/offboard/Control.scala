@@ -8,16 +8,18 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** How vehicles are controlled over MAVLink.
+/** Settings of vehicles controlled over MAVLink.
   *
-  * @param renewEvery a setpoint is sent again so often, until its action's time is over; then the vehicle is
-  *   told to stay where it is, as often, for as long as the link is open. PX4 leaves offboard below 2 Hz
-  * @param sampleEvery how often the vehicle is asked to tell its motion
+  * @param renewEvery interval at which a setpoint is repeated until its action's duration is over; then
+  *   setpoints to stay in place are sent as often, for as long as the link is open. PX4 leaves offboard below
+  *   2 Hz
+  * @param sampleEvery interval of motion samples that the vehicle is requested to send
   * @param timeout of every answer
-  * @param farthestM the geofence: so far from the flight's origin in the plane, m; who leaves it holds its
-  *   position and is flown no more
-  * @param highestM and so far above it
-  * @param exchanges a vehicle is ready after so many TIMESYNCs; until then, one leaves every [[Control.Tick]]
+  * @param farthestM the geofence: greatest horizontal distance from the flight's origin, m; a vehicle that
+  *   leaves it holds its position and accepts no further actions
+  * @param highestM greatest height above the flight's origin, m
+  * @param exchanges number of TIMESYNC exchanges after which a vehicle is ready; until then, one is sent
+  *   every [[Control.Tick]]
   */
 final case class OffboardSettings(
     renewEvery: Span = Span.ofMillis(100),
@@ -28,16 +30,16 @@ final case class OffboardSettings(
     exchanges: Int = 1
 )
 
-/** One vehicle's control as a value: what is asked of it, what comes from it and how time passes go in;
-  * messages and answers come out. Knows no socket and no clock.
+/** One vehicle's control as a value: requests, received messages and passing time go in; messages and answers
+  * come out. Knows no socket and no clock.
   *
-  * A TIMESYNC goes behind every setpoint. Its answer is the setpoint's receipt, and tells when it came, on
-  * the vehicle's clock: so an action counts as replaced when the vehicle has its successor.
+  * A TIMESYNC follows every setpoint. Its answer confirms the setpoint's receipt and states its time on the
+  * vehicle's clock: so an action counts as replaced when the vehicle has its successor.
   *
   * @param originNed of the vehicle's own frame, in the flight's
   * @param asked actions without an answer, the oldest first
-  * @param readers who waits for the next sample
-  * @param firmware whose modes it has, as its heartbeat tells
+  * @param readers tokens of requests for the next sample
+  * @param firmware by its heartbeat; determines the modes
   * @param lastSync the newest TIMESYNC's time; each has a later one
   */
 final case class Control(
@@ -64,10 +66,11 @@ final case class Control(
 ):
   import Control.*
 
-  /** Whether it can be flown: it was heard, its clock is known and so is where its frame is. */
+  /** Whether it is ready to fly: it has sent messages, and its clock and the origin of its frame are known.
+    */
   def isReady: Boolean = missing.isEmpty
 
-  /** What it has not told yet and must have, before it can be flown. */
+  /** The information still missing before it is ready to fly. */
   def missing: Vector[String] =
     if heardAt.isEmpty then Vector("any message")
     else
@@ -81,7 +84,9 @@ final case class Control(
 
   private def isAligned = exchanged >= settings.exchanges
 
-  /** @return an answer of the next sample to `token`
+  /** Requests the next sample.
+    *
+    * @return an answer of the next sample to `token`
     */
   def read(token: Long, now: Instant): Step =
     if readers.size >= MostReaders then
@@ -115,22 +120,22 @@ final case class Control(
   def hover(token: Long, now: Instant): Step =
     known(token)(own => givenUp(enter(token, own, own.holding, now)))
 
-  /** Starts the motors. ArduPilot does so in Guided for who wants to take off from there. */
+  /** Starts the motors. ArduPilot does so in Guided for a vehicle that is to take off from there. */
   def arm(token: Long, now: Instant): Step =
     known(token)(own =>
       guided(own, now).andThen(_.order(token, Command.Arm, now, Vector(1f, 0, 0, 0, 0, 0, 0)))
     )
 
-  /** Stops the motors at once, also of a vehicle that flies, whoever's modes it has. */
+  /** Stops the motors immediately, even in flight, whatever its mode. */
   def kill(token: Long, now: Instant): Step =
     order(token, Command.Arm, now, Vector(0f, CommonDialect.Force.toFloat, 0, 0, 0, 0, 0))
 
-  /** Takes off, to the autopilot's own height where it has one. */
+  /** Takes off, to the autopilot's own height if it has one. */
   def takeoff(token: Long, now: Instant): Step = known(token): own =>
     val numbers = if own.takeoffM.isNaN then Vector.fill(7)(Float.NaN) else Vector.fill(6)(0f) :+ own.takeoffM
     guided(own, now).andThen(_.order(token, Command.Takeoff, now, numbers))
 
-  /** Where it takes off in the mode in which it follows setpoints. */
+  /** Enters the mode that follows setpoints, if this firmware takes off in it. */
   private def guided(own: Firmware, now: Instant): Step =
     if own != Firmware.Copter || mode == own.offboard then Step(this)
     else enter(Silent, own, own.offboard, now)
@@ -144,7 +149,7 @@ final case class Control(
   private def isOffboard(one: Order): Boolean =
     one.mode.exists(wanted => firmware.exists(_.offboard == wanted))
 
-  /** Does nothing more by itself; actions under way end as replaced. */
+  /** Stops commanding the vehicle; actions in progress end as replaced. */
   private def givenUp(step: Step): Step =
     val next = step.next
     step.copy(
@@ -152,7 +157,7 @@ final case class Control(
       answers = step.answers ++ next.asked.map(_.token -> Right(false))
     )
 
-  /** Sends a command until it is answered: [[MostTries]] times, the timeout over all. */
+  /** Sends a command until it is answered: at most [[MostTries]] times within one timeout. */
   def order(
       token: Long,
       command: Int,
@@ -161,21 +166,20 @@ final case class Control(
       mode: Option[Long] = None
   ): Step =
     val one = Order(token, command, numbers, 0, now + settings.timeout, now, None, mode)
-    // A newer command of the kind takes an older one's place.
+    // A newer command of this kind replaces an older one.
     val (older, others) = orders.partition(_.command == command)
     Step(copy(orders = others), answers = older.map(_.token -> Right(false)))
       .andThen(_.copy(orders = others :+ one).due(now))
 
   def heard(message: Message, now: Instant): Step = copy(heardAt = Some(now)).taken(message, now)
 
-  /** @param reference the clock that all vehicles of the flight are told in
-    */
+  /** @param reference the clock of all vehicles' times in this flight */
   def inTimeOf(reference: Option[VehicleClock]): Control =
     (clock, reference) match
       case (Some(own), Some(other)) if own ne other => copy(shift = own.shiftTo(other))
       case _                                        => this
 
-  /** Time has passed: to be called every [[Control.Tick]]. */
+  /** Advances time; to be called every [[Control.Tick]]. */
   def passed(now: Instant): Step =
     val (late, waiting) = readers.partition(_.until <= now)
     val first           = Step(
@@ -192,7 +196,6 @@ final case class Control(
   private def refused(token: Long, why: String): Step =
     Step(this, answers = Vector(token -> Left(VehicleError.Refused(why))))
 
-  /** The newest action is not the only one any more. */
   private def replacing(now: Instant): Control =
     copy(asked =
       asked.dropRight(1).map(one =>
@@ -200,7 +203,7 @@ final case class Control(
       ) ++ asked.lastOption
     )
 
-  /** Actions whose time is over, and those whose receipt has not come. */
+  /** Ends actions whose duration is over, and those whose receipt is overdue. */
   private def ended(now: Instant): Step =
     val (lost, rest) = asked.partition(_.replacedAt.exists(at => now > at + settings.timeout))
     val (done, open) = rest.partition(one => one.replacedAt.isEmpty && now >= one.until)
@@ -213,7 +216,7 @@ final case class Control(
       )
     )
 
-  /** The setpoint, once more, and a TIMESYNC; without one, a TIMESYNC alone. */
+  /** Repeats the setpoint, with a TIMESYNC; without a setpoint, sends a TIMESYNC alone. */
   private def send(now: Instant): Step =
     val at       = now.max(lastSync + Span.ofNanos(1))
     val setpoint =
@@ -243,7 +246,7 @@ final case class Control(
       if !isNew then Step(next) else next.sampled(now)
 
   private def received(sentAt: Instant, theirs: Instant, now: Instant): Step =
-    // An answer to somebody else's question has a time that was never sent.
+    // An answer to another peer's request has a time that was never sent.
     if sentAt > lastSync || now.since(sentAt) > Span.ofSeconds(10) then Step(this)
     else
       val known  = clock.fold(VehicleClock.of(sentAt, theirs, now))(_.answered(sentAt, theirs, now))
@@ -282,14 +285,14 @@ final case class Control(
           answers = Vector(one.token -> Right(true))
         )
       case Some(_) if result == Result.InProgress => Step(this)
-      // Setpoints may not have come yet.
+      // The vehicle may not have received setpoints yet.
       case Some(one) if isOffboard(one) && one.tries < MostTries => Step(this)
       case Some(one)                                             =>
         Step(copy(orders =
           orders.map(other => if other eq one then one.copy(refusal = Some((result, now))) else other)
         ))
 
-  /** The autopilot's own words come beside its refusal. */
+  /** Adds the autopilot's status text to the refusal it explains. */
   private def explained(text: String): Step =
     orders.find(_.refusal.isDefined).fold(Step(this))(one =>
       copy(orders = orders.filter(_ ne one)).failed(one, text)
@@ -300,7 +303,7 @@ final case class Control(
     if !isOffboard(one) then Step(this, answers = Vector(one.token -> Left(error)))
     else Step(copy(flown = None, asked = Vector.empty), answers = asked.map(_.token -> Left(error)))
 
-  /** Commands that are to be sent, again or at last not any more. */
+  /** Sends due commands again, and ends those without tries left. */
   private def due(now: Instant): Step =
     orders.foldLeft(Step(this)): (before, one) =>
       val next = before.next
@@ -331,7 +334,9 @@ final case class Control(
 object Control:
   type Answer = Either[VehicleError, Boolean | Stamped[Kinematics]]
 
-  /** @param answers by their askers' tokens
+  /** A new state, with messages to send.
+    *
+    * @param answers by the tokens of their requests
     */
   final case class Step(
       next: Control,
@@ -342,11 +347,15 @@ object Control:
       val after = more(next)
       Step(after.next, messages ++ after.messages, (answers ++ after.answers).filter(_._1 != Silent))
 
-  /** @param sentAt a TIMESYNC of this time or later tells that the vehicle has it
+  /** An action without an answer.
+    *
+    * @param sentAt the answer to a TIMESYNC of this time or later confirms that the vehicle has received it
     */
   final case class Asked(token: Long, sentAt: Instant, until: Instant, replacedAt: Option[Instant])
 
-  /** @param mode that it sets
+  /** A command in progress.
+    *
+    * @param mode that it sets
     */
   final case class Order(
       token: Long,
@@ -362,21 +371,20 @@ object Control:
       val Vector(p1, p2, p3, p4, p5, p6, p7) = numbers: @unchecked
       CommandLong(system, 1, command, tries, p1, p2, p3, p4, p5, p6, p7)
 
-  /** How often time is told to have passed. */
   val Tick: Span = Span.ofMillis(10)
 
-  /** A command is sent so often within its timeout. */
+  /** Most times that a command is sent within its timeout. */
   val MostTries = 8
 
   private val MostReaders = 8
 
-  /** A refusal's text comes within this. */
+  /** Time within which a refusal's status text arrives. */
   private val TextWithin = Span.ofMillis(150)
 
-  /** Of an asker that needs no answer. */
+  /** Token of a request that needs no answer. */
   private[offboard] val Silent = -1L
 
-  /** What a vehicle does whose action's time is over. */
+  /** The action of a vehicle after its action's duration is over. */
   private val Stay = Action.Velocity(Vector3.Zero)
 
   private def inMs(span: Span): String = s"${span.toMillis.fixed(0)} ms"

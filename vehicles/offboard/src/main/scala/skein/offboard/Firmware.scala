@@ -3,13 +3,13 @@ package skein.offboard
 import skein.mavlink.CommonDialect.ModeFlag
 import skein.mavlink.FlightMode
 
-/** Whose modes a vehicle has, by its autopilot's own numbers.
+/** An autopilot's firmware with its numbers of modes.
   *
-  * @param offboard the mode in which it follows setpoints, as its heartbeat tells it
-  * @param holding the mode in which it stays where it is
-  * @param flyable out of these it is taken into `offboard`: whoever puts it into another one, a pilot or a
-  *   failsafe, has it
-  * @param takeoffM the height that a takeoff is asked for; not a number: the autopilot's own
+  * @param offboard the mode in which it follows setpoints, as in its heartbeat
+  * @param holding the mode in which it stays in place
+  * @param flyable modes from which it is switched to `offboard`: a pilot or a failsafe that switches to any
+  *   other mode keeps control
+  * @param takeoffM height of a takeoff; NaN: the autopilot's own
   */
 enum Firmware(
     val title: String,
@@ -27,17 +27,16 @@ enum Firmware(
         Float.NaN
       )
 
-  /** ArduPilot's copter (`mode.h`), which takes off in Guided and follows setpoints there. Nothing here has
-    * flown with it.
+  /** ArduPilot's copter (`mode.h`), which takes off in Guided and follows setpoints there. Not tested against
+    * a real one.
     */
   case Copter extends Firmware("ArduPilot", 4, 17, Set(4, 17), 2.5f)
 
-  /** What its pilots call this mode. */
   def modeName(mode: Long): String = this match
     case Px4    => FlightMode.of(mode).fold(s"mode ${mode >> 16 & 0xff}.${mode >> 24 & 0xff}")(_.title)
     case Copter => Firmware.copterModes.getOrElse(mode, s"mode $mode")
 
-  /** Parameters of the command to set this mode. */
+  /** Parameters of the command that sets this mode. */
   def modeNumbers(mode: Long): Vector[Float] =
     val (main, sub) = this match
       case Px4    => (mode >> 16 & 0xff, mode >> 24 & 0xff)
@@ -45,11 +44,11 @@ enum Firmware(
     Vector(ModeFlag.Custom.toFloat, main.toFloat, sub.toFloat, 0f, 0f, 0f, 0f)
 
 object Firmware:
-  /** Whose heartbeat this is.
+  /** Recognises the firmware of a heartbeat.
     *
     * @param autopilot `MAV_AUTOPILOT`
     * @param kind `MAV_TYPE`
-    * @return or what was expected
+    * @return Left states what was expected
     */
   def of(autopilot: Int, kind: Int): Either[String, Firmware] = (autopilot, kind) match
     case (12, _)                         => Right(Px4)
@@ -62,7 +61,7 @@ object Firmware:
   /** Coaxial, helicopter, and multirotors of three to twelve rotors (`MAV_TYPE`). */
   private val isCopter = Set(2, 3, 4, 13, 14, 15, 29, 35)
 
-  /** `Mode::Number` of ArduPilot's copter, 4.6. */
+  /** Mode names of ArduPilot's copter by `Mode::Number`, 4.6. */
   private[offboard] val copterModes: Map[Long, String] = Map(
     0L  -> "Stabilize",
     1L  -> "Acro",

@@ -13,11 +13,11 @@ import skein.port.VehicleError
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** Vehicles that speak MAVLink over one connection. It speaks as a ground station: heartbeats, and a TIMESYNC
-  * behind every setpoint.
+/** Vehicles that speak MAVLink over one connection. This end acts as a ground station: it sends heartbeats,
+  * and a TIMESYNC after every setpoint.
   *
   * @param systems the vehicles' numbers, in the flight's order
-  * @param origin of the flight's frame; without it, where the first vehicle's own frame has its origin
+  * @param origin of the flight's frame; without it, the origin of the first vehicle's own frame
   */
 final class MavlinkLink private (
     systems: Vector[Int],
@@ -39,17 +39,17 @@ final class MavlinkLink private (
   private val unsent   = AtomicLong()
   private var beatAt   = Instant.Epoch
 
-  /** Datagrams that the connection had no room for. */
+  /** Datagrams dropped because the connection had no room. */
   def dropped: Long = unsent.get
 
-  /** What is known of a vehicle now. */
   def control(number: Int): Control = controls(number)
 
-  /** The flight's clock, which is the first vehicle's, against the controller's; none before that was heard.
+  /** The flight's clock, which is the first vehicle's, against the controller's; None until its first
+    * exchange.
     */
   def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 
-  /** Asks something of a vehicle. */
+  /** Sends a request to one vehicle's control. */
   private[offboard] def ask(number: Int)(what: (
       Control,
       Long,
@@ -85,7 +85,7 @@ final class MavlinkLink private (
       if isNew then greet(frame.system)
     settle()
 
-  /** Asks a vehicle for what is needed of it. */
+  /** Requests the messages that control needs from a vehicle. */
   private def greet(number: Int): Unit = synchronized:
     def every(id: Int, micros: Float) =
       CommandLong(number, 1, SetInterval, 0, id.toFloat, micros, 0, 0, 0, 0, 0)
@@ -93,14 +93,14 @@ final class MavlinkLink private (
     val muted   = Unneeded.map(every(_, -1))
     send(sampled ++ muted :+ CommandLong(number, 1, RequestMessage, 0, 49, 0, 0, 0, 0, 0, 0))
 
-  /** Where the frames lie, and whose clock it is, once all are known. */
+  /** Fixes the flight's frame and clock once all vehicles are known. */
   private def settle(): Unit = synchronized:
     if systems.forall(number => controls(number).isReady) then
       val reference = controls(systems.head).clock
       for number <- systems do
         val one  = controls(number)
         val from = origin.orElse(controls(systems.head).origin).get
-        // Altitudes count from where each vehicle starts, as in its own frame.
+        // Altitudes are relative to each vehicle's start, as in its own frame.
         val at = if ready.isCompleted then one.originNed else one.origin.get.nedFrom(from).copy(z = 0)
         controls(number) = one.copy(originNed = at).inTimeOf(reference)
       val _ = ready.trySuccess(())
@@ -119,7 +119,9 @@ final class MavlinkLink private (
   private val ticking =
     system.scheduler.scheduleAtFixedRate(Control.Tick.toDuration, Control.Tick.toDuration)(() => tick())
 
-  /** Vehicles go on as their autopilots do without us: in offboard they leave it after their own timeout. */
+  /** Closes the link. Vehicles continue as their autopilots do without it: they leave offboard after their
+    * own timeout.
+    */
   def close(): Future[Done] =
     ticking.cancel()
     queue.complete()
@@ -137,21 +139,20 @@ object MavlinkLink:
   /** ODOMETRY, LOCAL_POSITION_NED, ATTITUDE_QUATERNION. */
   private val Samples = Vector(331, 32, 31)
 
-  /** What comes often and is not looked at: GPS_RAW_INT, ATTITUDE, GLOBAL_POSITION_INT. On a link that keeps
-    * the order, everything that comes delays what comes behind it.
+  /** Frequent messages that are not needed: GPS_RAW_INT, ATTITUDE, GLOBAL_POSITION_INT. On an ordered link
+    * every message delays those behind it.
     */
   private val Unneeded = Vector(24, 30, 33)
 
-  /** Datagrams that may wait. */
+  /** Most datagrams that wait for the connection. */
   private val Waiting = 256
 
   /** Opens a link and waits for all vehicles.
     *
-    * @param connection takes bytes for the vehicles and gives theirs
-    * @param within which all are to be heard
-    * @param isDatagrams whether it gives datagrams, of which each ends where it ends, and not pieces of a
-    *   stream
-    * @return or which vehicles were not heard
+    * @param connection takes bytes for the vehicles and emits theirs
+    * @param within the time for all vehicles to become ready
+    * @param isDatagrams whether it emits datagrams, each of which ends its frames, and not pieces of a stream
+    * @return Left names the vehicles that did not become ready
     */
   def open(
       connection: Flow[ByteString, ByteString, ?],

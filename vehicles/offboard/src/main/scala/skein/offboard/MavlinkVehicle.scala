@@ -7,7 +7,7 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode, or in Guided of ArduPilot's
+/** A MAVLink vehicle as a loop's vehicle port: controlled in PX4's offboard mode, or in Guided of ArduPilot's
   * copter. Not for real aircraft.
   *
   * A reading is the next sample that the vehicle sends. An action ends as replaced when the vehicle has
@@ -31,10 +31,10 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
 
   def arm(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.arm(token, now))
 
-  /** Stops the motors wherever it is: at once, for the link is ready. */
+  /** Stops the motors in any state, immediately, because the link is ready. */
   def kill(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.kill(token, now))
 
-  /** To the autopilot's own height, or 2.5 m; answers when it begins. */
+  /** Takes off to the autopilot's own height, or 2.5 m; answers when takeoff begins. */
   def takeoff(): Future[Either[VehicleError, Boolean]] =
     done((control, token, now) => control.takeoff(token, now))
 

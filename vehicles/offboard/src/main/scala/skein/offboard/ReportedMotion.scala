@@ -4,17 +4,19 @@ import skein.mavlink.*
 import skein.signal.Kinematics
 import skein.units.*
 
-/** What a vehicle has told of its motion, in its own frame: by ODOMETRY, or else by LOCAL_POSITION_NED and
-  * the newest ATTITUDE_QUATERNION.
+/** A vehicle's motion as it reports it, in its own frame: by ODOMETRY, or else by LOCAL_POSITION_NED and the
+  * newest ATTITUDE_QUATERNION.
   *
-  * @param newest and when it was so, on the vehicle's clock
+  * @param newest with its time on the vehicle's clock
   */
 final case class ReportedMotion(
     newest: Option[(state: Kinematics, at: Instant)] = None,
     attitude: Option[AttitudeQuaternion] = None,
     hasOdometry: Boolean = false
 ):
-  /** @return and whether there is something new
+  /** Reads a message.
+    *
+    * @return the motion, and whether it has a new sample
     */
   def heard(message: Message): (ReportedMotion, Boolean) = message match
     case one: Odometry if one.frameId == LocalNed && one.q.size == 4 =>

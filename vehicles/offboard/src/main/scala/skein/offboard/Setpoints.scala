@@ -6,10 +6,10 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.GoTo
 
-/** The message that has a vehicle do an action for now. */
+/** Converts actions to MAVLink setpoint messages. */
 private[offboard] object Setpoints:
 
-  /** Absent where that is no setpoint, but a mode: hovering, landing.
+  /** None for actions that are a mode and no setpoint: hovering, landing.
     *
     * @param state of the vehicle, in its own frame
     * @param originNed of that frame, in the flight's
@@ -24,7 +24,7 @@ private[offboard] object Setpoints:
     case Action.Position(place, speed, yaw) =>
       val goal = place - originNed
       val way  = goal - state.positionNed
-      // No setpoint says how fast a place is flown to: far from it, a velocity does.
+      // No setpoint states the speed towards a position: far from it, a velocity is sent instead.
       if way.norm > NearM then
         val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, speed)
         Some(local(system, Vector3.Zero, velocity, Position | Acceleration, turn(yaw, way)))
@@ -52,7 +52,7 @@ private[offboard] object Setpoints:
   private val NearM        = 1.0
   private val ForwardMps   = 0.5
 
-  /** Bits to ignore, yaw and yaw rate. */
+  /** Mask bits to ignore, yaw, and yaw rate. */
   private def turn(yaw: Yaw, travelNed: Vector3): (mask: Int, yaw: Double, rate: Double) = yaw match
     case Yaw.Towards(heading) => (mask = IgnoreRate, yaw = heading.value, rate = 0.0)
     case Yaw.Turning(rate)    => (mask = IgnoreYaw, yaw = 0.0, rate = rate)

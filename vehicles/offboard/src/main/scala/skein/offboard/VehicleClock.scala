@@ -6,7 +6,7 @@ import skein.units.*
 /** A vehicle's clock against the controller's, by TIMESYNC.
   *
   * @param latestLeg of the newest exchange: the vehicle's time of its answer minus the controller's time of
-  *   the question. It contains the clocks' offset
+  *   the request. It contains the clocks' offset
   * @param exchanges so far
   */
 final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchanges: Int = 1):
@@ -18,9 +18,9 @@ final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchan
       exchanges + 1
     )
 
-  /** What was sampled by the vehicle's clock and came unasked, as if it had been asked for as long before as
-    * the newest TIMESYNC took to the vehicle. So the request cannot have left later than the sample was
-    * taken, and its way is of the link's true distribution.
+  /** Stamps an unrequested sample as if it had been requested one uplink delay of the newest TIMESYNC before
+    * it was taken. So the request time is never later than the sample, and its delay has the link's true
+    * distribution.
     *
     * @param shift of the vehicle's clock to the flight's
     * @param doubt of that shift
@@ -28,8 +28,8 @@ final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchan
   def stamped[A](value: A, sampledAt: Instant, receivedAt: Instant, shift: Span, doubt: Span): Stamped[A] =
     Stamped(value, sampledAt + shift, (sampledAt - latestLeg - doubt).min(receivedAt), receivedAt)
 
-  /** By how much this clock's times differ from another's, and how uncertain that is. Zero and certain where
-    * the two may be one: so are those of vehicles of one simulator.
+  /** How much this clock's times differ from another's, and the uncertainty. Zero and certain where the two
+    * may be one clock, as for vehicles of one simulator.
     */
   def shiftTo(other: VehicleClock): (shift: Span, doubt: Span) =
     val apart = alignment.offset - other.alignment.offset

@@ -52,7 +52,8 @@ class ControlSuite extends munit.FunSuite:
     step.messages.collect { case one: SetPositionTargetLocalNed => (one.vx, one.vy) }
 
   test(
-    "a setpoint leaves at once with a TIMESYNC behind it, and is renewed every 100 ms until its time is over"
+    "a setpoint is sent immediately with a TIMESYNC after it, and repeated every 100 ms until its time " +
+      "is over"
   ):
     val sent = known().act(7, forward, Span.ofMillis(250), at(100))
     assertEquals(velocities(sent), Vector((5f, 0f)))
@@ -61,11 +62,11 @@ class ControlSuite extends munit.FunSuite:
       (1 to 40).foldLeft((sent.next, Vector.empty[Any], Vector.empty[Any])): (before, tick) =>
         val step = before._1.passed(at(100 + 10 * tick))
         (step.next, before._2 ++ velocities(step), before._3 ++ step.answers)
-    // Afterwards it is told to stay, for as long as nothing else is asked.
+    // Afterwards it is commanded to stay, until another action is requested.
     assertEquals(sends, Vector.fill(2)((5f, 0f)) ++ Vector.fill(2)((0f, 0f)))
     assertEquals(answers, Vector((7L, Right(true))))
 
-  test("an action is replaced when the receipt of its successor comes, not before"):
+  test("an action is replaced when the receipt of its successor arrives, not before"):
     val first  = known().act(1, forward, Span.ofSeconds(10), at(100))
     val second = first.next.act(2, aside, Span.ofSeconds(10), at(200))
     assertEquals(second.answers, Vector.empty)
@@ -74,7 +75,7 @@ class ControlSuite extends munit.FunSuite:
     val late = early.next.heard(Timesync(theirs(220).toNanos, syncs(second).head), at(240))
     assertEquals(late.answers, Vector(1L -> Right(false)))
 
-  test("a lost receipt is made up for by that of a renewal; without any, the action is not certain"):
+  test("the receipt of a repetition replaces a lost one; without any, the action is not certain"):
     val two = known().act(
       1,
       forward,
@@ -88,7 +89,7 @@ class ControlSuite extends munit.FunSuite:
       case Vector((1L, Left(error: VehicleError.TimedOut))) => assert(!error.isCertain)
       case other                                            => fail(other.toString)
 
-  test("offboard is asked for behind the first setpoint, again until it is granted"):
+  test("offboard is requested after the first setpoint, and again until it is granted"):
     val sent = known(hold).act(1, forward, Span.ofSeconds(10), at(100))
     assertEquals(velocities(sent).size, 1)
     def modes(step: Control.Step) =
@@ -99,7 +100,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(modes(denied.next.passed(at(240))), Vector(6f))
     assertEquals(denied.next.heard(CommandAck(176, 0), at(260)).next.mode, offboard)
 
-  test("a refusal comes with the autopilot's own text"):
+  test("a refusal includes the autopilot's own text"):
     val asked =
       known(hold, armed = false).order(3, CommonDialect.Command.Arm, at(100), Vector(1, 0, 0, 0, 0, 0, 0))
     val denied = asked.next.heard(CommandAck(400, 1), at(130))
@@ -113,12 +114,15 @@ class ControlSuite extends munit.FunSuite:
       Vector(3L -> Left(VehicleError.Refused("system 1: refused (result 1)")))
     )
 
-  test("who is disarmed, or in a mode that somebody else has chosen, is not flown"):
+  test("a vehicle that is disarmed, or in a mode chosen by another, is not controlled"):
     for control <- Seq(known(armed = false), known(4L << 16 | 5L << 24), known(1L << 16)) do
       val step = control.act(1, forward, Span.ofSeconds(1), at(100))
       assert(step.messages.isEmpty && step.answers.exists(_._2.left.exists(_.isCertain)), step.toString)
 
-  test("ArduPilot's copter is flown in Guided, held in Brake, and takes off in Guided, by its own numbers"):
+  test(
+    "ArduPilot's copter is controlled in Guided, held in Brake, and takes off in Guided, by its own " +
+      "numbers"
+  ):
     def at100(mode: Long, armed: Boolean = true) =
       known().heard(heartbeat(mode, armed, autopilot = 3), at(50)).next
     def modes(step: Control.Step) =
@@ -140,7 +144,7 @@ class ControlSuite extends munit.FunSuite:
       Vector(1L -> Left(VehicleError.Refused("system 1 is in RTL: somebody else has taken it over")))
     )
 
-  test("an autopilot whose modes are not known is neither armed nor flown, and the refusal names it"):
+  test("an autopilot with unknown modes is neither armed nor controlled, and the refusal names it"):
     for (autopilot, kind, named) <- Seq((0, 2, "autopilot 0"), (3, 1, "type 1")) do
       val stranger = known().heard(heartbeat(offboard, armed = true, autopilot, kind), at(50)).next
       for step <- Seq(
@@ -188,11 +192,11 @@ class ControlSuite extends munit.FunSuite:
           control.heard(Timesync(theirs(20 + 10 * tick).toNanos, sent), now).next
         (back, before._2 :+ syncs(step).size)
     assert(aligned.isReady)
-    // One more had gone when the fifth was back.
+    // One more had been sent when the fifth was answered.
     assertEquals(counts.take(7).sum, 6)
     assert((4 to 5).contains(counts.drop(7).sum), counts.toString)
 
-  test("what a vehicle has not told yet is named"):
+  test("information that a vehicle has not sent yet is named"):
     val unheard = Control(1, OffboardSettings(exchanges = 5))
     assertEquals(unheard.missing, Vector("any message"))
     val heard = unheard.heard(heartbeat(offboard, true), at(10)).next
@@ -205,10 +209,10 @@ class ControlSuite extends munit.FunSuite:
       )
     )
 
-  test("a sample answers all readings that wait, in the flight's frame, with the bounds that TIMESYNC gives"):
+  test("a sample answers all waiting readings, in the flight's frame, with the bounds that TIMESYNC gives"):
     val synced =
       known().copy(originNed = Vector3(10, 0, 0)).heard(Timesync(theirs(30).toNanos, at(15).toNanos), at(50))
-    // Its question was sent at 20 ms at the earliest.
+    // Its request was sent at 20 ms at the earliest.
     val step =
       synced.next.copy(lastSync = at(20)).heard(Timesync(theirs(30).toNanos, at(20).toNanos), at(50)).next
         .read(4, at(60)).next.heard(sample(70, north = 3), at(85))
@@ -218,7 +222,7 @@ class ControlSuite extends munit.FunSuite:
         assertEquals((told.validAt, told.sentAt, told.receivedAt), (theirs(70), at(60), at(85)))
       case other => fail(other.toString)
 
-  test("who leaves the geofence holds its position and is flown no more"):
+  test("a vehicle that leaves the geofence holds its position and accepts no more actions"):
     val flying = known().heard(Timesync(theirs(1).toNanos, 0), at(20)).next.copy(
       clock = Some(VehicleClock.of(at(0), theirs(5), at(10)))
     )
@@ -230,7 +234,7 @@ class ControlSuite extends munit.FunSuite:
     })
     assert(out.next.act(2, forward, Span.ofSeconds(1), at(140)).answers.head._2.isLeft)
 
-  test("stamps of samples keep the bounds of the clocks' offset true, whatever the legs are"):
+  test("stamps of samples keep the bounds of the clocks' offset valid, for any delays"):
     val random  = scala.util.Random(3)
     var clock   = VehicleClock.of(at(0), theirs(20), at(40))
     var aligned = Option.empty[ClockAlignment]
@@ -245,7 +249,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(found.restarts, 0)
     assert(found.lower <= Span.ofSeconds(1000) && Span.ofSeconds(1000) <= found.upper, found.toString)
 
-  test("vehicles of one clock are told in it; of two clocks, in the first one's"):
+  test("times of vehicles with one clock are in it; with two clocks, in the first one's"):
     val one   = VehicleClock.of(at(0), theirs(20), at(40))
     val same  = VehicleClock.of(at(5), theirs(15), at(35))
     val other = VehicleClock.of(at(0), theirs(520), at(40))

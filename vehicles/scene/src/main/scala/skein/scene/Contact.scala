@@ -2,27 +2,27 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** A body that touches a scene's object.
+/** The contact of a body with a scene's object.
   *
   * @param normal of unit length, away from the object
-  * @param depthM how far to go along it to be free
+  * @param depthM distance along it that ends the contact
   * @param point of the body's surface, the deepest within the object
   */
 final case class Contact(item: Int, normal: Vector3, depthM: Double, point: Vector3)
 
 object Contact:
 
-  /** The deepest contact of a box with a scene's objects, the ground aside. By separating axes: the faces'
-    * normals of both, not the edges' products, so that a box counts as touching a little before its edge
-    * meets another edge.
+  /** The deepest contact of a box with a scene's objects, without the ground. Computed by separating axes:
+    * the faces' normals of both, not the edges' products, so that a box counts as touching a little before
+    * its edge meets another edge.
     *
-    * @param half of the box' lengths, m
+    * @param half of the box's lengths, m
     */
   def of(scene: Scene, box: Placement, half: Vector3): Option[Contact] =
     scene.solids.iterator.flatMap(touch(_, box, half)).maxByOption(_.depthM)
 
-  /** How far a body may go at least before it can touch anything: from its centre to the nearest object, less
-    * their reach.
+  /** A lower bound on the distance that a body can move before it touches anything: from its centre to the
+    * nearest object, less `reachM`, its radius.
     */
   def clearanceM(scene: Scene, centre: Vector3, reachM: Double): Double =
     scene.solids.iterator.map(solid => (solid.centre - centre).norm - solid.reachM - reachM)
@@ -50,7 +50,8 @@ object Contact:
         consider(axis * -1, length - along.min)
     Option.when(least > 0 && least.isFinite)(Contact(solid.item, away, least, deepest(box, half, away)))
 
-  /** The corner farthest against the normal; in the middle of an edge or face that is as far. */
+  /** The box's corner that is farthest against the normal; the middle of an edge or face that is equally far.
+    */
   private def deepest(box: Placement, half: Vector3, normal: Vector3): Vector3 =
     def reach(axis: Vector3, length: Double) =
       val cosine = normal.dot(axis)

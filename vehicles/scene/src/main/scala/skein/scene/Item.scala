@@ -1,8 +1,7 @@
 package skein.scene
 
-/** How a [[Moment]] counts what is there: the ground, then the scene's objects, then vehicles. */
+/** How a [[Moment]] numbers its items: the ground, then the scene's objects, then vehicles. */
 object Item:
-  /** None of them. */
   val Nothing: Int = -1
 
   val Ground: Int = 0

@@ -6,11 +6,11 @@ import skein.units.Vector3
 /** A lidar that turns around its down axis. The defaults are AirSim's for multirotors.
   *
   * @param place on the vehicle
-  * @param rangeM what is farther gives no point
+  * @param rangeM objects beyond it give no point
   * @param horizontalFovDeg from, to, clockwise from the front; other points are dropped, as in AirSim, and
-  *   where both are equal none is
+  *   where both are equal none is dropped
   * @param noiseM standard deviation of the range
-  * @param fresh whether a scan is taken when it is asked for, of that instant, instead of once a turn
+  * @param fresh whether a scan is taken on request, of that instant, instead of once a turn
   */
 final case class Lidar(
     channels: Int = 16,
@@ -25,11 +25,12 @@ final case class Lidar(
     seed: Long = 0,
     fresh: Boolean = false
 ):
-  /** Rays of one turn: at most 100,000, as in AirSim. */
+  /** Rays in one turn: at most 100,000, as in AirSim. */
   val rays: Int = math.min(Lidar.MostRays, math.round(pointsPerSecond.toDouble / rotationsPerSecond).toInt)
 
-  /** Directions in the lidar's frame, three numbers each. One ray after another is the next channel's, from
-    * the upper one down, and a channel's angular step is a turn over its rays, as AirSim has them.
+  /** Ray directions in the lidar's frame, three numbers each. Consecutive rays belong to consecutive
+    * channels, from the uppermost down; a channel's angular step is a turn divided by its number of rays, as
+    * in AirSim.
     */
   private lazy val directions: Array[Double] =
     val perChannel     = math.max(1, math.round(rays.toDouble / channels)).toDouble
@@ -53,11 +54,11 @@ final case class Lidar(
 
   private def turn(deg: Double): Double = ((deg % 360) + 360) % 360
 
-  /** Points and the items that they lie on, from a vehicle at this place in the world.
+  /** The points that a scan from a vehicle at this place in the world hits, with their items.
     *
     * @param except the item that the vehicle is
-    * @param origin of the frame that points are told in, in the world, unless it is the sensor's own
-    * @param count of the scan: of which numbers its noise is
+    * @param origin in the world of the points' frame; the sensor's own frame without it
+    * @param count of the scan: selects its noise
     */
   def scan(moment: Moment, vehicle: Placement, except: Int, origin: Vector3, count: Long): Lidar.Points =
     val sensor = vehicle.outside(place)
@@ -92,7 +93,7 @@ final case class Lidar(
     Lidar.Points(java.util.Arrays.copyOf(xyz, 3 * found), java.util.Arrays.copyOf(items, found))
 
 object Lidar:
-  /** Of one scan: AirSim's limit. */
+  /** Most rays in one scan, as in AirSim. */
   val MostRays = 100_000
 
   /** @param xyz three numbers a point, m

@@ -2,8 +2,8 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** Everything that is there at one instant: the scene, and vehicles where they are. Its items are counted: 0
-  * is the ground, then come the objects, then the vehicles.
+/** Everything that exists at one instant: the scene, and vehicles at their places. Items are numbered: 0 is
+  * the ground, then the objects, then the vehicles.
   */
 final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
@@ -12,27 +12,26 @@ final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
   private[skein] def eachSolid(visit: Solid => Unit): Unit = solids.foreach(visit)
 
-  /** The item that a vehicle is. */
   def itemOf(vehicle: Int): Int = Item.FirstObject + scene.objects.size + vehicle
 
   def items: Int = itemOf(vehicles.size)
 
   def name(item: Int): String = thing(item).fold(Scene.Ground)(_.name)
 
-  /** None: the ground. */
+  /** The object or vehicle with this item number; None for the ground. */
   def thing(item: Int): Option[SceneObject] =
     val index = item - Item.FirstObject
     if index < 0 then None
     else if index < scene.objects.size then Some(scene.objects(index))
     else Some(vehicles(index - scene.objects.size))
 
-  /** The least boxes around all convex parts, in the world: the lowest corner and the highest. */
+  /** The bounding boxes of all convex parts, in the world: lowest and highest corner. */
   def bounds: Seq[(Vector3, Vector3)] = solids.map: solid =>
     SceneObject.around(solid.corners.grouped(3).map(c => Vector3(c(0), c(1), c(2))).toSeq)
 
-  /** Whether nothing stands between two points. The ground hides what lies below it.
+  /** Whether nothing blocks the line between two points. The ground hides what lies below it.
     *
-    * @param except an item that does not stand in the way: the one that looks
+    * @param except an item that does not block: the observer
     */
   def sees(from: Vector3, to: Vector3, except: Int = Item.Nothing): Boolean =
     val way = to - from
@@ -42,7 +41,7 @@ final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
     )
 
 object Moment:
-  /** What lies no deeper than this lies on the ground: places that come as a latitude and a 32-bit altitude
-    * are no better, m.
+  /** Points less deep than this lie on the ground, m: positions received as latitude and 32-bit altitude are
+    * no more exact.
     */
   val GroundToleranceM = 0.001

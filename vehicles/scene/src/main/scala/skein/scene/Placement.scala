@@ -2,36 +2,36 @@ package skein.scene
 
 import skein.units.{Quaternion, Vector3}
 
-/** Where something is and how it is turned: leads from its own frame (front, right, down) to the one that it
-  * is placed in, such as the world (north, east, down). Metres.
+/** A position and orientation: transforms from its own frame (front, right, down) to the frame it is placed
+  * in, such as the world (north, east, down). Metres.
   *
   * @param orientation a unit quaternion
   */
 final class Placement(val position: Vector3, val orientation: Quaternion = Quaternion.Identity):
   import orientation.{w, x, y, z}
 
-  /** Its own axes, in the frame that it is placed in. */
+  /** Its own axes, in the frame it is placed in. */
   val front: Vector3 = Vector3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y))
   val right: Vector3 = Vector3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
   val down: Vector3  = Vector3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
 
-  /** A place given in its own frame, outside. */
+  /** Transforms a position from the own to the outer frame. */
   def outside(own: Vector3): Vector3 = position + turned(own)
 
-  /** A direction given in its own frame, outside. */
+  /** Rotates a direction from the own to the outer frame. */
   def turned(own: Vector3): Vector3 = front * own.x + right * own.y + down * own.z
 
-  /** A place given outside, in its own frame. */
+  /** Transforms a position from the outer to the own frame. */
   def inside(there: Vector3): Vector3 =
     val from = there - position
     Vector3(from.dot(front), from.dot(right), from.dot(down))
 
-  /** What is placed in this frame, outside. */
+  /** Transforms a placement in this frame to the outer frame. */
   def outside(inner: Placement): Placement =
     Placement(outside(inner.position), orientation * inner.orientation)
 
 object Placement:
-  /** Turned by roll, then pitch, then yaw, degrees: the order of AirSim's settings. */
+  /** A placement turned by roll, then pitch, then yaw, degrees: the order of AirSim's settings. */
   def turned(position: Vector3, rollDeg: Double, pitchDeg: Double, yawDeg: Double): Placement =
     def half(deg: Double) = StrictMath.toRadians(deg) / 2
     val (cr, sr)          = (StrictMath.cos(half(rollDeg)), StrictMath.sin(half(rollDeg)))
@@ -47,7 +47,7 @@ object Placement:
       )
     )
 
-/** Products of vectors. */
+/** Scalar and vector products of two vectors. */
 extension (a: Vector3)
   private[scene] def dot(b: Vector3): Double    = a.x * b.x + a.y * b.y + a.z * b.z
   private[scene] def cross(b: Vector3): Vector3 =

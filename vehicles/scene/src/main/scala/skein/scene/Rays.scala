@@ -2,9 +2,9 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** Rays from one place: what of a moment each of them meets first. The bodies are sorted into sectors around
-  * the place, by a stand-in for the azimuth that needs no arc tangent, and within each by how near they can
-  * be; so a ray tests few.
+/** Casts rays from one point and returns the first item that each hits. Bodies are sorted into sectors around
+  * the point, by a monotonic substitute for the azimuth that needs no arc tangent, and within each by their
+  * least distance; so a ray tests few of them.
   */
 final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
   import Rays.*
@@ -19,12 +19,10 @@ final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
     for index <- bodies.indices do sectorsOf(bodies(index)).foreach(lists(_) += index)
     lists.map(_.result())
 
-  /** The item that the last ray has met. */
+  /** The item that the last ray has hit; `Item.Nothing` if none. */
   var item: Int = Item.Nothing
 
-  /** How far the ray in this direction, of unit length, goes until it meets something, m; infinite if not
-    * within range.
-    */
+  /** Distance along a unit direction to the first hit, m; infinite if nothing is within range. */
   def cast(dx: Double, dy: Double, dz: Double): Double =
     item = Item.Nothing
     var least = Double.PositiveInfinity
@@ -48,7 +46,7 @@ final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
 
   private def nearest(solid: Solid): Double = math.max(0, (solid.centre - origin).norm - solid.reachM)
 
-  /** Those that the body reaches into: all, if it may be above or below. */
+  /** The sectors that the body extends into: all, if it may be above or below. */
   private def sectorsOf(solid: Solid): Seq[Int] =
     val (x, y) = (solid.centre.x - origin.x, solid.centre.y - origin.y)
     if math.sqrt(x * x + y * y) <= solid.reachM then 0 until Sectors
@@ -61,7 +59,7 @@ final class Rays(moment: Moment, origin: Vector3, rangeM: Double, except: Int):
         val short = if apart > 2 then apart - 4 else if apart < -2 then apart + 4 else apart
         low = math.min(low, short)
         high = math.max(high, short)
-      // One more on each side: of rounding.
+      // One more on each side, because of rounding.
       val first = math.floor((middle + low) * PerUnit).toInt - 1
       val last  = math.floor((middle + high) * PerUnit).toInt + 1
       if last - first >= Sectors then 0 until Sectors else (first to last).map(Math.floorMod(_, Sectors))
@@ -70,7 +68,7 @@ object Rays:
   private val Sectors = 256
   private val PerUnit = Sectors / 4.0
 
-  /** Grows with the azimuth, from 0 at north by 1 a quarter to below 4. */
+  /** A monotonic function of the azimuth: 0 at north, growing by 1 a quarter turn to below 4. */
   private def azimuth(x: Double, y: Double): Double =
     val sum = math.abs(x) + math.abs(y)
     if sum == 0 then 0

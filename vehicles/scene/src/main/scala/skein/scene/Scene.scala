@@ -1,10 +1,10 @@
 package skein.scene
 
-/** What stands in a world: flat ground at z = 0 under a sky, and objects. North, east, down, m.
+/** A world: flat ground at z = 0 under a sky, and objects. North, east, down, m.
   *
   * @param groundRgb colours are 0xrrggbb
-  * @param vehicleTagM side of the AprilTag that every vehicle bears on its front, right, back and left, with
-  *   the number of its place among the vehicles; 0: none
+  * @param vehicleTagM side of the AprilTag on every vehicle's front, right, back and left, with the vehicle's
+  *   number; 0: none
   */
 final case class Scene(
     objects: Vector[SceneObject] = Vector.empty,
@@ -15,13 +15,11 @@ final case class Scene(
   private[scene] val solids: Vector[Solid] =
     objects.zipWithIndex.flatMap((thing, index) => thing.solids(Item.FirstObject + index))
 
-  /** The same with this object elsewhere. */
+  /** A copy of the scene with this object at another place. */
   def moved(index: Int, place: Placement): Scene =
     copy(objects = objects.updated(index, objects(index).copy(place = place)))
 
 object Scene:
-  /** Ground, sky, and nothing else. */
   val Empty: Scene = Scene()
 
-  /** The ground's name. */
   val Ground = "Ground"

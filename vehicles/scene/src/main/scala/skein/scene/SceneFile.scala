@@ -9,26 +9,24 @@ import skein.units.Vector3
 
 /** Why a scene cannot be used.
   *
-  * @param place file and line, as far as known
+  * @param place file and line, if known
   */
 final case class SceneError(place: String, problem: String):
   def message: String = s"$place: $problem"
 
-/** Scenes as files, in HOCON or JSON: `docs/guides/cameras.md` has the keys. */
+/** Reads scene files in HOCON or JSON; `docs/guides/cameras.md` lists the keys. */
 object SceneFile:
-  /** Scenes that ship, by name. */
+  /** Names of the scenes in the distribution. */
   val Names: Vector[String] = Vector("empty", "forest", "pursuit", "street")
 
-  /** Objects at most. */
   val MostObjects = 2000
 
-  /** A scene that ships. */
+  /** Loads a scene of the distribution; None if there is none of this name. */
   def named(name: String): Option[Scene] = Option.when(Names.contains(name)):
     val text = String(getClass.getResourceAsStream(s"$name.conf").readAllBytes, "UTF-8")
     parse(text, s"$name.conf").fold(error => throw IllegalStateException(error.message), identity)
 
-  /** @param from what errors call it
-    */
+  /** @param from the source that error messages name */
   def parse(text: String, from: String): Either[SceneError, Scene] =
     try
       val options = ConfigParseOptions.defaults.setOriginDescription(from).setAllowMissing(false)
@@ -43,7 +41,7 @@ object SceneFile:
       case _: StackOverflowError =>
         Left(SceneError(from, "its braces and brackets are nested too deeply to be read"))
 
-  /** A scene reads no other file, and asks nobody for one. */
+  /** A scene file includes no other file and makes no request. */
   final private class NoIncludes(from: String)
       extends ConfigIncluder, ConfigIncluderFile, ConfigIncluderURL, ConfigIncluderClasspath:
     private def refuse(what: Any): Nothing = throw Misfit(from, s"a scene includes no other file: $what")
@@ -129,7 +127,7 @@ object SceneFile:
           s"expected one of box, pole, wall or tag, came ${if came.isEmpty then "nothing" else came}"
         )
 
-  /** What stands upon the ground unless `at` has a third number. */
+  /** An object on the ground, unless `at` has a third number. */
   private def standing(entry: Config, kind: String, index: Int, shape: Shape, halfM: Double): SceneObject =
     made(entry, kind, index, shape, place(entry, halfM), if kind == "Pole" then 0x6b4f3a else 0x9a8f80)
 
@@ -156,7 +154,7 @@ object SceneFile:
       number(entry, "yaw-deg", Some(0), -360, 360)
     )
 
-  /** Poles at places of a seed, apart from one another and from places to keep clear. */
+  /** Poles at positions drawn from a seed, with distances between each other and to places to keep clear. */
   private def scatter(entry: Config): Vector[SceneObject] =
     only(entry, "name", "colour", "count", "seed", "within", "radius-m", "height-m", "apart-m", "clear")
     val name           = if entry.hasPath("name") then entry.getString("name") else "Pole"

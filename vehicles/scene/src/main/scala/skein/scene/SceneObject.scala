@@ -2,10 +2,10 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** Something with a name that stands somewhere, made of convex parts.
+/** A named object in the world, made of convex parts.
   *
   * @param place in the world: north, east, down, m
-  * @param id for segmentation, 0 to 255; None: by its name
+  * @param id for segmentation, 0 to 255; None: derived from its name
   */
 final case class SceneObject(
     name: String,
@@ -14,7 +14,7 @@ final case class SceneObject(
     id: Option[Int] = None
 ):
 
-  /** The least box around it in its own frame: its lowest corner and its highest. */
+  /** The bounding box in its own frame: lowest and highest corner. */
   def bounds: (Vector3, Vector3) =
     val corners = parts.flatMap(part => part.shape.polyhedron._1.map(part.at.outside))
     SceneObject.around(corners)
@@ -35,6 +35,5 @@ object SceneObject:
 
   private val AtOrigin = Placement(Vector3.Zero)
 
-  /** An object of one part. */
   def apply(name: String, shape: Shape, place: Placement, rgb: Int, id: Option[Int]): SceneObject =
     SceneObject(name, Vector(Part(shape, AtOrigin, rgb)), place, id)

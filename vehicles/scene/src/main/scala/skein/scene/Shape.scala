@@ -4,21 +4,20 @@ import skein.units.Vector3
 
 /** A convex shape around its own origin: front, right, down, m. */
 enum Shape:
-  /** @param half of its lengths
-    */
+  /** @param half of the box's lengths, m */
   case Box(half: Vector3)
 
-  /** An upright pole of eight sides.
+  /** An upright pole with eight sides.
     *
     * @param radiusM to its edges
     * @param halfM of its height
     */
   case Pole(radiusM: Double, halfM: Double)
 
-  /** A plate of 2 mm that shows an AprilTag of family 36h11 to the front.
+  /** A plate of 2 mm thickness whose front shows an AprilTag of family 36h11.
     *
-    * @param sideM of its black square, which is what detectors call its width; a white margin of an eighth of
-    *   it is around
+    * @param sideM of its black square, which detectors call its width; a white margin of an eighth of it
+    *   surrounds it
     */
   case Tag(number: Int, sideM: Double)
 
@@ -39,7 +38,7 @@ object Shape:
   private val Sides  = 8
   private val PlateM = 0.002
 
-  /** The front comes first: it bears a tag's pattern. */
+  /** A box's corners and faces. The front face comes first: it shows a tag's pattern. */
   private def box(half: Vector3): (Array[Vector3], Array[Array[Int]]) =
     val corners = Array.tabulate(8): i =>
       def side(bit: Int, length: Double) = if (i & bit) == 0 then -length else length

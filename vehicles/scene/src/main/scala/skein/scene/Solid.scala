@@ -2,9 +2,9 @@ package skein.scene
 
 import skein.units.Vector3
 
-/** A convex body in the world, as faces. Immutable once made.
+/** A convex body in the world, as faces. Immutable.
   *
-  * @param item whose part it is, as [[Moment]] counts
+  * @param item that it is a part of, by [[Moment]]'s numbers
   * @param corners x, y, z of each, NED, m
   */
 final private[skein] class Solid private (
@@ -15,9 +15,7 @@ final private[skein] class Solid private (
     val reachM: Double
 ):
 
-  /** How far along a ray it is entered: in lengths of the direction, 0 from inside, infinite if not within
-    * `limit`.
-    */
+  /** Where a ray enters it: in lengths of the direction, 0 from inside, infinite if not within `limit`. */
   def hit(ox: Double, oy: Double, oz: Double, dx: Double, dy: Double, dz: Double, limit: Double): Double =
     var enter = 0.0
     var leave = limit
@@ -34,9 +32,11 @@ final private[skein] class Solid private (
 
 private[skein] object Solid:
 
-  /** @param nx unit normal outwards; inside is where n·p ≤ `d`
+  /** One face of a body.
+    *
+    * @param nx unit normal outwards; inside is where n·p ≤ `d`
     * @param loop corners, counter-clockwise seen from outside
-    * @param rgb in this light, 0xrrggbb
+    * @param rgb in the scene's light, 0xrrggbb
     */
   final class Face(
       val nx: Double,
@@ -51,8 +51,8 @@ private[skein] object Solid:
   /** Cells painted on a face.
     *
     * @param origin of the upper left cell's upper left corner
-    * @param across from it to the next column's, over the squared length of a cell: a place's column is its
-    *   product with this; `down` likewise
+    * @param across from it to the next column's, over the squared length of a cell: a position's column is
+    *   its product with this; `down` likewise
     */
   final class Pattern(val white: Array[Boolean], val origin: Vector3, val across: Vector3, val down: Vector3)
 
@@ -76,7 +76,7 @@ private[skein] object Solid:
       corners.iterator.map(c => (c - place.position).norm).max
     )
 
-  /** A square of flat ground around this place, as far as `reachM` to each side. */
+  /** A square of flat ground around a position, `reachM` to each side. */
   def ground(place: Vector3, reachM: Double, rgb: Int): Solid =
     val corners =
       Array(-1, 1).flatMap(n => Array(n, -n).map(e => place + Vector3(n * reachM, e * reachM, 0)))
@@ -89,7 +89,7 @@ private[skein] object Solid:
       2 * reachM
     )
 
-  /** As one sees it who faces it: its columns run to the plate's left. */
+  /** A tag's pattern, as seen from the front: its columns run to the plate's left. */
   private def painted(number: Int, side: Double, place: Placement): Pattern =
     val cell = side / 8
     val half = cell * AprilTag.Cells / 2
@@ -100,7 +100,7 @@ private[skein] object Solid:
       place.down * (1 / cell)
     )
 
-  /** Under a sky that lights what faces it, from the north-west most. */
+  /** A face's colour under a sky whose light is strongest from the north-west. */
   private def lit(rgb: Int, normal: Vector3): Int =
     val light               = 0.75 + 0.25 * normal.dot(Sun)
     def channel(shift: Int) = (((rgb >> shift) & 0xff) * light + 0.5).toInt << shift

@@ -17,7 +17,7 @@ class LidarSuite extends munit.FunSuite:
     assertEquals(radii.map(r => math.round(r * 1000)).distinct.size, 16)
     assert(points.items.length > 9900 && points.items.length < 10_000, s"${points.items.length}")
 
-  test("a ray meets what the nearest of all bodies is, wherever the lidar is"):
+  test("a ray hits the nearest of all bodies, wherever the lidar is"):
     val level = Lidar(verticalFovDeg = (-30, 30), rangeM = 200)
     for seed <- 1 to 5 do
       val moment = Moment(Scenes.boxes(40, seed), Vector.empty)
@@ -39,7 +39,7 @@ class LidarSuite extends munit.FunSuite:
         val ground = if unit.z > 0 then -place.position.z / unit.z else Double.PositiveInfinity
         assertEqualsDouble(way.norm, math.min(met.min, ground), 1e-3)
 
-  test("points in the sensor's frame are those in the world's, seen from it"):
+  test("points in the sensor's frame are the world's, transformed"):
     val place = Placement.turned(Vector3(3, -2, -4), 5, 10, 120)
     val world = scan(Lidar(place = Placement(Vector3(0, 0, 0.1))), place)
     val own   = scan(Lidar(place = Placement(Vector3(0, 0, 0.1)), sensorFrame = true), place)
@@ -49,7 +49,7 @@ class LidarSuite extends munit.FunSuite:
       def point(xyz: Array[Float]) = Vector3(xyz(3 * i), xyz(3 * i + 1), xyz(3 * i + 2))
       assert((where.outside(point(own.xyz)) - point(world.xyz)).norm < 1e-3)
 
-  test("noise is of its seed and its scan, and of its size"):
+  test("noise depends on its seed and its scan, and has the stated size"):
     val noisy                        = Lidar(noiseM = 0.05, seed = 3, sensorFrame = true)
     val exact                        = Lidar(sensorFrame = true)
     val place                        = Placement(Vector3(0, 0, -5))
@@ -65,7 +65,7 @@ class LidarSuite extends munit.FunSuite:
     assert(narrow.items.length > 1000)
     for p <- narrow.xyz.grouped(3) do assert(math.abs(math.toDegrees(math.atan2(p(1), p(0)))) < 20.01)
 
-  test("a field of view from an angle to the same one is the whole turn"):
+  test("a field of view from an angle to itself is the whole turn"):
     for fov <- Seq((0.0, 0.0), (0.0, 360.0), (90.0, 90.0)) do
       val lidar = Lidar(channels = 1, horizontalFovDeg = fov, verticalFovDeg = (-30, -30))
       assertEquals(scan(lidar, Placement(Vector3(0, 0, -10))).items.length, lidar.rays, fov)

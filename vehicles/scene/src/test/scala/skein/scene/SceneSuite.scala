@@ -6,7 +6,7 @@ class SceneSuite extends munit.FunSuite:
   private def error(text: String): String =
     SceneFile.parse(text, "my.conf").fold(_.message, scene => fail(s"$scene"))
 
-  test("the scenes that ship are read, with a forest's trees apart"):
+  test("the scenes of the distribution are read, with distances between a forest's trees"):
     assertEquals(SceneFile.named("empty"), Some(Scene.Empty))
     val trees = SceneFile.named("forest").get.objects
     assertEquals(trees.size, 120)
@@ -17,7 +17,7 @@ class SceneSuite extends munit.FunSuite:
     assert(SceneFile.named("street").get.objects.exists(_.name == "Tag2"))
     assertEquals(SceneFile.named("moon"), None)
 
-  test("what stands on the ground has its foot there, walls and plates are where they are said to be"):
+  test("objects on the ground have their foot there, walls and plates are at their stated positions"):
     val scene = SceneFile.parse(
       """objects = [
         |  { box = [2, 4, 6], at = [10, 0] }
@@ -31,7 +31,7 @@ class SceneSuite extends munit.FunSuite:
     assertEquals(scene.objects(1).place.position, Vector3(0, 7, -1.5))
     assertEquals((scene.objects(2).place.position, scene.objects(2).id), (Vector3(1, 2, -3), Some(9)))
 
-  test("what is wrong in a file is told with its line"):
+  test("a mistake in a file is reported with its line"):
     assertEquals(
       error("objects = [\n  { box = [1, 2], at = [0, 0] }\n]"),
       "my.conf: 2: box: expected 3 numbers in brackets"
@@ -62,7 +62,7 @@ class SceneSuite extends munit.FunSuite:
   private val scene = Scene(Vector(house, pole))
   private val half  = Vector3(0.3, 0.3, 0.1)
 
-  test("a box that reaches into another is told how deep, and the way out"):
+  test("a box that overlaps another gives the depth, and the direction out"):
     val contact = Contact.of(scene, Placement(Vector3(7.8, 1, -2)), half).get
     assertEquals(contact.item, 1)
     assertEqualsDouble(contact.depthM, 0.1, 1e-9)
@@ -70,7 +70,7 @@ class SceneSuite extends munit.FunSuite:
     assertEqualsDouble(contact.point.x, 8.1, 1e-9)
     assertEquals(Contact.of(scene, Placement(Vector3(7.69, 1, -2)), half), None)
 
-  test("who goes no farther than the clearance touches nothing"):
+  test("a body that moves no farther than the clearance touches nothing"):
     val at   = Vector3(0, 5, -3)
     val free = Contact.clearanceM(scene, at, half.norm)
     for angle <- 0 until 360 by 5 do
@@ -79,7 +79,7 @@ class SceneSuite extends munit.FunSuite:
       assertEquals(Contact.of(scene, Placement.turned(at + way, angle, 10, angle), half), None)
     assert(Contact.clearanceM(Scene.Empty, at, 1).isInfinite)
 
-  test("objects and the ground stand in the way of sight, but for the one that looks"):
+  test("objects and the ground block lines of sight, except for the observer"):
     val moment = Moment(scene, Vector.empty)
     assert(!moment.sees(Vector3(0, 0, -2), Vector3(20, 0, -2)))
     assert(moment.sees(Vector3(0, 0, -2), Vector3(20, 0, -2), except = 1))

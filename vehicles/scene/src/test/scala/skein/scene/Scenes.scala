@@ -6,7 +6,7 @@ import skein.units.Vector3
 /** Scenes for tests and measurements. */
 private[skein] object Scenes:
 
-  /** Boxes of a seed, some through one another, north of the origin. */
+  /** Randomly placed boxes, some intersecting each other, north of the origin. */
   def boxes(count: Int, seed: Long): Scene =
     val random                      = SplitMix64(seed)
     def among(a: Double, b: Double) = a + (b - a) * random.nextDouble()

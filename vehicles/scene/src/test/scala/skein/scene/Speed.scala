@@ -5,7 +5,7 @@ import java.util.zip.CRC32
 import skein.scene.render.*
 import skein.units.Vector3
 
-/** CPU time of images and scans, beside a witness of what was drawn: `scene/Test/runMain skein.scene.speed`.
+/** CPU time of images and scans, with a witness of the drawn bytes: `scene/Test/runMain skein.scene.speed`.
   */
 @main def speed(): Unit =
   val threads = ManagementFactory.getThreadMXBean

@@ -2,9 +2,9 @@ package skein.simulator
 
 import skein.airsim.wire.{Pose, Vector3r}
 
-/** Functions whose effect only an eye would notice, and no function could ask for again: their arguments are
-  * checked, as AirSim's are, and nothing comes of them. What would change things that do not exist here
-  * (lights, textures, materials) says so as AirSim does of a name it does not know.
+/** Functions whose effect is visible only, and which no function can read back: their arguments are checked
+  * as AirSim's are, and they have no effect. A function that would change things that do not exist here
+  * (lights, textures, materials) answers as AirSim does for an unknown name.
   */
 private[simulator] object AppearanceMethods:
   import ServerMethod.*
@@ -75,7 +75,7 @@ private[simulator] object AppearanceMethods:
   private def drawn(texts: Seq[String], colour: Seq[Float]): CallOutcome =
     coloured(colour)(bounded(texts.iterator.map(_.length).sum)(Nil))
 
-  /** AirSim reads past the end of what is shorter. */
+  /** Checks a colour's length: AirSim reads past the end of shorter ones. */
   private def coloured(colour: Seq[Float])(run: => CallOutcome): CallOutcome =
     if colour.size >= 4 then run
     else CallOutcome.Threw(s"a colour is four numbers (RGBA), not ${colour.size}")

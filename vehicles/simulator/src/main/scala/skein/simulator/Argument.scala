@@ -9,25 +9,24 @@ import upack.*
 
 /** How AirSim's server reads an argument of this type: the conversions of msgpack-c, which its rpclib uses.
   *
-  *   - A number may come as an integer where a float is wanted, never as a boolean, a string or nil; a float
-  *     is no integer, and an integer out of its type's range is none.
-  *   - A string may come as str or as bin, which old clients send.
-  *   - A map's missing keys keep their defaults and further keys are passed over, at any depth; a map with a
-  *     key that is no string, or another kind of value in its place, is refused.
-  *   - What is refused is told as `std::bad_cast`, with no word about where.
+  *   - A float may be sent as an integer, never as a boolean, a string or nil; a float is no integer, and an
+  *     integer out of its type's range is none.
+  *   - A string may be sent as str or as bin, which old clients send.
+  *   - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
+  *     that is no string, or another kind of value in its place, is refused.
+  *   - A refusal is reported as `std::bad_cast`, without its place.
   *
-  * Otherwise than AirSim it refuses numbers that are not finite, or too large for a 32-bit float where one is
-  * wanted, or so large in a vector or a place that nothing is there: they would poison physics for good.
+  * Unlike AirSim it refuses numbers that are not finite, or too large for a 32-bit float argument, or vectors
+  * and positions beyond a limit: they would corrupt physics for good.
   */
 private[simulator] trait Argument[A]:
-  /** Throws [[BadArgument]]. */
   def read(value: Msg): A
 
-/** An argument that cannot be taken; its message is the text of the answer. */
+/** An argument that is refused; its message is the text of the answer. */
 private[simulator] sealed class BadArgument(text: String)
     extends RuntimeException(text, null, /* enableSuppression = */ false, /* writableStackTrace = */ false)
 
-/** It is not finite, or not as a 32-bit number. */
+/** A number that is not finite, or not as a 32-bit float. */
 final private[simulator] class NotFinite extends BadArgument("parameters must be finite numbers")
 
 private[simulator] object Argument:
@@ -42,7 +41,7 @@ private[simulator] object Argument:
 
   given Argument[Unsigned32] = integer(_, 0, 0xffffffffL)
 
-  /** A time stamp, nanoseconds: unsigned, up to the greatest that a signed 64-bit number holds. */
+  /** A time stamp, nanoseconds: unsigned, up to the greatest signed 64-bit number. */
   given Argument[Instant] = value => Instant.ofNanos(integer(value, 0, Long.MaxValue))
 
   given Argument[Double] = value => finite(number(value))
@@ -68,7 +67,7 @@ private[simulator] object Argument:
   given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
   given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
 
-  /** None: it is one, and its numbers are not finite. */
+  /** None for a value of the right type whose numbers are not finite. */
   given [A](using argument: Argument[A]): Argument[Option[A]] = value =>
     try Some(argument.read(value))
     catch case _: NotFinite => None
@@ -79,7 +78,7 @@ private[simulator] object Argument:
   given Argument[GeoPoint]    = checked(record(GeoPoint(0, 0, 0))): point =>
     misplaced(point.latitude, point.longitude, point.altitude)
 
-  /** Why it is no place on the globe. */
+  /** Why this is no geographic position; None if it is one. */
   def misplaced(latitudeDeg: Double, longitudeDeg: Double, altitudeM: Float): Option[String] =
     Option.unless(
       math.abs(latitudeDeg) <= 90 && math.abs(longitudeDeg) <= 360 && math.abs(altitudeM) <= 1e6f
@@ -103,12 +102,11 @@ private[simulator] object Argument:
 
   given Argument[ImageRequest] = record(ImageRequest("", 0, pixels_as_float = false, compress = true))
 
-  /** A map whose keys are the fields' names; `default` fills those that are missing. */
+  /** Reads a map whose keys are the fields' names; `default` supplies missing fields. */
   inline def record[A <: Product](default: A)(using mirror: Mirror.ProductOf[A]): Argument[A] =
     val names = constValueTuple[mirror.MirroredElemLabels].toList.asInstanceOf[List[String]]
     Record(default, names.map(Str(_)).zip(each[mirror.MirroredElemTypes]), mirror.fromProduct)
 
-  /** The readers of a tuple's types. */
   inline def each[T <: Tuple]: List[Argument[?]] =
     summonAll[Tuple.Map[T, Argument]].toList.asInstanceOf[List[Argument[?]]]
 

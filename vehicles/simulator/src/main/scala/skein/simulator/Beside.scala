@@ -4,11 +4,11 @@ import java.util.concurrent.Executor
 import java.util.concurrent.atomic.AtomicInteger
 import skein.rpc.CallLines
 
-/** Work that takes long, such as drawing, beside the simulation and on other threads than control's: at most
-  * one less at a time than the machine has processors, in rounds over the clients, so that nobody waits for
-  * all that another has asked for. What waits is bounded by the calls that a client may have unanswered.
+/** Runs long work, such as drawing, outside the simulation and on other threads than control's: at most one
+  * task less than the machine has processors at a time, in rounds over the clients, so that no client waits
+  * for another's whole queue. The queue is bounded by the calls that a client may have unanswered.
   *
-  * @param threads that may be blocked
+  * @param threads that may block
   */
 private[simulator] final class Beside(
     threads: Executor,
@@ -21,7 +21,7 @@ private[simulator] final class Beside(
     lines.put(client, () => work)
     start()
 
-  /** What a client has asked for and is not begun is not done. */
+  /** Drops a client's work that has not begun. */
   def forget(client: Long): Unit = lines.forget(client)
 
   @annotation.tailrec
@@ -41,5 +41,5 @@ private[simulator] final class Beside(
         one = next()
     finally
       running.decrementAndGet(): Unit
-      // Something may have come between the last look and this.
+      // Work may have been added since the last check.
       if !isIdle then start()

@@ -3,10 +3,10 @@ package skein.simulator
 import skein.airsim.wire.{CameraInfo, Pose, ProjectionMatrix, Quaternionr, Vector3r}
 import skein.units.{Quaternion, Vector3}
 
-/** A camera that a vehicle carries: where it sits, its lens and its film.
+/** A vehicle's camera: its mount, lens and film.
   *
   * @param position on the vehicle, front right down, m
-  * @param orientation against the vehicle's
+  * @param orientation relative to the vehicle
   * @param distortion K1, K2, K3, P1, P2 of the Brown-Conrady model
   */
 final private[simulator] case class Camera(
@@ -19,23 +19,23 @@ final private[simulator] case class Camera(
     focusDistanceCm: Float = 100_000f,
     distortion: Vector[Float] = Vector.fill(Camera.DistortionNames.size)(0f)
 ):
-  /** Horizontal, degrees. */
+  /** Horizontal field of view, degrees, from film and focal length. */
   def fovDeg: Float = filmback.fovDeg(focalLengthMm)
 
   def verticalFovDeg: Float =
     math.toDegrees(2 * StrictMath.atan(filmback.heightMm / (2.0 * focalLengthMm))).toFloat
 
-  /** Sees this much horizontally: the focal length follows, as in Unreal's cine camera. */
+  /** A camera with this horizontal field of view: sets the focal length, as Unreal's cine camera does. */
   def withFov(degrees: Float): Camera = copy(focalLengthMm = filmback.focalLengthMm(degrees))
 
-  /** Within what the lens can. */
+  /** A camera with this focal length, clamped to the lens's range. */
   def withFocalLength(mm: Float): Camera = copy(focalLengthMm = mm.max(lens.shortestMm).min(lens.longestMm))
 
   def withLens(lens: Lens): Camera = copy(lens = lens).withFocalLength(focalLengthMm)
 
   def withDistortion(index: Int, value: Float): Camera = copy(distortion = distortion.updated(index, value))
 
-  /** As AirSim tells it, carried by a vehicle at this place. */
+  /** AirSim's camera information for a vehicle at this position. */
   def info(vehicle: Vector3, attitude: Quaternion): CameraInfo = CameraInfo(
     Pose(
       Vector3r(vehicle + attitude.toWorld(position)),
@@ -45,8 +45,8 @@ final private[simulator] case class Camera(
     ProjectionMatrix(projection)
   )
 
-  /** From front, right, down into Unreal's clip space with its inverted depth, near plane 10 cm
-    * (`APIPCamera::getProjectionMatrix`), for images of the default 256 × 144.
+  /** The projection from front, right, down into Unreal's clip space with its inverted depth, near plane 10
+    * cm (`APIPCamera::getProjectionMatrix`), for images of the default 256 × 144.
     */
   private def projection: Seq[Seq[Float]] =
     val across = (1 / StrictMath.tan(math.toRadians(fovDeg) / 2)).toFloat
@@ -72,7 +72,7 @@ final private[simulator] case class Lens(
     widestF: Float,
     narrowestF: Float
 ):
-  /** As AirSim writes it. */
+  /** A description in AirSim's text format. */
   def text: String =
     s"Name: $name;\n\t MinFocalLength: ${Lens.plain(shortestMm)}; \t " +
       s"MaxFocalLength: ${Lens.plain(longestMm)}\n\t Min FStop: " +
@@ -81,7 +81,7 @@ final private[simulator] case class Lens(
 private[simulator] object Lens:
   val Universal: Lens = Lens("Universal Zoom", 4, 1000, 1.2f, 22)
 
-  /** Unreal's presets. */
+  /** The lens presets of Unreal's cine camera. */
   val Presets: Seq[Lens] = Seq(
     Lens("12mm Prime f/2.8", 12, 12, 2.8f, 22),
     Lens("30mm Prime f/1.4", 30, 30, 1.4f, 22),
@@ -94,11 +94,11 @@ private[simulator] object Lens:
     Universal
   )
 
-  /** A number as C++ streams write it: without `.0`. */
+  /** Formats a number as C++ streams do: without `.0`. */
   def plain(number: Float): String =
     if number == number.toInt.toFloat then number.toInt.toString else number.toString
 
-/** What the lens draws on, mm. */
+/** The film format behind the lens, lengths in mm. */
 final private[simulator] case class Filmback(name: String, widthMm: Float, heightMm: Float):
   def aspectRatio: Float = widthMm / heightMm
 
@@ -109,7 +109,7 @@ final private[simulator] case class Filmback(name: String, widthMm: Float, heigh
   def focalLengthMm(fovDeg: Float): Float =
     (widthMm / (2 * StrictMath.tan(math.toRadians(fovDeg) / 2))).toFloat
 
-  /** As AirSim writes it. */
+  /** A description in AirSim's text format. */
   def text: String =
     s"Name: $name;\n\t Sensor Width: ${Lens.plain(widthMm)}; \t Sensor Height: ${Lens.plain(heightMm)}" +
       s"\n\t Sensor Aspect Ratio: ${Lens.plain(aspectRatio)}"
@@ -117,7 +117,7 @@ final private[simulator] case class Filmback(name: String, widthMm: Float, heigh
 private[simulator] object Filmback:
   val DigitalFilm: Filmback = Filmback("16:9 Digital Film", 23.76f, 13.365f)
 
-  /** Unreal's presets. */
+  /** The film presets of Unreal's cine camera. */
   val Presets: Seq[Filmback] = Seq(
     Filmback("16:9 Film", 24, 13.5f),
     DigitalFilm,

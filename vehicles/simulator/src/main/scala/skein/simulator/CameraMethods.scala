@@ -5,11 +5,11 @@ import skein.rpc.Encoded
 import upack.{Binary, Msg}
 import upickle.default.writeMsg
 
-/** Functions of cameras, and of images. */
+/** Functions of cameras and their images, by AirSim's names. */
 private[simulator] object CameraMethods:
   import ServerMethod.*
 
-  /** Larger than any film or lens. */
+  /** Greatest length accepted, mm; larger than any film or lens. */
   private inline val LargestMm = 100_000f
 
   val all: Seq[ServerMethod] = Seq(
@@ -119,7 +119,7 @@ private[simulator] object CameraMethods:
         detecting(simulation, camera, kind, name, external)(filter => Right(filter.copy(meshes = Set.empty)))
   )
 
-  /** Kinds of images, from 0. */
+  /** Number of image types, which count from 0. */
   private val ImageTypes = 10
 
   private def get(method: String)(read: Camera => CallOutcome): ServerMethod =
@@ -144,16 +144,16 @@ private[simulator] object CameraMethods:
   )(change: (Camera, A) => Camera): ServerMethod =
     many[(String, String, String, Boolean)](method):
       case (simulation, (preset, camera, name, external)) =>
-        // As in AirSim, a name that is no preset's changes nothing.
+        // As in AirSim, an unknown preset changes nothing.
         CameraMethods.change(simulation, camera, name, external): camera =>
           presets.find(named(_) == preset).fold(camera)(change(camera, _))
 
-  /** Accepted; nothing is drawn that would be in focus. */
+  /** A function that is accepted and has no effect: images have no focus here. */
   private def switch(method: String): ServerMethod =
     many[(Boolean, String, String, Boolean)](method):
       case (simulation, (_, camera, name, external)) => of(simulation, camera, name, external)((_, _) => Nil)
 
-  /** What is ready to be drawn, beside the simulation. */
+  /** Draws outside the simulation once the request is resolved. */
   private def drawn[A](ready: Either[String, A])(take: A => Msg | Encoded): CallOutcome =
     ready.fold(CallOutcome.Threw(_), one => CallOutcome.Draws(() => take(one)))
 
@@ -179,7 +179,7 @@ private[simulator] object CameraMethods:
           filter => done(simulation.cameras.setDetection(index, camera, kind, filter))
         )
 
-  /** The vehicle's index and the camera's own name. AirSim ends itself on a camera that is not there. */
+  /** Resolves a camera to its vehicle's index and its own name. AirSim crashes on an unknown camera. */
   private def of(simulation: Simulated, camera: String, name: String, external: Boolean)(
       run: (Int, String) => CallOutcome
   ): CallOutcome =

@@ -2,16 +2,16 @@ package skein.simulator
 
 import skein.units.{Quaternion, Vector3}
 
-/** The cameras that vehicles of a kind carry without being told to.
+/** The cameras that vehicles of a kind carry by default.
   *
-  * @param aliases numbers that older clients use, and other names of the same cameras
+  * @param aliases numbers that older clients use, and other names of these cameras
   */
 final private[simulator] case class CameraSet(places: Map[String, Camera], aliases: Map[String, String])
 
 private[simulator] object CameraSet:
 
-  /** Those of AirSim's multirotor. Its places are in a binary file that nobody can read here, but for the 25
-    * cm between the front left and the front right one; so these are ours.
+  /** The cameras of AirSim's multirotor. AirSim's positions are in a binary asset that is not available,
+    * except for the 25 cm between front left and front right; so these positions are ours.
     */
   val OfMultirotor: CameraSet = CameraSet(
     Map(
@@ -32,8 +32,8 @@ private[simulator] object CameraSet:
     )
   )
 
-  /** Those of AirSim's car (`CarPawn`), and half a metre higher and farther to the front and back: our car is
-    * longer and higher than its buggy, and they would look at it from inside.
+  /** The cameras of AirSim's car (`CarPawn`), moved half a metre up and outwards: our car is longer and
+    * higher than AirSim's buggy, so that the original positions would be inside it.
     */
   val OfCar: CameraSet = CameraSet(
     Map(

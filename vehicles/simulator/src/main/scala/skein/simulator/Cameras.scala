@@ -3,7 +3,7 @@ package skein.simulator
 import scala.collection.mutable
 import skein.units.{Quaternion, Vector3}
 
-/** The vehicles' cameras: AirSim's and those of the settings, and what clients have made of them.
+/** The vehicles' cameras: AirSim's and those of the settings, as clients have changed them.
   *
   * @param equipment of the settings
   */
@@ -11,7 +11,7 @@ final private[simulator] class Cameras(equipment: SensorSettings):
   private val changed  = mutable.Map.empty[(Int, String), Camera]
   private val detected = mutable.Map.empty[(Int, String, Int), DetectionFilter]
 
-  /** A camera's own name, if the vehicle has such a one. */
+  /** A camera's own name, if the vehicle has it. */
   def canonical(vehicle: SimulatedVehicle, name: String): Option[String] =
     val own    = vehicle.cameras.aliases.getOrElse(name, name)
     val called = vehicle.settings.name
@@ -34,16 +34,16 @@ final private[simulator] class Cameras(equipment: SensorSettings):
 
   def update(vehicle: Int, name: String, camera: Camera): Unit = changed((vehicle, name)) = camera
 
-  /** What is looked for in images of this kind. */
+  /** The filter of objects to detect in images of this kind. */
   def detection(vehicle: Int, name: String, imageType: Int): DetectionFilter =
     detected.getOrElse((vehicle, name, imageType), DetectionFilter())
 
   def setDetection(vehicle: Int, name: String, imageType: Int, detection: DetectionFilter): Unit =
     detected((vehicle, name, imageType)) = detection
 
-/** What is looked for in images.
+/** Which objects a camera detects.
   *
-  * @param meshes names, which may hold wild cards
+  * @param meshes names, which may contain wild cards
   */
 final private[simulator] case class DetectionFilter(meshes: Set[String] = Set.empty, radiusCm: Float = 20_000)
 

@@ -3,7 +3,7 @@ package skein.simulator
 import skein.scene.{Placement, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 
-/** What a car looks like: a body and a cabin. Its lengths are a BMW 320i's, as `SingleTrack`'s. */
+/** A car's shape: a body and a cabin. Its lengths are a BMW 320i's, as `SingleTrack`'s. */
 private[simulator] object CarBody:
   import SceneObject.Part
 
@@ -13,7 +13,7 @@ private[simulator] object CarBody:
   private val ClearM  = 0.15
   private val BonnetM = 0.9
 
-  /** Of the box around it, from the ground up. */
+  /** Half lengths and middle of the bounding box, which stands on the ground. */
   val half: Vector3   = Vector3(LongM / 2, WideM / 2, HighM / 2)
   val middle: Vector3 = Vector3(0, 0, -HighM / 2)
 

@@ -2,9 +2,9 @@ package skein.simulator
 
 import skein.airsim.wire.*
 
-/** What Cosys-AirSim's clients (version 3) call otherwise than AirSim's: some functions have other
-  * parameters, and there are more. What needs assets, layers, lights or sensors that are not here answers as
-  * for a name that is not known.
+/** Functions of Cosys-AirSim's clients (version 3) that differ from AirSim's: some have other parameters,
+  * some are additional. Those that need assets, layers, lights or sensors that do not exist here answer as
+  * for an unknown name.
   */
 private[simulator] object CosysMethods:
   import ServerMethod.*
@@ -64,9 +64,8 @@ private[simulator] object CosysMethods:
     annotation("simGetAnnotationObjectTexturePath")
   )
 
-  /** The other forms of functions that AirSim's clients call, too: those of cameras have no `external`, which
-    * where an image type is named an annotation's name takes the place of; poses of objects are asked for
-    * with `ned`.
+  /** Variants of functions that AirSim's clients call, too: camera functions lack `external` and have an
+    * annotation's name where an image type is named; object poses have an argument `ned`.
     */
   def forms(methods: Seq[ServerMethod]): Seq[ServerMethod] =
     CameraMethods.all.map: method =>
@@ -92,7 +91,7 @@ private[simulator] object CosysMethods:
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name)((_, _) => VehicleMethods.missing(kind, sensor))
 
-  /** Sensors stay where the settings put them. */
+  /** A setter of a sensor's pose, which always fails: sensors stay as configured. */
   private def sensorPose(method: String, kind: String): ServerMethod =
     many[(String, Pose, String)](method):
       case (simulation, (sensor, _, name)) =>

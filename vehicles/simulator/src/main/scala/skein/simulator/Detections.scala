@@ -5,10 +5,10 @@ import skein.scene.render.{Extent, Renderer}
 import skein.scene.Placement
 import skein.units.Vector3
 
-/** What a camera sees of the objects that are looked for: those of which at least one pixel shows. */
+/** A camera's detections: the filtered objects of which at least one pixel is visible. */
 private[simulator] object Detections:
 
-  /** What is asked for, of now; found when it is called, on any thread. */
+  /** The detections of the current instant, computed when the result is called, on any thread. */
   def of(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): () => Seq[DetectionInfo] =
     val filter  = simulation.cameras.detection(vehicle, camera, imageType)
     val view    = Shots.view(simulation, vehicle, camera, imageType)

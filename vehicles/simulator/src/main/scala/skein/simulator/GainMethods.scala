@@ -16,7 +16,7 @@ private[simulator] object GainMethods:
     gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
   )
 
-  /** AirSim's own are up to 2.5. */
+  /** Greatest gain accepted; AirSim's own are up to 2.5. */
   private val Largest = 1000f
 
   private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): ServerMethod =

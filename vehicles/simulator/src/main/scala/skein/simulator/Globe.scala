@@ -4,7 +4,7 @@ import skein.units.{GeoLocation, Vector3}
 
 /** The Earth as AirSim has it: a sphere with a standard atmosphere and a magnetic dipole (`EarthUtils`). */
 private[simulator] object Globe:
-  /** Pa */
+  /** Standard air pressure at sea level, Pa. */
   val SeaLevelPressure = 101325.0
 
   /** Standard temperature below 11 km, K. */
@@ -14,10 +14,10 @@ private[simulator] object Globe:
   def pressurePa(altitudeM: Double): Double =
     SeaLevelPressure * StrictMath.pow(288.15 / temperatureK(altitudeM), -5.255877)
 
-  /** kg/m³ */
+  /** Standard air density below 11 km, kg/m³. */
   def airDensity(altitudeM: Double): Double = pressurePa(altitudeM) / 287.053 / temperatureK(altitudeM)
 
-  /** Altitude of a pressure, m: the altimeter's formula. */
+  /** Altitude of a pressure, m, by the altimeter formula. */
   def pressureAltitudeM(pressurePa: Double): Double =
     (1 - StrictMath.pow(pressurePa / SeaLevelPressure, 0.190284)) * 145366.45 * 0.3048
 

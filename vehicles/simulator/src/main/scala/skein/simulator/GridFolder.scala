@@ -6,15 +6,15 @@ import java.nio.file.{Files, InvalidPathException, LinkOption, Path, StandardOpe
 import java.util.concurrent.atomic.AtomicBoolean
 import scala.util.Using
 
-/** The only folder that clients can have files written to: voxel grids. One is made at a time, and the folder
-  * holds so many at most.
+/** The only folder to which clients can have files written: voxel grids. One grid is made at a time, and the
+  * folder holds at most [[GridFolder.Most]] files.
   */
 private[simulator] final class GridFolder(folder: Path):
   import GridFolder.*
 
   private val isBusy = AtomicBoolean()
 
-  /** @param path of a client: a name in the folder, or a path to one
+  /** @param path from a client: a name in the folder, or a path to one
     * @return the file, or why none is written there
     */
   def file(path: String): Either[String, Path] =
@@ -27,8 +27,8 @@ private[simulator] final class GridFolder(folder: Path):
       else Right(home.resolve(name))
     catch case _: InvalidPathException => Left(s"expected a name that ends in $Ending")
 
-  /** Makes a grid and writes it, but never over a file that is anything else; whether it could. Throws
-    * [[BadArgument]] while another is made.
+  /** Makes a grid and writes it, but never over a file that is anything else; whether it succeeded. Throws
+    * [[BadArgument]] while another is being made.
     */
   def save(file: Path)(render: => Array[Byte]): Boolean =
     if !isBusy.compareAndSet(false, true) then
@@ -59,7 +59,7 @@ private[simulator] final class GridFolder(folder: Path):
         files.filter(_.toString.endsWith(Ending)).limit(Most.toLong).count < Most
 
 private[simulator] object GridFolder:
-  /** Files, each of some MB at most. */
+  /** Most files in the folder, each of some MB at most. */
   val Most = 100
 
   private val Ending = ".binvox"

@@ -3,11 +3,12 @@ package skein.simulator
 import skein.hil.{ArduPilotInterface, AutopilotKind, BetaflightInterface, Px4Interface, SensorNoise}
 import skein.link.Address
 
-/** Autopilots that fly the vehicles: the simulator gives them sensors and takes their rotors' controls.
+/** External autopilots that fly the vehicles: the simulator sends them sensor readings and applies their
+  * rotor controls.
   *
-  * @param ports a vehicle's each, in their order; of PX4 by the simulator's own transport, which is TCP where
-  *   that is real, of the others UDP. Vehicles without a port have no autopilot
-  * @param stateTo where Betaflight takes its state
+  * @param ports one for each vehicle, in order; PX4's use the simulator's own transport, which is TCP outside
+  *   tests, the others' UDP. Vehicles without a port have no autopilot
+  * @param stateTo address at which Betaflight receives the state
   * @param seed of the sensors' noise; each vehicle has its own
   */
 final case class HilSettings(
@@ -21,7 +22,7 @@ final case class HilSettings(
 object HilSettings:
   private val BetaflightState = Address("127.0.0.1", BetaflightInterface.StatePort)
 
-  /** At the ports at which these autopilots look for a simulator. Betaflight knows one vehicle alone. */
+  /** The ports at which these autopilots look for a simulator. Betaflight supports only one vehicle. */
   def usual(autopilot: AutopilotKind, vehicles: Int, host: String = "127.0.0.1"): HilSettings =
     val ports = autopilot match
       case AutopilotKind.Px4        => Vector.tabulate(vehicles)(Px4Interface.Port + _)

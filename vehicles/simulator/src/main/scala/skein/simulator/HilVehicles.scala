@@ -5,9 +5,9 @@ import skein.hil.{AutopilotInterface, SensorTruth, Sensors}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** The vehicles of a simulation with autopilots outside: an autopilot's channel is a vehicle's. The
-  * simulator's clock stops wherever sensors are due, and goes on as the autopilots let it. A vehicle without
-  * an autopilot is AirSim's.
+/** The vehicles of a simulation with external autopilots: each autopilot's channel belongs to one vehicle.
+  * The simulator's clock stops whenever sensors are due, and continues as the autopilots allow. A vehicle
+  * without an autopilot is AirSim's.
   */
 private[simulator] final class HilVehicles(simulation: Simulation, settings: HilSettings)
     extends PeerProtocol,
@@ -23,7 +23,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
   private var lost          = 0L
   private val losses        = mutable.HashMap.empty[Int, Int]
 
-  // Wall time waited beyond what autopilots may slow time.
+  // Wall time waited, beyond the slowdown that autopilots may cause.
   private var waited  = Span.Zero
   private var toldAt  = Option.empty[Instant]
   private var toldFor = Span.Zero
@@ -75,7 +75,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
     else stop(world.now)
 
   def told(at: Instant): Unit =
-    // A machine that stands still has let nobody answer.
+    // While the machine itself was stopped, no autopilot could answer.
     val passed = toldAt.fold(Span.Zero)(at.since(_)).min(LongestLook)
     val slowed = (up - toldFor) * MostSlowdown
     toldAt = Some(at)
@@ -105,7 +105,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
         state.orientation,
         state.angularVelocityFrd
       ),
-      // The ground carries a vehicle that stands, and physics does not move it.
+      // Physics does not move a vehicle that stands on the ground.
       if state.grounded then Vector3.Zero else state.accelerationNed,
       place,
       Globe.pressurePa(place.altitude.value),
@@ -121,14 +121,14 @@ private[simulator] object HilVehicles:
   ):
     private var jumps = vehicle.jumps
 
-    /** Whether it has jumped since this was asked before. */
+    /** Whether the vehicle has been moved by other means than flight since the last call. */
     def jumped(): Boolean =
       val before = jumps
       jumps = vehicle.jumps
       jumps != before
 
-  /** An autopilot that has not answered for so long is not waited for: as PX4's plugin for Gazebo does it.
-    * Nor is one by which time is slower than this, for as long.
+  /** Real time after which an unanswering autopilot is no longer waited for, as in PX4's plugin for Gazebo;
+    * and the greatest slowdown of the clock by an autopilot for as long.
     */
   private val Patience     = Span.ofSeconds(1)
   private val MostSlowdown = 150L

@@ -2,19 +2,18 @@ package skein.simulator
 
 import skein.units.Instant
 
-/** Something that physics stops for at certain times, and may have to wait for. */
+/** A party for which physics stops at certain times, and may have to wait. */
 private[simulator] trait Lockstep:
-  /** Whether physics stands still. */
   def isWaiting: Boolean
 
-  /** Where it must stop next, if it may run up to this time; None: nowhere. */
+  /** The next stop at or before this time; None: no stop. */
   def stop(until: Instant): Option[Instant]
 
-  /** It stands at such a stop. */
+  /** Physics has reached such a stop. */
   def reached(): Unit
 
-  /** Where it is to run now, whatever the clock says; None: as far as that says. */
+  /** The time to which physics must advance now, whatever the clock says; None: follow the clock. */
   def goal: Option[Instant]
 
-  /** The time now, by the clock that the simulation is told of. */
+  /** Informs it of the current time, by the clock of the simulation's caller. */
   def told(at: Instant): Unit

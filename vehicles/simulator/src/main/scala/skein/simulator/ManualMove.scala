@@ -4,7 +4,7 @@ import skein.airsim.wire.{RcData, YawMode}
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** Flies where the remote control's sticks point, in the frame that the vehicle had at the start
+/** Flies in the direction of the remote control's sticks, in the frame that the vehicle had at the start
   * (`MultirotorApiBase::moveByManual`). Sticks that are not valid set no goal.
   */
 final private[simulator] class ManualMove private (
@@ -35,7 +35,7 @@ final private[simulator] class ManualMove private (
     )
 
 private[simulator] object ManualMove:
-  /** What AirSim takes for a stick at its end. */
+  /** The value that AirSim takes as full deflection. */
   private val FullStick = 10000f
 
   def order(

@@ -2,10 +2,9 @@ package skein.simulator
 
 import skein.link.Address
 
-/** Where the vehicles are reached by MAVLink.
+/** The ports on which the vehicles speak MAVLink.
   *
-  * @param listen all vehicles, for who connects there by the simulator's own transport, which is TCP where
-  *   that is real
+  * @param listen for all vehicles, by the simulator's own transport, which is TCP outside tests
   * @param udp by datagrams, whatever the transport
   * @param firstSystem the first vehicle's system number
   */
@@ -15,19 +14,20 @@ final case class MavlinkSettings(
     firstSystem: Int = 1
 )
 
-/** A UDP port of some vehicles. It answers everybody who speaks to it.
+/** A UDP port of some vehicles. It answers every peer that sends to it.
   *
-  * @param tells who is told without having asked
-  * @param systems none is all
+  * @param tells a peer that receives messages without having sent one
+  * @param systems of the vehicles; empty: all
   */
 final case class MavlinkPort(at: Address, tells: Option[Address] = None, systems: Vector[Int] = Vector.empty)
 
 object MavlinkSettings:
-  /** As PX4's simulation has them (`px4-rc.mavlink`): a ground station finds all vehicles at its port 14550,
-    * a program vehicle `i` at 14540 + i, both on this machine; and whoever speaks to 18570 has all, too.
+  /** The ports of PX4's simulation (`px4-rc.mavlink`): a ground station reaches all vehicles at its port
+    * 14550, a program vehicle `i` at 14540 + i, both on this machine; and a peer that sends to 18570 reaches
+    * all, too.
     *
-    * @param instance the first vehicle's, as PX4 counts: `i` begins with it, and 18570 and the system numbers
-    *   are higher by it
+    * @param instance the first vehicle's, as PX4 counts: it is added to `i`, to 18570 and to the system
+    *   numbers
     */
   def asPx4(vehicles: Int, host: String = "127.0.0.1", instance: Int = 0): MavlinkSettings = MavlinkSettings(
     udp =
@@ -38,8 +38,7 @@ object MavlinkSettings:
     firstSystem = instance + 1
   )
 
-  /** Numbers that vehicles may have: 1 to this. */
+  /** The greatest system number of a vehicle; the least is 1. */
   val MostSystems = 250
 
-  /** Of all vehicles. */
   val GroundStation = 18570

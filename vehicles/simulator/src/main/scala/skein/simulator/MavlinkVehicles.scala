@@ -7,8 +7,8 @@ import skein.units.*
 import skein.vehicle.Setpoint
 
 /** The vehicles of a simulation as MAVLink vehicles, with system numbers in their order: bytes of peers go
-  * in, bytes for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is
-  * disarmed; before and after, AirSim's API can fly it.
+  * in, bytes for them come out. A vehicle that is armed by MAVLink is controlled by it until it is disarmed;
+  * before and after, AirSim's API can fly it.
   */
 private[simulator] final class MavlinkVehicles(simulation: Simulation, settings: MavlinkSettings)
     extends PeerProtocol:
@@ -19,7 +19,6 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
   private val autopilots = world.vehicles.indices.map(OnBoard(_)).toVector
   private val channels   = mutable.LinkedHashMap.empty[Long, MavlinkChannel]
 
-  /** By peers that have left. */
   private var damagedBefore = 0L
 
   autopilots.foreach(one => world.attach(one.index, one))
@@ -36,7 +35,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       frame <- peer.read(bytes)
       (system, component) = targetOf(frame.message)
       one <- autopilots
-      // Who asks for more than it could take has no answer.
+      // A peer that requests more than it takes gets no answer.
       if !peer.isFull && peer.systems.contains(
         one.system
       ) && (system == 0 || system == one.system) && component <= CommonDialect.Autopilot1
@@ -54,8 +53,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
   def nextDue: Option[Instant] =
     channels.valuesIterator.flatMap(_.nextDue).minOption.map(startedAt + _)
 
-  /** Frames with a wrong checksum, of an unknown message or of a wrong content, of all peers since the start.
-    */
+  /** Frames with a wrong checksum, an unknown message or invalid content, of all peers since the start. */
   def damaged: Long = damagedBefore + channels.valuesIterator.map(_.damaged).sum
 
   def unanswered: Long = 0
@@ -65,7 +63,6 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
   private def tell(system: Int, messages: Vector[Message]): Unit =
     for message <- messages; (_, peer) <- channels do peer.write(system, message)
 
-  /** One vehicle's autopilot. */
   private final class OnBoard(val index: Int) extends Pilot:
     val system: Int          = index + settings.firstSystem
     private val vehicle      = world.multirotor(index)
@@ -98,7 +95,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       heard.answers.foreach(peer.write(system, _))
       tell(system, heard.news)
       for (id, micros) <- heard.interval do peer.setInterval(system, id, micros, sinceBoot)
-      // A setpoint acts at once, as a move does.
+      // A setpoint takes effect immediately, as a move does.
       turn(vehicle, world.now).foreach(vehicle.command(_, world.now))
 
     private def takeOver(): Unit =
@@ -113,7 +110,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
     private var armed = false
 
 private[simulator] object MavlinkVehicles:
-  /** To which system and component a message goes; 0 is all. */
+  /** The system and component that a message addresses; 0 is all. */
   private def targetOf(message: Message): (system: Int, component: Int) =
     def named(name: String) = message.productElementNames.indexOf(name) match
       case -1    => 0

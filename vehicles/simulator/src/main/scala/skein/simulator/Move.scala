@@ -4,35 +4,35 @@ import skein.airsim.wire.YawMode
 import skein.units.*
 import skein.vehicle.{PathFollowing, Setpoint}
 
-/** A move under way. AirSim's calls loop every 20 ms of simulated time: look at the vehicle, renew its goal,
-  * end when done or when their time is over (`MultirotorApiBase`).
+/** A move in progress. AirSim's calls loop every 20 ms of simulated time: they read the vehicle's state,
+  * renew its goal, and end when done or when their time is over (`MultirotorApiBase`).
   */
 private[simulator] trait Move:
-  /** One turn of that loop.
+  /** One iteration of that loop.
     *
-    * @param elapsed since the move began; zero at the first turn
+    * @param elapsed since the move began; zero in the first iteration
     */
   def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress
 
-  /** It does not end before this much time has elapsed. */
+  /** A lower bound on the move's duration. */
   def lastsAtLeast: Span = Span.Zero
 
 private[simulator] enum MoveProgress:
   case Going(goal: Setpoint)
 
-  /** It goes on and leaves the goal as it is. */
+  /** The move continues and keeps the goal as it is. */
   case Idle
 
   /** The call answers `result`; a goal that is still set holds for 60 ms. */
   case Ended(result: Boolean, goal: Option[Setpoint])
 
 private[simulator] object Move:
-  /** A move as it is asked for: made when its turn comes, from the vehicle as it is then. `Left` is the text
-    * of the exception that AirSim throws.
+  /** A requested move: made when its turn comes, from the vehicle's state at that time. `Left` is the text of
+    * the exception that AirSim throws.
     */
   type Order = SimulatedMultirotor => Either[String, Move]
 
-  /** Keeps one goal for a duration. Without any, it ends at once with `ifNone`. */
+  /** Keeps one goal for a duration. A duration of zero ends immediately with `ifNone`. */
   def hold(seconds: Float, ifNone: Boolean = true)(goal: SimulatedMultirotor => Setpoint): Order = vehicle =>
     val setpoint = goal(vehicle)
     val duration = span(seconds)
@@ -44,7 +44,7 @@ private[simulator] object Move:
         else if elapsed >= duration then MoveProgress.Ended(true, Some(setpoint))
         else MoveProgress.Going(setpoint))
 
-  /** Sinks at 0.2 m/s until it has not sunk for eleven turns. */
+  /** Descends at 0.2 m/s until it has not descended for eleven iterations. */
   def land(timeoutS: Float): Order = _ =>
     var still = 0
     val sink  = Setpoint.velocity(0, 0, 0.2)
@@ -54,7 +54,7 @@ private[simulator] object Move:
       else if elapsed >= span(timeoutS) then MoveProgress.Ended(false, Some(sink))
       else MoveProgress.Going(sink)
 
-  /** Turns on the spot to a heading, then stops turning. */
+  /** Turns in place to a heading, then stops turning. */
   def rotate(yawDeg: Float, timeoutS: Float, marginDeg: Float): Order = start =>
     val goal   = Setpoint.hold(start.state.positionNed)
     val target = normalized(yawDeg)
@@ -66,12 +66,12 @@ private[simulator] object Move:
       else if elapsed >= span(timeoutS) then MoveProgress.Ended(false, Some(next))
       else MoveProgress.Going(next)
 
-  /** The goal with a yaw or yaw rate in degrees. */
+  /** A goal with a yaw or yaw rate in degrees. */
   def withYaw(goal: Setpoint, yaw: YawMode): Setpoint =
     val radians = math.toRadians(yaw.yaw_or_rate)
     if yaw.is_rate then goal.withYawRate(radians) else goal.withYaw(radians)
 
-  /** The yaw of a vehicle that is to look where it goes, if the drivetrain says so. */
+  /** The yaw mode towards the direction of travel, if the drivetrain asks for it. */
   def facing(drivetrain: Int, yaw: YawMode, travelNed: Vector3): YawMode =
     if drivetrain != ForwardOnly || yaw.is_rate then yaw
     else if travelNed.norm <= PathFollowing.DistanceAccuracyM then YawMode.Still
@@ -85,12 +85,12 @@ private[simulator] object Move:
 
   val ApproximatelyZeroMps = 0.05
 
-  /** At most three years: AirSim's "no limit" is the greatest 32-bit float, more than a clock in nanoseconds
-    * can count.
+  /** Converts seconds to a span of at most three years: AirSim's "no limit" is the greatest 32-bit float,
+    * more than nanoseconds can count.
     */
   def span(seconds: Float): Span = Span.ofSeconds(math.min(seconds.toDouble, 1e8))
 
-  /** Degrees, −180 to 180. */
+  /** Degrees normalised to −180 to 180. */
   def normalized(degrees: Float): Float =
     val within = degrees % 360
     if within > 180 then within - 360 else if within < -180 then within + 360 else within

@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** Functions that move one vehicle, and answer when the move ends. Angles in radians where the name says roll
-  * and pitch, in degrees for yaw modes and rotations, as in AirSim.
+/** Functions that move one vehicle, and answer when the move ends. Angles are in radians for roll and pitch,
+  * in degrees for yaw modes and rotations, as in AirSim.
   */
 private[simulator] object MoveMethods:
   import ServerMethod.many
@@ -22,7 +22,8 @@ private[simulator] object MoveMethods:
         fly(simulation, name)(PathMove.order(Seq(Vector3.Zero), 0.5f, timeout, Travel.Plain))
     ,
     ServerMethod.one[String]("hover"): (simulation, name) =>
-      // AirSim sends it along a path to where it is, which ends at once with false; then its goal runs out.
+      // AirSim sends it along a path to its own position, which ends immediately with false; then its goal
+      // expires.
       fly(simulation, name)(_ => Right((_, _) => MoveProgress.Ended(false, None))),
     byVelocity("moveByVelocity", ifNone = true): (_, x, y, vz) =>
       Setpoint.velocity(x, y, vz),
@@ -41,7 +42,7 @@ private[simulator] object MoveMethods:
         val travel = Travel(drivetrain, yaw, lookahead, adaptive)
         fly(simulation, name)(PathMove.order(Seq(Vector3(x, y, z)), speed, timeout, travel))
     ,
-    // In single precision, as AirSim takes them: a goal is up to 0.4 m beside the one that is meant.
+    // In single precision, as in AirSim: a goal deviates by up to 0.4 m from the intended one.
     many[(Float, Float, Float, Float, Float, Int, YawMode, Float, Float, String)]("moveToGPS"):
       case (
             simulation,
@@ -106,7 +107,7 @@ private[simulator] object MoveMethods:
       case (simulation, (first, second, third, fourth, duration, name)) =>
         fly(simulation, name)(Move.hold(duration)(_ => goal(first, second, third, fourth)))
 
-  /** North and east of a velocity to the front and to the right, by the heading now. */
+  /** Rotates a velocity to the front and right by the current heading, to north and east. */
   private def turned(vehicle: SimulatedMultirotor, front: Double, right: Double): (Double, Double) =
     val yaw = vehicle.state.yawRad
     (

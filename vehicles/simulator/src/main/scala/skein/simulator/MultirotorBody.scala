@@ -4,8 +4,8 @@ import skein.scene.{Placement, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Airframe
 
-/** What a multirotor looks like: its box, two beams across, four rotors, and tags on its sides where the
-  * scene wants them.
+/** A multirotor's shape: its box, two crossed beams, four rotors, and tags on its sides if the scene has
+  * them.
   */
 private[skein] object MultirotorBody:
   import SceneObject.Part
@@ -20,7 +20,7 @@ private[skein] object MultirotorBody:
       (for front <- Vector(1, -1); right <- Vector(1, -1)
       yield Part(
         rotor,
-        // Above the box, where they are on a real one, not below as AirSim computes them.
+        // Above the box, as on a real one, not below as AirSim computes them.
         at(Vector3(front * offset, right * offset, -airframe.rotorDownM)),
         if front > 0 then 0xd8452e else 0x8d939c
       )) ++: tags(number, tagM)

@@ -3,19 +3,19 @@ package skein.simulator
 import scala.collection.mutable.ArrayBuffer
 
 /** A client's regular expression, matched against whole names in time that is linear in the name's length and
-  * in the expression's size, whatever it says: all ways to match are followed side by side (K. Thompson,
+  * in the expression's size, for any expression: all ways to match are followed in parallel (K. Thompson,
   * "Regular expression search algorithm", 1968), so nothing is tried twice.
   *
-  * It knows ECMAScript's syntax, as AirSim's `std::regex` does, but for what cannot be matched in that time
-  * or that no name needs: references to groups, and looking ahead.
+  * It knows ECMAScript's syntax, as AirSim's `std::regex` does, except for back-references and lookahead,
+  * which cannot be matched in that time or are not needed for names.
   */
 final private[simulator] class NamePattern private (program: NameProgram):
   import NamePattern.*
 
   private var effort = 0L
 
-  /** Throws [[BadArgument]] once all names so far have taken too much. Cost: some 5 ns for each instruction
-    * and letter, at most 25 ms for all names.
+  /** Throws [[BadArgument]] once all names together have taken too much effort. Cost: some 5 ns for each
+    * instruction and letter, at most 25 ms for all names.
     */
   def matches(name: String): Boolean =
     effort += program.size.toLong * (name.length + 1)
@@ -25,16 +25,16 @@ final private[simulator] class NamePattern private (program: NameProgram):
 private[simulator] object NamePattern:
   private val LongestPattern = 1000
 
-  /** Instructions. */
+  /** Most instructions of one expression's program. */
   private val LargestProgram = 5000
 
-  /** Groups within groups. */
+  /** Greatest nesting of an expression's groups. */
   private val Deepest = 50
 
-  /** Instructions looked at, of one request. */
+  /** Most instructions executed for one request. */
   private val MostEffort = 5_000_000L
 
-  /** Throws [[BadArgument]] if it is no expression. */
+  /** Compiles an expression; throws [[BadArgument]] if it is invalid. */
   def apply(text: String, ignoreCase: Boolean = false): NamePattern =
     if text.length > LongestPattern then
       throw BadArgument(s"a regular expression has at most $LongestPattern characters, not ${text.length}")
@@ -42,12 +42,12 @@ private[simulator] object NamePattern:
     if tree.size > LargestProgram then throw tooHard
     new NamePattern(NameProgram.of(tree))
 
-  /** Whether a name is this, where `*` stands for anything and `?` for one letter, in any case of letters.
+  /** Whether a name matches a pattern in which `*` stands for anything and `?` for one letter, ignoring case.
     * Cost: at most the product of the lengths.
     */
   def isLike(name: String, wildcard: String): Boolean =
     var (at, in)      = (0, 0)
-    var (again, from) = (-1, 0) // behind the last `*`, and what it does not stand for yet
+    var (again, from) = (-1, 0) // after the last `*`, and its first unmatched position
     var isLike        = true
     while isLike && at < name.length do
       if in < wildcard.length && wildcard(in) == '*' then
@@ -70,7 +70,6 @@ private[simulator] object NamePattern:
 
   private def tooHard = BadArgument("the regular expression takes too long")
 
-  /** Reads ECMAScript's syntax. */
   final private class Reader(text: String, ignoreCase: Boolean):
     private var at    = 0
     private var depth = 0
@@ -114,7 +113,7 @@ private[simulator] object NamePattern:
         else if taken('?') then Some((0, Some(1)))
         else Option.when(comes('{'))(counts())
       times.fold(what): (least, most) =>
-        // Of a whole name it is all the same whether more or less is tried first.
+        // For whole names the order of trying more or fewer repetitions does not matter.
         val _ = taken('?')
         if "*+?{".exists(comes) then wrong(s"nothing to repeat before '${text(at)}'")
         NameTree.Times(what, least, most)
@@ -159,7 +158,7 @@ private[simulator] object NamePattern:
           val c = letter()
           NameTree.Letter(cased(_ == c))
 
-    /** `\d` and its like. */
+    /** Reads an escaped character class, such as `\d`. */
     private def kind(): Option[Char => Boolean] =
       val found =
         for

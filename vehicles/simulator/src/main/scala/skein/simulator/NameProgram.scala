@@ -2,7 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable.ArrayBuffer
 
-/** A [[NamePattern]]'s tree as instructions, all ways through which are followed side by side. */
+/** A [[NamePattern]]'s tree as instructions; all ways through them are followed in parallel. */
 final private[simulator] class NameProgram private (code: Array[NameProgram.Step]):
   import NameProgram.*
 
@@ -12,7 +12,7 @@ final private[simulator] class NameProgram private (code: Array[NameProgram.Step
   private var later = Ways(code.length)
   private val open  = Array.ofDim[Int](2 * code.length + 2)
 
-  /** Not thread-safe. */
+  /** Whether the whole name matches; not thread-safe. */
   def matches(name: String): Boolean =
     now.clear()
     follow(now, 0, name, 0)
@@ -31,7 +31,7 @@ final private[simulator] class NameProgram private (code: Array[NameProgram.Step
       at += 1
     at == name.length && (0 until now.count).exists(i => code(now(i)) == Step.End)
 
-  /** All that is reached from there without a letter, each instruction once. */
+  /** Adds all instructions reachable from there without consuming a letter, each once. */
   private def follow(ways: Ways, from: Int, name: String, at: Int): Unit =
     var left = 1
     open(0) = from
@@ -100,7 +100,6 @@ private[simulator] object NameProgram:
     code += Step.End
     NameProgram(code.toArray)
 
-  /** Instructions, each at most once. */
   final private class Ways(size: Int):
     private val all  = Array.ofDim[Int](size)
     private val seen = Array.ofDim[Boolean](size)

@@ -1,8 +1,8 @@
 package skein.simulator
 
-/** A `NamePattern` as it was read.
+/** A parsed `NamePattern`.
   *
-  * @param size how many instructions of a `NameProgram` it takes
+  * @param size number of instructions in its `NameProgram`
   */
 private[simulator] enum NameTree(val size: Long):
   case Letter(is: Char => Boolean)         extends NameTree(1)

@@ -3,19 +3,19 @@ package skein.simulator
 import skein.scene.{Contact, Placement, Scene}
 import skein.units.{Instant, Quaternion, Vector3}
 
-/** What of a scene's objects one vehicle touches. It remembers how far the vehicle can go before it touches
-  * anything.
+/** Contacts of one vehicle with a scene's objects. It remembers how far the vehicle can move before it can
+  * touch anything.
   *
-  * @param startNed of the vehicle's own frame in the world
+  * @param startNed origin of the vehicle's own frame in the world
   */
 final private[simulator] class Obstacles(startNed: Vector3):
-  // Of this scene it can touch nothing until it is so far from there.
+  // In this scene it can touch nothing within this distance from there.
   private var freeOf = Scene.Empty
   private var freeAt = Vector3.Zero
   private var freeM  = 0.0
 
   /** @param centre of the box around the vehicle, in the world
-    * @param half of the box' lengths, m
+    * @param half of the box's lengths, m
     * @param orientation of the vehicle; computed only where something is near
     */
   def touched(scene: Scene, centre: Vector3, half: Vector3)(orientation: => Quaternion): Option[Contact] =
@@ -26,7 +26,7 @@ final private[simulator] class Obstacles(startNed: Vector3):
       freeM = Contact.clearanceM(scene, centre, half.norm)
       if freeM <= 0 then Contact.of(scene, Placement(centre, orientation), half) else None
 
-  /** As a client is told of it.
+  /** Converts a contact to the touch that clients receive.
     *
     * @param positionNed of the vehicle, in its own frame
     */

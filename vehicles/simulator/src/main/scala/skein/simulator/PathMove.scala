@@ -5,10 +5,10 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.{PathFollowing, Setpoint}
 
-/** How a path is flown.
+/** How to fly along a path.
   *
-  * @param lookaheadM how far ahead on the path to aim; negative: by the speed
-  * @param adaptive how much of the distance from the path is added to that
+  * @param lookaheadM how far ahead on the path to aim; negative: in proportion to the speed
+  * @param adaptive fraction of the distance from the path that is added to it
   */
 final private[simulator] case class Travel(
     drivetrain: Int,
@@ -18,7 +18,7 @@ final private[simulator] case class Travel(
 )
 
 private[simulator] object Travel:
-  /** What AirSim's own moves use. */
+  /** The settings of AirSim's own moves. */
   val Plain: Travel = Travel(0, YawMode.Still, -1, 1)
 
 /** Flies along a path by aiming at a point ahead on it, with a velocity command
@@ -39,7 +39,7 @@ final private[simulator] class PathMove private (
   private val lengths = points.zip(points.tail).map((from, to) => (to - from).norm) :+ 0.0
   private val before  = lengths.scanLeft(0.0)(_ + _)
 
-  /** From each segment on the first that has a length. */
+  /** For each segment the next one, from it on, that has a length. */
   private val solid = lengths.indices.scanRight(last)((segment, next) =>
     if segment >= last then last else if lengths(segment) > 0 then segment else next
   )
@@ -55,7 +55,7 @@ final private[simulator] class PathMove private (
     if elapsed >= timeout || (aim.segment >= last && progress <= 0) then MoveProgress.Ended(complete, None)
     else MoveProgress.Going(towardsAim(position))
 
-  /** How far the vehicle has come towards the point it aimed at, and the next one. */
+  /** Progress towards the current aim, and the next aim. */
   private def follow(position: Vector3): Unit =
     val wanted = aim.point - reached.point
     val length = wanted.norm
@@ -83,8 +83,8 @@ final private[simulator] class PathMove private (
       Move.facing(travel.drivetrain, travel.yaw, way)
     )
 
-  /** Cost: a few segments are walked; farther ahead they are searched, so that a path of thousands of points
-    * in one place costs no more.
+  /** The position `distanceM` ahead on the path. Cost: nearby segments are walked, farther ones searched, so
+    * that thousands of coinciding points cost no more.
     */
   private def ahead(from: Place, distanceM: Double): Place =
     var segment  = solid(from.segment)
@@ -111,7 +111,7 @@ final private[simulator] class PathMove private (
 private[simulator] object PathMove:
   private val MostWalked = 64
 
-  /** A place on the path: the segment that starts at that point, and how far along it. */
+  /** A position on the path: the segment that starts at that point, and the distance along it. */
   private case class Place(segment: Int, offsetM: Double, point: Vector3)
 
   def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>

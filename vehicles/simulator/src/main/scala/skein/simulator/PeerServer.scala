@@ -13,9 +13,9 @@ import skein.link.{Address, FirstBytes, Listening, Places, Transport, TransportE
 import skein.mavlink.FrameReader
 import skein.units.Span
 
-/** Where peers reach vehicles by another protocol than AirSim's.
+/** The ports of vehicles behind another protocol than AirSim's.
   *
-  * @param streams by the simulator's own transport, which is TCP where that is real
+  * @param streams by the simulator's own transport, which is TCP outside tests
   * @param datagrams by datagrams, whatever the transport
   */
 private[simulator] final case class PeerPorts(
@@ -23,13 +23,14 @@ private[simulator] final case class PeerPorts(
     datagrams: Vector[PeerPort] = Vector.empty
 )
 
-/** A port of some vehicles. It answers everybody who speaks to it.
+/** A port of some vehicles. It answers every peer that sends to it.
   *
-  * @param systems the vehicles, from 1; none is all
+  * @param systems of the vehicles, from 1; empty: all
   * @param mostPeers at a time
-  * @param tells who is told without having asked
-  * @param isOneWay whether only that one is told, and what others send counts as its
-  * @param speaks whether a datagram, or the bytes of a stream so far, hold a message of the port's protocol
+  * @param tells a peer that receives messages without having sent one
+  * @param isOneWay whether only `tells` receives messages, and other senders' datagrams count as its
+  * @param speaks whether a datagram, or the bytes of a stream so far, contain a message of the port's
+  *   protocol
   */
 private[simulator] final case class PeerPort(
     at: Address,
@@ -56,11 +57,11 @@ private[simulator] object PeerPorts:
       case AutopilotKind.Betaflight =>
         PeerPorts(datagrams = ports.map(_.copy(tells = Some(settings.stateTo), isOneWay = true)))
 
-/** Somebody who speaks to vehicles.
+/** A peer of some vehicles.
   *
-  * @param systems the vehicles, from 1; none is all
-  * @param isDatagrams whether by datagrams, and not by a stream
-  * @param out what goes to it
+  * @param systems of the vehicles, from 1; empty: all
+  * @param isDatagrams whether it sends datagrams, and not a stream
+  * @param out receives the bytes for it
   */
 private[simulator] final case class JoinedPeer(
     channel: Long,
@@ -69,11 +70,11 @@ private[simulator] final case class JoinedPeer(
     out: BoundedSourceQueue[ByteString]
 )
 
-/** What is done with what peers send. Each call may come from any thread. */
+/** Receives the events of peers. Each call may come from any thread. */
 private[simulator] trait Peers:
   def joined(peer: JoinedPeer): Unit
 
-  /** Completes `done` when it has been dealt with. */
+  /** Takes bytes; completes `done` when they have been handled. */
   def heard(channel: Long, bytes: Array[Byte], done: Promise[Done]): Unit
 
   def left(channel: Long): Unit
@@ -87,38 +88,37 @@ private[simulator] final class PeerServer(
     sockets: Vector[UdpSocket],
     closing: () => Future[Done]
 ):
-  /** Datagrams of peers beyond the limit of a port, or for which the simulator was not quick enough. */
+  /** Datagrams of peers beyond the limit of a port, or dropped because the simulator was too slow. */
   def ignored: Long = sockets.map(_.dropped.sum).sum
 
   def close(): Future[Done] = closing()
 
 private[simulator] object PeerServer:
-  /** Peers at a time, over all ports; others are turned away. */
+  /** Most peers at a time, over all ports; others are refused. */
   val MostPeers = 128
 
-  /** Of a port of datagrams. */
+  /** Most peers of one datagram port at a time. */
   val MostDatagramPeers = 64
 
-  /** Pieces for one peer that may wait; later ones are dropped. */
+  /** Most pieces that wait for one peer; later ones are dropped. */
   private val Waiting = 256
 
-  /** A peer that is alone at its port makes room when nothing was heard of it for this long. */
+  /** A peer that is the only one of its port makes room after this long without a message. */
   private val AloneIdle = Span.ofSeconds(5)
 
-  /** A peer of which nothing was heard for so long makes room for others. */
+  /** A peer makes room for others after this long without a message. */
   private val Silence = Span.ofSeconds(5)
 
-  /** Bytes of a stream in which there must be a message. The longest has 280. */
+  /** Bytes of a stream within which a message must be recognised. The longest has 280. */
   private val MostBefore = 1024
 
-  /** Bytes of a stream that are dealt with at once: its messages are answered between other clients' calls.
-    */
+  /** Most bytes of a stream that are handled in one go: other clients' calls are run between them. */
   private val MostAtOnce = 2048
 
-  /** Of MAVLink 2 and of MAVLink 1, which is all that comes by streams. */
+  /** First bytes of MAVLink 2 and MAVLink 1, the only protocol over streams. */
   private val Starts = Set(0xfd, 0xfe)
 
-  /** Fails with a [[skein.link.TransportError]]. */
+  /** Opens all ports; fails with a [[skein.link.TransportError]]. */
   def start(
       ports: PeerPorts,
       transport: Transport,
@@ -132,8 +132,7 @@ private[simulator] object PeerServer:
     val numbers            = AtomicLong()
     val present            = Places(MostPeers, Silence)
 
-    /** @param isKnown whether it has spoken already, or is spoken to without having to
-      */
+    /** @param isKnown whether it has sent a message already, or receives messages without having sent one */
     def serve(port: PeerPort, isDatagrams: Boolean, presentHere: Places, isKnown: Boolean)(
         flow: Flow[ByteString, ByteString, ?]
     ): Unit =
@@ -161,7 +160,7 @@ private[simulator] object PeerServer:
         counters.turnedAway.incrementAndGet(): Unit
         Source.empty[ByteString].via(flow).runWith(Sink.cancelled): Unit
 
-    // All are counted, whatever one of them says.
+    // All are counted, even if one is refused.
     def isAdmitted(channel: Long, places: Seq[Places]): Boolean =
       val admitted = places.map(_.admit())
       val all      = admitted.forall(identity)
@@ -173,7 +172,7 @@ private[simulator] object PeerServer:
         try
           val isAlone = port.mostPeers == 1
           val here    = Places(port.mostPeers, Silence)
-          // Who is told without having asked is a peer, too.
+          // A peer that receives messages without having sent one is a peer, too.
           val admitted                  = port.mostPeers + (if port.isOneWay then 1 else 0)
           def speaks(bytes: ByteString) = port.speaks(bytes.toArrayUnsafe())
           val socket                    =
@@ -231,7 +230,7 @@ private[simulator] object PeerServer:
         closed(listening)
     )
 
-  /** Joins with its first message: who only connects is nobody yet, and nothing is told to it. */
+  /** A connection that becomes a peer with its first message; until then it receives nothing. */
   private final class Guest(
       val switch: SharedKillSwitch,
       speaks: Array[Byte] => Boolean,
@@ -247,7 +246,7 @@ private[simulator] object PeerServer:
     def silentFor: Span    = if isTold then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
     def leave(): Unit      = switch.shutdown()
 
-    /** It is a peer without having spoken. */
+    /** Makes it a peer without a message of its own. */
     def join(): Unit =
       spoken = true
       isTold = true

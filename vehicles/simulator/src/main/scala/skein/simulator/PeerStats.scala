@@ -2,14 +2,14 @@ package skein.simulator
 
 import java.util.concurrent.atomic.AtomicLong
 
-/** What peers of MAVLink, or autopilots, lost since the start.
+/** Losses of MAVLink peers and autopilots since the start.
   *
-  * @param damaged messages that came with a wrong checksum, of an unknown kind or of a wrong content
+  * @param damaged messages with a wrong checksum, of an unknown kind or with invalid content
   * @param dropped pieces for peers that did not take them in time
-  * @param turnedAway peers beyond the most at a time
-  * @param ignored datagrams of peers beyond the most at a port, of another protocol, or that came faster than
-  *   they were dealt with
-  * @param unanswered times that an autopilot in lockstep did not answer within a second, and time went on
+  * @param turnedAway peers beyond the limit
+  * @param ignored datagrams of peers beyond a port's limit, of another protocol, or received faster than they
+  *   were handled
+  * @param unanswered how often an autopilot in lockstep did not answer within a second, and physics continued
   *   without it
   * @param foreign connections closed because they did not begin as the protocol does
   */

@@ -3,10 +3,9 @@ package skein.simulator
 import skein.units.Instant
 import skein.vehicle.Setpoint
 
-/** Something on board that flies a vehicle: asked every 20 ms of simulated time, as the calls of AirSim's API
-  * are.
+/** An onboard pilot: its turn comes every 20 ms of simulated time, as the iterations of AirSim's moves.
   *
-  * @return None where it leaves the vehicle to others
+  * @return None where it leaves control to others
   */
 private[simulator] trait Pilot:
   def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint]

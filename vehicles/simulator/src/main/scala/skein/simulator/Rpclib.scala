@@ -5,7 +5,7 @@ private[simulator] object Rpclib:
   def unknown(method: String, arguments: Int): String =
     s"rpclib: server could not find function '$method' with argument count $arguments."
 
-  /** rpclib swaps the two numbers, and so do we. */
+  /** The text for a wrong number of arguments. rpclib swaps the two numbers, and so does this. */
   def arity(method: String, passed: Int, wanted: Int): String =
     s"rpclib: client error C0002: Function '$method' was called with an invalid number of arguments. " +
       s"Expected: $passed, got: $wanted"

@@ -5,22 +5,21 @@ import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
 import skein.scene.{Lidar, Moment, Placement, Scene, SceneObject}
 import skein.units.*
 
-/** The vehicles' lidars. Each takes a scan once a turn by the simulator's clock, a whole turn of one instant;
-  * what it is asked for is the newest. Where everything was at that instant is noted; the rays are only cast
-  * if somebody asks.
+/** The vehicles' lidars. Each takes a scan once a turn by the simulator's clock, a whole turn at one instant;
+  * requests return the newest. The positions of everything at that instant are stored; rays are cast only
+  * when the scan is requested.
   */
 final private[simulator] class Scans:
   private var lidars = Vector.empty[Scans.Carried]
   private val notes  = mutable.Map.empty[Scans.Carried, Scan]
 
-  /** One more, on a vehicle. */
   def carry(lidar: Scans.Carried): Unit = lidars :+= lidar
 
-  /** Notes every scan that is due by `until`. */
+  /** Stores every scan that is due by `until`. */
   def note(until: Instant, of: (Scans.Carried, Instant, Long) => Scan): Unit =
     for lidar <- lidars if !lidar.lidar.fresh do
       var next = dueAt(lidar)
-      // Of those that a long step has passed only the newest will be asked for.
+      // Of the scans that a long step has passed only the newest can be requested.
       if next.forall(_ <= until) then
         val start = next.getOrElse(until)
         val late  = until.since(start).toNanos / lidar.period.toNanos
@@ -39,7 +38,7 @@ private[simulator] object Scans:
   final case class Carried(vehicle: Int, name: String, lidar: Lidar):
     val period: Span = Span.ofNanos(1_000_000_000L / lidar.rotationsPerSecond)
 
-/** A scan that has been taken: what it needs to be computed, once.
+/** A scan that has been taken: everything from which its points are computed, once.
   *
   * @param origin of the vehicle's own frame in the world
   */

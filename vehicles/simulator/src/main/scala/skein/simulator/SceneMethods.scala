@@ -6,8 +6,7 @@ import skein.scene.Placement
 import skein.units.*
 import upack.Bool
 
-/** Functions of what is in the scene, and where: the ground, the scene's objects and vehicles. There are no
-  * assets, levels or meshes.
+/** Functions of the scene's content: the ground, objects and vehicles. There are no assets, levels or meshes.
   */
 private[simulator] object SceneMethods:
   import ServerMethod.*
@@ -27,7 +26,7 @@ private[simulator] object SceneMethods:
     one[String]("simGetObjectPose")((simulation, name) => answer(simulation.objects.poseOf(name))),
     many[(String, Option[Pose], Boolean)]("simSetObjectPose"):
       case (simulation, (name, pose, _)) =>
-        // What is not there is told so whatever the pose is: `simGetObjectPose` gives NaN for it.
+        // A missing object is reported for any pose: `simGetObjectPose` returns NaN for it.
         if simulation.objects.vehicle(name).isEmpty && simulation.objects.thing(name).isEmpty then
           answer(false)
         else pose.fold(throw NotFinite())(there => within(there.position)(moveTo(simulation, name, there)))
@@ -92,7 +91,7 @@ private[simulator] object SceneMethods:
   private val NoGrids =
     "this simulator writes no files; ./skein serve --grids FOLDER lets it write voxel grids"
 
-  /** Extent that is answered, from the origin and upwards, m; the world itself has no edge. */
+  /** The extent that is answered, from the origin and upwards, m; the world has no edge. */
   private val ExtentM = 10_000.0
 
   private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): CallOutcome =

@@ -5,8 +5,8 @@ import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
 import skein.scene.{Moment, Placement, Scene, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 
-/** The objects of the scene under their names, which are those of the vehicles and `Ground`, and what clients
-  * have set of them: scales and segmentation ids.
+/** The scene's objects, vehicles and `Ground` by name, and what clients have set for them: scales and
+  * segmentation ids.
   */
 final private[simulator] class SceneObjects(world: World):
   import SceneObjects.*
@@ -14,16 +14,16 @@ final private[simulator] class SceneObjects(world: World):
   private val scales = mutable.Map.empty[String, Vector3]
   private val chosen = mutable.Map.empty[String, Int]
 
-  // Of which scene the places are: a client's change makes a new one.
+  // The scene that the indices belong to: a client's change makes a new one.
   private var seen   = Scene.Empty
   private var places = Map.empty[String, Int]
 
-  /** As a [[Moment]] counts them. */
+  /** All names, in the order of a [[Moment]]'s item numbers. */
   def names: Seq[String] = Ground +: (world.scene.objects.map(_.name) ++ world.vehicles.map(_.settings.name))
 
   def exists(name: String): Boolean = name == Ground || thing(name).nonEmpty || vehicle(name).nonEmpty
 
-  /** An object of the scene, by its place among them. */
+  /** The index of a scene's object, by its name. */
   def thing(name: String): Option[Int] =
     if seen ne world.scene then
       seen = world.scene
@@ -35,16 +35,14 @@ final private[simulator] class SceneObjects(world: World):
   def scale(name: String): Option[Vector3] =
     Option.when(exists(name))(scales.getOrElse(name, Vector3(1, 1, 1)))
 
-  /** False: there is no such object. */
+  /** Sets a scale; false if the object does not exist. */
   def setScale(name: String, scale: Vector3): Boolean =
     val known = exists(name)
     if known then scales(name) = scale
     known
 
-  /** Its segmentation id. */
   def id(name: String): Option[Int] = Option.when(exists(name))(idOf(name))
 
-  /** The ids by item. */
   def ids: Vector[Int] = names.iterator.map(idOf).toVector
 
   private def idOf(name: String): Int = chosen.getOrElse(
@@ -52,18 +50,18 @@ final private[simulator] class SceneObjects(world: World):
     thing(name).flatMap(world.scene.objects(_).id).getOrElse(defaultId(name))
   )
 
-  /** Gives these objects this id, at most 255; whether there was one. A negative id only hides an object from
-    * the image of segmentation in AirSim, and changes nothing here.
+  /** Gives the selected objects this id, at most 255; whether there was one. A negative id only hides an
+    * object from AirSim's segmentation image, and changes nothing here.
     */
   def setId(which: String => Boolean, id: Int): Boolean =
     val found = names.filter(which)
     if id >= 0 then for name <- found do chosen(name) = id.min(LargestId)
     found.nonEmpty
 
-  /** Everything as it looks now. */
   def moment: Moment = Moment(world.scene, world.bodies(world.now))
 
-  /** Everything as it is now, each vehicle the box around it, a camera nothing: what hides a line of sight.
+  /** Everything as it is now, each vehicle as its bounding box, a camera rig as nothing: to test whether a
+    * line between two points is free.
     */
   def boxes: Moment = Moment(
     world.scene,
@@ -75,7 +73,7 @@ final private[simulator] class SceneObjects(world: World):
       else SceneObject(name, Shape.Box(vehicle.halfLengths), place, 0, None)
   )
 
-  /** In the world; NaN of what is not there, as AirSim has it. */
+  /** Pose in the world; NaN if the object does not exist, as in AirSim. */
   def poseOf(name: String): Pose =
     if name == Ground then Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0))
     else
@@ -95,7 +93,7 @@ private[simulator] object SceneObjects:
   private val Nowhere =
     Pose(Vector3r(Float.NaN, Float.NaN, Float.NaN), Quaternionr(Float.NaN, Float.NaN, Float.NaN, Float.NaN))
 
-  /** AirSim's: 5 and the sum of the letters of the name in lower case, modulo 256
+  /** AirSim's default id: 5 plus the sum of the letters of the name in lower case, modulo 256
     * (`InitializeObjectStencilID`).
     */
   def defaultId(name: String): Int =

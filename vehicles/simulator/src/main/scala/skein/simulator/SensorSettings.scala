@@ -3,14 +3,13 @@ package skein.simulator
 import skein.airsim.{SensorKind, SettingsError, SettingsSection, WorldSettings}
 import skein.scene.{Lidar, Placement}
 
-/** What vehicles carry by a `settings.json`: cameras, lidars and distance sensors. Keys and defaults are
-  * AirSim's; of a lidar there are three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh`
-  * (a scan of the instant at which it is asked for).
+/** The cameras, lidars and distance sensors of a `settings.json`. Keys and defaults are AirSim's; a lidar has
+  * three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh` (scans are taken on request, of
+  * that instant).
   *
   * @param captures of `CameraDefaults`, by image type
-  * @param lidars by vehicle; what the file lists of `DefaultSensors` under [[SensorSettings.Others]], which
-  *   is what a vehicle carries that the file does not list: the one that is there if it lists none, and those
-  *   that clients add
+  * @param lidars by vehicle; those of `DefaultSensors` under [[SensorSettings.Others]] apply to vehicles that
+  *   the file does not list: the default vehicle of a file without vehicles, and those that clients add
   */
 final private[simulator] case class SensorSettings(
     captures: Map[Int, SensorSettings.Capture],
@@ -18,12 +17,12 @@ final private[simulator] case class SensorSettings(
     lidars: Map[String, Vector[(String, Lidar)]],
     rangers: Map[String, Vector[(String, SensorSettings.Ranger)]]
 ):
-  /** The size of images, and their field of view, of a vehicle's camera. */
+  /** Image size and field of view of a vehicle's camera. */
   def capture(vehicle: String, camera: String, imageType: Int): SensorSettings.Capture =
     cameras.get(vehicle).flatMap(_.get(camera)).flatMap(_.captures.get(imageType))
       .orElse(captures.get(imageType)).getOrElse(SensorSettings.Capture())
 
-  /** The empty name means the first. */
+  /** A vehicle's lidar by name; an empty name means the first. */
   def lidar(vehicle: String, name: String): Option[(String, Lidar)] =
     lidarsOf(vehicle).find((own, _) => name.isEmpty || own == name)
 
@@ -36,26 +35,25 @@ final private[simulator] case class SensorSettings(
     all.get(vehicle).orElse(all.get(SensorSettings.Others)).getOrElse(Vector.empty)
 
 private[simulator] object SensorSettings:
-  /** In the place of a vehicle's name, which is never empty. */
+  /** Stands for vehicles that the file does not list; no vehicle's name is empty. */
   val Others = ""
 
   final case class Capture(width: Int = 256, height: Int = 144, fovDeg: Float = 90)
 
   /** A camera of the settings.
     *
-    * @param place on the vehicle; None: where the built-in one of its name is
+    * @param place on the vehicle; None: that of the built-in camera of its name
     */
   final case class Carried(place: Option[Placement], captures: Map[Int, Capture])
 
-  /** A distance sensor: looks along its front. */
+  /** A distance sensor, which measures along its front. */
   final case class Ranger(place: Placement, leastM: Double = 0.2, mostM: Double = 40)
 
-  /** Of an image. */
   val MostPixels: Int = 8192 * 4096
 
   val None: SensorSettings = SensorSettings(Map.empty, Map.empty, Map.empty, Map.empty)
 
-  /** Reads it from the file's text, which is JSON. */
+  /** Reads the sensors from the file's text, which is JSON. */
   def read(text: String): Either[SettingsError, SensorSettings] = SettingsSection.read(text)(of)
 
   private[simulator] def of(root: SettingsSection): SensorSettings =
@@ -69,7 +67,7 @@ private[simulator] object SensorSettings:
         .map((sensorName, sensor) => sensorName -> read(sensor))
       val others = enabled(listed(unless))
       vehicles.map: (name, vehicle) =>
-        // As for other kinds, what a vehicle lists of a kind stands for what the defaults list of it.
+        // As for other kinds, a vehicle's own list of a kind replaces the default list.
         val own = listed(vehicle.sections("Sensors"))
         name -> (if own.nonEmpty then enabled(own) else others)
       .toMap + (Others -> others)

@@ -7,26 +7,25 @@ import skein.units.Span
 import upack.Msg
 import upickle.default.{Writer, writeMsg}
 
-/** What a call leads to. */
+/** How a call is answered, or what must happen before it is. */
 private[simulator] enum CallOutcome:
   case Answered(result: Msg | Encoded)
 
   /** The function throws; `text` is the exception's. */
   case Threw(text: String)
 
-  /** A move: it answers when it ends. */
   case Flies(vehicle: Int, order: Move.Order)
 
-  /** It takes a while and needs nothing of the simulation any more: `work` may run on another thread. */
+  /** A long computation that needs the simulation no more: `work` may run on another thread. */
   case Draws(work: () => Msg | Encoded)
 
-  /** Physics is to run for this long and then stand; that answers. */
+  /** Physics must advance by this span and then stop; then the call is answered. */
   case Steps(span: Span)
 
-/** A function that the simulator's server has, with as many parameters as AirSim's.
+/** A function of the simulator's server, with as many parameters as AirSim's.
   *
-  * @param arguments how each is read; throws [[BadArgument]] if it cannot be taken
-  * @param run what to do with what was read
+  * @param arguments readers of the parameters; each throws [[BadArgument]] if it refuses
+  * @param run computes the outcome from the read arguments
   */
 final private[simulator] class ServerMethod(
     val name: String,
@@ -35,7 +34,7 @@ final private[simulator] class ServerMethod(
 ):
   def arity: Int = arguments.size
 
-  /** Whether its arguments can be read from these. */
+  /** Whether these parameters can be read as its arguments. */
   def takes(params: IndexedSeq[Msg]): Boolean =
     arity == params.size &&
       (try
@@ -43,9 +42,9 @@ final private[simulator] class ServerMethod(
         true
       catch case _: BadArgument => false)
 
-  /** The same function with another last argument, which is read and not regarded, or with none.
+  /** This function with another last argument, which is read and ignored, or with none.
     *
-    * @param last what the function gets in its place
+    * @param last value that the function receives in its place
     */
   def closing(last: Any, read: Option[Argument[?]] = None): ServerMethod =
     def own(values: Tuple): Tuple = Tuple.fromArray(values.toArray.take(arity - 1).map(x => x: Any) :+ last)
@@ -76,25 +75,25 @@ private[simulator] object ServerMethod:
 
   def answer[A: Writer](value: A): CallOutcome = CallOutcome.Answered(writeMsg(value))
 
-  /** Does what answers nothing. */
+  /** Runs an effect whose call has no result. */
   def done(effect: => Unit): CallOutcome =
     effect
     Nil
 
   val Nil: CallOutcome = CallOutcome.Answered(upack.Null)
 
-  /** The vehicle of this name, or the default one if it is empty. */
+  /** Finds the vehicle of this name, or the default one if the name is empty. */
   def vehicle(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => CallOutcome): CallOutcome =
     find(simulation, name, "Vehicle API", "this is simulation-only API")(run)
 
-  /** The same, with the words of AirSim's functions that exist in simulation only. */
+  /** Like `vehicle`, with the error texts of AirSim's simulation-only functions. */
   def simulated(
       simulation: Simulated,
       name: String
   )(run: (Int, SimulatedVehicle) => CallOutcome): CallOutcome =
     find(simulation, name, "Vehicle Sim-API", "this is not a simulation")(run)
 
-  /** A multirotor; a car has no such function. */
+  /** Finds a multirotor; for a car the function does not exist. */
   def multirotor(
       simulation: Simulated,
       name: String
@@ -104,13 +103,13 @@ private[simulator] object ServerMethod:
       case (_, other)                               =>
         CallOutcome.Threw(s"expected a multirotor, '${other.settings.name}' is a ${other.kind}")
 
-  /** A car; a multirotor has no such function. */
+  /** Finds a car; for a multirotor the function does not exist. */
   def car(simulation: Simulated, name: String)(run: (Int, SimulatedCar) => CallOutcome): CallOutcome =
     vehicle(simulation, name):
       case (index, car: SimulatedCar) => run(index, car)
       case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a ${other.kind}")
 
-  /** Runs what puts something there. */
+  /** Refuses a place that is outside the limits, else runs `run`. */
   def within(place: Vector3r)(run: => CallOutcome): CallOutcome =
     if place.toVector.norm <= VehicleLimits.FarthestM then run
     else CallOutcome.Threw(s"a place within ${(VehicleLimits.FarthestM / 1000).round} km is wanted")

@@ -2,14 +2,14 @@ package skein.simulator
 
 import skein.airsim.{SettingsError, SettingsSection, WorldSettings}
 
-/** What the built-in simulator makes of an AirSim `settings.json`. Each key is obeyed, or the file is refused
-  * for it, or it is told as one without effect.
+/** An AirSim `settings.json` as the built-in simulator applies it. Each key is obeyed, or the file is refused
+  * because of it, or it is listed as having no effect.
   *
-  * @param ignored the paths of what has no effect here, in the file's order
+  * @param ignored paths of keys without effect here, in the file's order
   */
 final case class SettingsFile(world: WorldSettings, ignored: Vector[String]):
 
-  /** One line about what has no effect, of at most [[SettingsFile.MostTold]] paths. */
+  /** One line that lists keys without effect, at most [[SettingsFile.MostTold]] of them. */
   def notice: Option[String] = Option.when(ignored.nonEmpty):
     val told = ignored.take(SettingsFile.MostTold).map(SettingsError.shown).mkString(", ")
     val more = ignored.size - SettingsFile.MostTold
@@ -18,7 +18,6 @@ final case class SettingsFile(world: WorldSettings, ignored: Vector[String]):
 object SettingsFile:
   val MostTold = 20
 
-  /** Reads a file's text. */
   def read(text: String): Either[SettingsError, SettingsFile] = SettingsSection.read(text): root =>
     val world = WorldSettings.read(root, text)
     val local = localOnly(root)
@@ -27,8 +26,8 @@ object SettingsFile:
     val _ = SensorSettings.of(root)
     SettingsFile(world, root.unread ++ local)
 
-  /** Told where a file names an address of a network: it is not obeyed in that. The file may be anybody's,
-    * and who serves says on the command line whether other machines may connect.
+  /** A line where a file names a network address, which is not obeyed: a file may come from anyone, and
+    * whether other machines may connect is decided on the command line.
     */
   private def localOnly(root: SettingsSection): Option[String] =
     Option.when(!Loopback(root.text("LocalHostIp", "")))(
@@ -45,7 +44,7 @@ object SettingsFile:
     val value = root.text(key, "")
     if value.nonEmpty && !known.contains(value) then root.fail(key, known.mkString(" or "), s"'$value'")
 
-  /** Bounds within which physics stays finite, and the formulas of the air hold. */
+  /** Checks bounds within which physics stays finite and the air's formulas are valid. */
   private def checkWorld(root: SettingsSection, world: WorldSettings): Unit =
     root.number("ClockSpeed", 1, 0.001, 1000): Unit
     val wind = root.section("Wind")

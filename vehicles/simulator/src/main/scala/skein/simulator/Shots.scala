@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.scene.render.{Kind, Raster, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
 
-/** Images that were asked for together: all of one instant, and, where they are of one camera and size, of
-  * one pass. Taken once, on any thread.
+/** Images requested together: all of one instant, and, for one camera and size, from one pass. Drawn once, on
+  * any thread.
   */
 final private[simulator] class Shots private (
     moment: Moment,
@@ -28,12 +28,12 @@ final private[simulator] class Shots private (
       empty.copy(image_data_uint8 = PngEncoder.encode(bytes(image), view.width, view.height))
     else empty.copy(image_data_uint8 = bytes(image))
 
-  /** Of a coloured image the red, from 0 to 1, as AirSim. */
+  /** Converts a coloured image to numbers: its red from 0 to 1, as in AirSim. */
   private def numbers(image: Raster): Array[Float] = image match
     case Raster.Numbers(values) => values
     case Raster.Bytes(bgr)      => Array.tabulate(bgr.length / 3)(i => (bgr(3 * i + 2) & 0xff) / 255f)
 
-  /** Of an image of numbers a grey that is white from 1 on, as AirSim. */
+  /** Converts an image of numbers to grey that is white from 1 on, as in AirSim. */
   private def bytes(image: Raster): Array[Byte] = image match
     case Raster.Bytes(bgr)      => bgr
     case Raster.Numbers(values) => values.flatMap: value =>
@@ -41,19 +41,17 @@ final private[simulator] class Shots private (
         Array(grey, grey, grey)
 
 private[simulator] object Shots:
-  /** @param response what is known of it before it is drawn
-    */
+  /** @param response its fields that are known before drawing */
   final case class Wanted(view: View, kind: Kind, response: ImageResponse)
 
-  /** Of one call. */
   val MostImages = 64
 
-  /** Of one answer: what a client of ours takes. */
+  /** Most bytes of one answer: what our own client accepts. */
   val MostBytes: Long = 60L << 20
 
   def noCamera(name: String): String = s"No camera with name $name exist on vehicle"
 
-  /** What is drawn for AirSim's number of an image type. */
+  /** The kind that is drawn for AirSim's number of an image type. */
   def kindOf(imageType: Int): Either[String, Kind] =
     if imageType < 0 || imageType >= ImageType.values.length then
       Left(s"an image type is 0 to ${ImageType.values.length - 1}, not $imageType")
@@ -63,7 +61,7 @@ private[simulator] object Shots:
           Left(s"the built-in simulator draws no ${ImageType.fromOrdinal(imageType)}")
         case kind => Right(Kind.valueOf(kind.toString))
 
-  /** Through a vehicle's camera, now. */
+  /** The current view through a vehicle's camera. */
   def view(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): View =
     val owner   = simulation.world.vehicles(vehicle)
     val seen    = simulation.cameras(vehicle, owner, camera)
@@ -76,7 +74,8 @@ private[simulator] object Shots:
       fovDeg(seen)
     )
 
-  /** Films and lenses can be set to what no image has. */
+  /** The camera's field of view, clamped to what an image can have: films and lenses can be set to anything.
+    */
   private def fovDeg(camera: Camera): Double = math.max(0.01, math.min(179.9, camera.fovDeg.toDouble))
 
   def of(simulation: Simulated, vehicle: Int, requests: Seq[ImageRequest]): Either[String, Shots] =

@@ -2,7 +2,7 @@ package skein.simulator
 
 import skein.airsim.VehicleSettings
 
-/** What functions of the simulator's server act upon. */
+/** The simulation as the server's functions see it. */
 private[simulator] trait Simulated:
   def settings: SimulatorSettings
 
@@ -20,15 +20,15 @@ private[simulator] trait Simulated:
 
   private[simulator] def equipment: SensorSettings
 
-  /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the
-    * controller's.
+  /** Whether a client has started AirSim's own recording. Nothing is written: Skein's recordings are made by
+    * the controller.
     */
   private[simulator] def recording: Boolean
 
   private[simulator] def recording_=(on: Boolean): Unit
 
-  /** Where voxel grids are written, if they are. */
+  /** The folder for voxel grids, if they are written. */
   private[simulator] def grids: Option[GridFolder]
 
-  /** All vehicles back to their starts; no move goes on, and none waits. */
+  /** Returns all vehicles to their starts and drops all moves, including those that wait. */
   private[simulator] def reset(): Unit

@@ -5,9 +5,8 @@ import skein.airsim.wire.KinematicsState
 import skein.scene.{Scene, SceneObject}
 import skein.units.*
 
-/** AirSim's `ComputerVision` vehicle: no vehicle but a rig of cameras, which stays where it is put. No
-  * physics moves it, nothing stops it, and nobody sees it. It carries a multirotor's cameras, and its
-  * sensors.
+/** AirSim's `ComputerVision` vehicle: a fixed rig of cameras. Physics does not move it, nothing collides with
+  * it, and it is invisible. It carries a multirotor's cameras and sensors.
   */
 final private[simulator] class SimulatedCamera(settings: VehicleSettings, worldOrigin: GeoLocation)
     extends SimulatedVehicle(settings, worldOrigin):
@@ -20,7 +19,6 @@ final private[simulator] class SimulatedCamera(settings: VehicleSettings, worldO
 
   def setApiControl(on: Boolean): Unit = controlled = on
 
-  /** There is nothing to arm. */
   def arm(on: Boolean): Boolean = true
 
   def reset(at: Instant): Unit =
@@ -37,7 +35,7 @@ final private[simulator] class SimulatedCamera(settings: VehicleSettings, worldO
     position = positionNed
     attitude = orientation.normalized
 
-  /** Of a motion it takes the place. */
+  /** Moves it to the position; the motion is ignored. */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     place(kinematics.position.toVector, kinematics.orientation.toQuaternion, at)
 

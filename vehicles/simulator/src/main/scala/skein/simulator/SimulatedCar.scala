@@ -21,16 +21,15 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
 
   def kind: String = "car"
 
-  /** As they were set last. */
   def controls: WireControls = told
 
-  /** They act as long as the API has control. */
+  /** Sets controls, which take effect while the API has control. */
   def setControls(controls: WireControls): Unit = told = controls
 
-  /** m/s along its heading, negative backwards. */
+  /** Speed along its heading, m/s, negative in reverse. */
   def speedMps: Double = state.frontMps
 
-  /** −1 backwards, 0 if it stands, else 1. */
+  /** The gear: −1 in reverse, 0 at rest, else 1. */
   def gear: Int =
     if told.is_manual_gear then told.manual_gear.sign
     else if math.abs(speedMps) < SimulatedCar.StandsMps then 0
@@ -39,12 +38,12 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
   def rpm: Double =
     math.abs(speedMps) / SimulatedCar.WheelM / (2 * math.Pi) * 60 * SimulatedCar.Ratio
 
-  /** As AirSim's car, it forgets its controls when control changes hands. */
+  /** Changes API control; resets the controls, as AirSim's car does. */
   def setApiControl(on: Boolean): Unit =
     if on != controlled then told = WireControls()
     controlled = on
 
-  /** A car has nothing to arm: AirSim's says yes to everything. */
+  /** Does nothing and returns true: AirSim's car accepts all arming. */
   def arm(on: Boolean): Boolean = true
 
   def reset(at: Instant): Unit =
@@ -55,7 +54,6 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
     controlled = false
     begin(at)
 
-  /** Nothing blows it away. */
   def setWind(windNed: Vector3): Unit = ()
 
   def step(at: Instant, scene: Scene): Unit =
@@ -68,7 +66,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
     sampledAt = at
     if scene.objects.nonEmpty then meet(scene, at)
 
-  /** It is pushed out of what it has driven into, and stands. */
+  /** Pushes it out of an object that it has driven into, and stops it. */
   private def meet(scene: Scene, at: Instant): Unit =
     val centre = worldPosition(at) + middleFrd
     for contact <- obstacles.touched(scene, centre, halfLengths)(orientation) do
@@ -82,7 +80,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
   private def hits(contact: Contact, velocity: Vector3) =
     velocity.x * contact.normal.x + velocity.y * contact.normal.y <= 0
 
-  /** It comes to stand on the ground, level, without its motion sideways and upwards. */
+  /** Places it on the ground, level, without lateral and vertical motion. */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
     put(positionNed, orientation, state.frontMps, at)
 
@@ -98,7 +96,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
   private def put(positionNed: Vector3, orientation: Quaternion, speedMps: Double, at: Instant): Unit =
     val heading = orientation.normalized.yawRad
     state = CarState(positionNed.x, positionNed.y, heading, speedMps)
-    // Physics stands at the step before `at`: what is told there must be this when it is carried on.
+    // Physics is at the step before `at`: the stored state must extrapolate to this one.
     val drift = positionAt(at) - Vector3(positionNed.x, positionNed.y, 0)
     state = CarState(positionNed.x - drift.x, positionNed.y - drift.y, heading, speedMps)
 
@@ -128,8 +126,8 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
 
   private def velocityOf(state: CarState) = Vector3(state.northMps, state.eastMps, 0)
 
-  /** In a gear chosen by hand the pedal drives to where that leads; else a negative throttle drives
-    * backwards.
+  /** The controls in effect: in a gear chosen by hand the pedal drives in its direction; else a negative
+    * throttle drives in reverse.
     */
   private def acting: CarControls =
     if !controlled then CarControls.Neutral
@@ -139,10 +137,10 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
       CarControls(throttle, told.steering, if told.handbrake then 1 else told.brake)
 
 private[simulator] object SimulatedCar:
-  /** AirSim's engine (`CarPawn`). */
+  /** Greatest engine speed of AirSim's car (`CarPawn`). */
   val MostRpm = 5700.0
 
-  /** Of the engine's turns over the wheels': PhysX's final drive, with the wheels of a BMW 320i. */
+  /** Engine turns for each turn of the wheels, PhysX's final drive, and the wheel radius of a BMW 320i, m. */
   private val Ratio  = 4.0
   private val WheelM = 0.344
 

@@ -6,7 +6,9 @@ import skein.scene.{Contact, Scene, SceneObject}
 import skein.units.*
 import skein.vehicle.*
 
-/** One multirotor: its physics and what AirSim's SimpleFlight firmware keeps beside them (`OffboardApi`). */
+/** One multirotor: its physics and the state that AirSim's SimpleFlight firmware keeps beside it
+  * (`OffboardApi`).
+  */
 final private[simulator] class SimulatedMultirotor(
     settings: VehicleSettings,
     rotorcraft: Rotorcraft,
@@ -26,13 +28,12 @@ final private[simulator] class SimulatedMultirotor(
   private var outside     = Option.empty[Setpoint]
   private var jumped      = 0L
 
-  /** The remote control's sticks as last heard of. */
+  /** The last state of the remote control's sticks. */
   def sticks: RcData = remote
 
-  /** AirSim's landed state. */
   def flying: Boolean = flown
 
-  /** How often it was put somewhere else than where it flew. */
+  /** How often it was moved by other means than flight. */
   def jumps: Long = jumped
 
   def airframe: Airframe = rotorcraft.airframe
@@ -41,7 +42,7 @@ final private[simulator] class SimulatedMultirotor(
 
   def kind: String = "multirotor"
 
-  /** Back to the start, without api control; armed if the settings say so. */
+  /** Returns it to its start, without API control; armed if the settings say so. */
   def reset(at: Instant): Unit =
     rotorcraft.land(state, settings.yaw.value)
     jumped += 1
@@ -68,9 +69,9 @@ final private[simulator] class SimulatedMultirotor(
     if scene.objects.nonEmpty then meet(scene, at)
     noticeTakeoffAndLanding()
 
-  /** AirSim's response to a collision, with the contact taken at the centre of mass, so that it turns
-    * nothing: what moves into the object bounces, what slides along it is slowed, and who comes down more
-    * than sideways stays.
+  /** AirSim's response to a collision, with the contact at the centre of mass, so that it exerts no torque:
+    * motion into the object bounces, motion along it is slowed, and a vehicle that descends more than it
+    * slides comes to rest.
     */
   private def meet(scene: Scene, at: Instant): Unit =
     val centre = settings.startNed + state.positionNed
@@ -104,27 +105,29 @@ final private[simulator] class SimulatedMultirotor(
       goalSetAt = at
       goalExpired = false
 
-  /** Lets an autopilot outside fly it, whose setpoint holds until the next; None: it is AirSim's again. */
+  /** Lets an external autopilot fly it, whose setpoint holds until the next; None: returns control to
+    * AirSim's firmware.
+    */
   def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
-  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, also if the
-    * API has had control before. A vehicle that held its position thus falls: the throttle of an absent
-    * remote control is idle, and of a vehicle that is at rest under it AirSim takes for granted that it has
-    * landed, so that it is not caught by holding a position either.
+  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, even if the
+    * API already had control. A vehicle that held its position thus falls: the throttle of an absent remote
+    * control is idle, and AirSim assumes that a vehicle at rest under it has landed, so position hold does
+    * not catch it either.
     */
   def setApiControl(on: Boolean): Unit =
     controlled = on
     goal = remoteGoal
 
-  /** Moves the sticks. They fly an armed vehicle that the API does not control: angles (rates, if the first
-    * switch is on), yaw rate and throttle. AirSim looks at them every 12 ms only.
+  /** Moves the sticks. They fly an armed vehicle without API control: angles (rates, if the first switch is
+    * on), yaw rate and throttle. AirSim reads them only every 12 ms.
     */
   def steer(sticks: RcData): Unit =
     remote = sticks
     if !controlled then goal = remoteGoal
 
-  /** Arms or disarms; only the API in control can, and only an armed vehicle can be disarmed. One that is
-    * armed already is left alone. Moves drive a disarmed vehicle too, as in AirSim.
+  /** Arms or disarms; only the API in control can, and only an armed vehicle can be disarmed. Arming an armed
+    * vehicle changes nothing. Moves drive a disarmed vehicle too, as in AirSim.
     */
   def arm(on: Boolean): Boolean =
     val may = controlled && (on || armed)
@@ -133,8 +136,7 @@ final private[simulator] class SimulatedMultirotor(
       goal = if on then Setpoint.Armed else Setpoint.Disarmed
     may
 
-  /** Puts it elsewhere, in its own frame; its motion, its goal and its rotors stay as they are, and it stands
-    * on nothing.
+  /** Moves it to a position in its own frame; velocity, goal and rotors stay unchanged, and it is in the air.
     */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
     val sinceSample = positionAt(at) - state.positionNed
@@ -142,14 +144,14 @@ final private[simulator] class SimulatedMultirotor(
     state.grounded = false
     jumped += 1
 
-  /** Lets it hover at this place, level and at rest, as if it had long done so. It must be above the ground
-    * and under api control.
+  /** Lets it hover at this position, level and at rest, with its controllers settled. It must be above the
+    * ground and under API control.
     */
   def hoverAt(positionNed: Vector3, yawRad: Double, at: Instant): Unit =
     require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
     val hold = positionNed - Vector3(0, 0, rotorcraft.hoverSagM(positionNed.z, environment))
     rotorcraft.hover(state, hold, yawRad, environment)
-    // Exactly there, whatever the sum of hold and sag was rounded to.
+    // Exactly there, independent of the rounding of hold and sag.
     state.place(positionNed, state.orientation)
     flown = true
     jumped += 1
@@ -160,22 +162,18 @@ final private[simulator] class SimulatedMultirotor(
 
   def isAboveGround(positionNed: Vector3): Boolean = positionNed.z < environment.groundDownM
 
-  /** The gains of its flight controller. */
   def gains: CascadeGains = tuned.cascade.getOrElse(CascadeGains.Default)
 
-  /** Sets them; all controllers start anew. */
   def tune(gains: CascadeGains): Unit =
     tuned = rotorcraft.tuned(gains)
     state.restartController()
 
-  /** Puts it into this state of motion, in its own frame; its flight controller is not asked. It stands on
-    * nothing.
-    */
+  /** Sets its state of motion, in its own frame, bypassing its flight controller. It is in the air. */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     val acceleration        = kinematics.linear_acceleration.toVector
     val angularVelocity     = kinematics.angular_velocity.toVector
     val angularAcceleration = kinematics.angular_acceleration.toVector
-    // Physics stands at the step before `at`: what is told there must be this when it is carried on.
+    // Physics is at the step before `at`: the stored state must extrapolate to this one.
     val s        = sinceSample(at)
     val velocity = kinematics.linear_velocity.toVector - acceleration * s
     val position = kinematics.position.toVector - velocity * s - acceleration * (s * s / 2)
@@ -189,7 +187,7 @@ final private[simulator] class SimulatedMultirotor(
     state.wzDot = angularAcceleration.z
     state.grounded = false
 
-  /** Rotors included. */
+  /** Half of its lengths, rotors included, m. */
   def halfLengths: Vector3 =
     val reach = airframe.rotorOffsetM + airframe.rotorDiameterM / 2
     Vector3(reach, reach, airframe.rotorDownM + airframe.rotorHeightM)
@@ -207,17 +205,17 @@ final private[simulator] class SimulatedMultirotor(
   def accelerationNed: Vector3        = state.accelerationNed
   def angularAccelerationFrd: Vector3 = state.angularAccelerationFrd
 
-  /** Position at `at`, up to one step after the last: carried on at constant acceleration, which errs by less
-    * than 0.1 µm at 10 m/s³ of jerk.
+  /** Position at `at`, up to one step after the last: extrapolated at constant acceleration, with an error
+    * below 0.1 µm at 10 m/s³ of jerk.
     */
   def positionAt(at: Instant): Vector3 =
     val s = sinceSample(at)
     state.positionNed + state.velocityNed * s + state.accelerationNed * (s * s / 2)
 
-  /** Velocity at `at`, carried on likewise. */
+  /** Velocity at `at`, extrapolated at constant acceleration. */
   def velocityAt(at: Instant): Vector3 = state.velocityNed + state.accelerationNed * sinceSample(at)
 
-  /** What the remote control's sticks ask for; those of an absent one are at zero. */
+  /** The setpoint of the remote control's sticks; those of an absent one are at zero. */
   private def remoteGoal: Setpoint =
     if !armed then Setpoint.Disarmed
     else
@@ -241,10 +239,10 @@ final private[simulator] class SimulatedMultirotor(
     Seq(state.vx, state.vy, state.vz, state.wx, state.wy, state.wz).forall(math.abs(_) < 0.08)
 
 private[simulator] object SimulatedMultirotor:
-  /** A goal that no command renews within this turns into position hold, once the vehicle flies. */
+  /** A goal that is not renewed within this time turns into position hold, once the vehicle flies. */
   val GoalLifetime: Span = Span.ofMillis(60)
 
   private val ArmedThrottle = 0.1
 
-  /** Share of the angular velocity that a bounce leaves: AirSim's rolling friction. */
+  /** Fraction of the angular velocity that remains after a bounce: AirSim's rolling friction. */
   private val SpinKept = 0.9

@@ -7,12 +7,11 @@ import skein.units.*
 
 /** One vehicle of the simulator. All positions are in its own frame, whose origin is its start.
   *
-  * Changed by [[World]] alone.
+  * Only [[World]] changes it.
   *
-  * @param worldOrigin of the world's NED frame on the globe
+  * @param worldOrigin of the world's NED frame, geographic
   */
 private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings, worldOrigin: GeoLocation):
-  /** The start on the globe. */
   val home: GeoLocation = worldOrigin.locate(settings.startNed)
 
   protected var sampledAt: Instant     = Instant.Epoch
@@ -22,7 +21,7 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   protected var touched: Option[Touch] = None
   protected val obstacles: Obstacles   = Obstacles(settings.startNed)
 
-  /** A word for what it is. */
+  /** The vehicle's kind as a word, for messages. */
   def kind: String
 
   def apiControl: Boolean = controlled
@@ -30,33 +29,33 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   /** Gives control to the API or takes it away. */
   def setApiControl(on: Boolean): Unit
 
-  /** Whether it did. */
+  /** Arms or disarms; returns whether it succeeded. */
   def arm(on: Boolean): Boolean
 
-  /** Back to the start, without api control. */
+  /** Returns it to its start, without API control. */
   def reset(at: Instant): Unit
 
   def setWind(windNed: Vector3): Unit
 
-  /** One step of physics and of what is on board, which ends at `at`. */
+  /** Advances physics and everything on board by one step, which ends at `at`. */
   def step(at: Instant, scene: Scene): Unit
 
-  /** Puts it elsewhere, in its own frame; its motion stays as it is. */
+  /** Moves it to a position in its own frame; its velocity is kept. */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit
 
-  /** Puts it into this state of motion, in its own frame. */
+  /** Sets its state of motion, in its own frame. */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit
 
   /** Whether it has taken off and not landed since. */
   def flying: Boolean
 
-  /** Whether the ground carries it, and physics does not move it. */
+  /** Whether it stands on the ground, so that physics does not move it. */
   def isGrounded: Boolean
 
   /** Position at `at`, up to one step after the last. */
   def positionAt(at: Instant): Vector3
 
-  /** Velocity at `at`, carried on likewise. */
+  /** Velocity at `at`, up to one step after the last. */
   def velocityAt(at: Instant): Vector3
 
   def orientation: Quaternion
@@ -64,26 +63,25 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   def accelerationNed: Vector3
   def angularAccelerationFrd: Vector3
 
-  /** Half of the lengths of the box around it to the front, right and down, m. */
+  /** Half of its bounding box's lengths to the front, right and down, m. */
   def halfLengths: Vector3
 
-  /** The middle of that box, on the vehicle, front right down, m. */
+  /** The middle of its bounding box, in its frame, front right down, m. */
   def middleFrd: Vector3
 
-  /** What it looks like.
+  /** Its shape as parts.
     *
     * @param number of the vehicle in its world
     * @param tagM side of the tags on it; 0 for none
     */
   def parts(number: Int, tagM: Double): Vector[SceneObject.Part]
 
-  /** What it carries without being told to. */
+  /** The cameras that its kind carries by default. */
   def cameras: CameraSet
 
-  /** Position at `at` in the world, m. */
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
-  /** The last touch of the ground or of an object since this was called before. */
+  /** Takes the last touch of the ground or of an object since the last call. */
   def takeTouch(): Option[Touch] =
     val last = touched
     touched = None
@@ -91,20 +89,19 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   def locationAt(at: Instant): GeoLocation = home.locate(positionAt(at))
 
-  /** Time since its start or its last reset. */
   def upFor(at: Instant): Span = at.since(resetAt)
 
-  /** Whether its GPS tells anything: from a second after the start on, also after a reset, which does not
-    * take that second again unless it comes before it is over.
+  /** Whether its GPS reports: from a second after the start on. A reset restarts that second only while it is
+    * not over.
     */
   def hasGps(at: Instant): Boolean = at >= gpsFrom
 
-  /** It is there from now on, at its start. */
+  /** Starts its clocks: it exists from this time on. */
   def start(at: Instant): Unit =
     gpsFrom = at + SimulatedVehicle.GpsStartup
     reset(at)
 
-  /** What every kind of vehicle notes of a reset. */
+  /** The part of a reset that all kinds share. */
   protected def begin(at: Instant): Unit =
     if !hasGps(at) then gpsFrom = at + SimulatedVehicle.GpsStartup
     sampledAt = at
@@ -114,5 +111,5 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   protected def sinceSample(at: Instant): Double = at.since(sampledAt).toSeconds
 
 private object SimulatedVehicle:
-  /** Until a GPS that has been switched on tells anything. */
+  /** Time from the start until the GPS reports, as in AirSim. */
   val GpsStartup: Span = Span.ofSeconds(1)

@@ -7,31 +7,30 @@ import skein.rpc.Encoded
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** A call as it came: `token` names it in its answer.
+/** A received call; `token` identifies its answer.
   *
-  * @param client who calls: see [[Simulation.depart]]
+  * @param client the caller: see [[Simulation.depart]]
   */
 final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg], client: Long = 0)
 
-/** What a call is answered: its result, or what draws it, or the text of its error. */
+/** The answer to a call: its result, a deferred result, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
 
-/** A result that takes a while to compute, such as an image: of the moment at which it was asked for,
-  * whenever and on whatever thread that is done.
+/** A result that takes long to compute, such as an image: of the instant of its request, whenever and on
+  * whatever thread it is computed.
   */
 final class DeferredResult(work: () => Msg | Encoded):
   def result(): Msg | Encoded = work()
 
-/** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or
-  * when a move ends. A pure function of what it is told; equal calls at equal times give equal answers.
+/** The whole simulator without sockets and threads: calls go in with the time; answers come out, immediately
+  * or when a move ends. Deterministic: equal calls at equal times give equal answers.
   *
-  * Its own clock is the world's. While it runs, that advances with the time it is told, `speed` times as
+  * The simulator's own clock is the world's. While it runs, it advances with the given time, `speed` times as
   * fast; while it is paused, only as far as calls continue it. A call of `simContinueForTime` is answered as
   * soon as physics has been computed, which is far sooner than the time it advances by; AirSim takes that
   * time on the wall clock.
   *
-  * @param startedAt when it starts, by the clock that all later times are told of, and the simulator's clock
-  *   at that moment
+  * @param startedAt start time on the clock of all later times, and the simulator's clock at that instant
   */
 final class Simulation(
     val settings: SimulatorSettings,
@@ -50,7 +49,7 @@ final class Simulation(
   private[simulator] val cameras   = Cameras(equipment)
   private[simulator] var recording = false
 
-  /** Of its clock, against that whose times it is told. */
+  /** Ratio of the simulator's clock to the caller's. */
   private[simulator] val speed: Double = settings.speed * settings.world.clockSpeed
 
   private val workers    = settings.newWorkers[SimulatorCall, Waiting]()
@@ -70,17 +69,17 @@ final class Simulation(
   /** Whether a call is run as soon as it is received, rather than waiting for a worker. */
   def isFree: Boolean = workers.isFree || isOpen
 
-  /** Whether no call waits behind moves, and the newest move of a vehicle wins at once: while time stands
-    * still, and once moves have held all workers for longer than the settings let them.
+  /** Whether no call waits behind moves, and the newest move of a vehicle replaces the older immediately:
+    * while the clock is paused, and once moves have held all workers for longer than the settings allow.
     */
   private def isOpen = isPaused || hasHeldUp
 
-  /** Whether moves have held all workers for so long that they do so no more. */
+  /** Whether moves have held all workers for so long that they no longer do. */
   def hasHeldUp: Boolean = settings.patience.exists(heldUp >= _)
 
-  /** Takes a call in at `at`, no earlier than any time told before. */
+  /** Receives a call at `at`, no earlier than any time given before. */
   def receive(call: SimulatorCall, at: Instant): Unit =
-    // Else every call that comes while a long step is computed would wait for its share of it.
+    // Otherwise every call received during a long step would wait for its share of it.
     if continuing.isEmpty then advance(at)
     if isControl(call.method) then
       workers.drop(supersedes(call.method, call.params, _)).foreach(giveUp)
@@ -91,21 +90,21 @@ final class Simulation(
   private def supersedes(method: String, params: IndexedSeq[Msg], other: SimulatorCall): Boolean =
     Simulation.supersedes(method, params, other.method, other.params)
 
-  /** A client sends no more: what it asked for holds nothing any longer. Its vehicles fly on as it told them
-    * last.
+  /** Handles a client that sends no more: its calls no longer hold workers. Its vehicles continue its last
+    * commands.
     *
-    * @param isForgotten whether nothing of what it has sent comes any more
+    * @param isForgotten whether nothing that it sent still arrives
     */
   def depart(client: Long, isForgotten: Boolean, at: Instant): Unit =
     if isForgotten then departed -= client else departed += client
     workers.leave(client).foreach(flight => giveUp(flight.call))
     settle(at)
 
-  /** Answers what is not done any more, as a move that was cancelled. */
+  /** Answers a call that is no longer run like a cancelled move. */
   private def giveUp(call: SimulatorCall): Unit = answers += SimulatorAnswer(call.token, Right(Bool(false)))
 
-  /** Lets time pass up to `at`. Its work is bounded: what does not fit is done by the next calls of it while
-    * time stands still, or else skipped, and counted by [[behind]].
+  /** Advances time to `at`. Its work is bounded: while the clock is paused, the rest is done by later calls;
+    * else it is skipped, and counted by [[behind]].
     */
   def advance(at: Instant): Unit =
     world.heldTo.foreach(_.told(at))
@@ -118,9 +117,9 @@ final class Simulation(
     runTo(at)
     settle(at)
 
-  /** When to call [[advance]] at the latest. None: not before the next call. */
+  /** The latest time for the next [[advance]]. None: not before the next call. */
   def nextWake(at: Instant): Option[Instant] =
-    // Who is waited for goes on with it when the answer comes.
+    // An awaited autopilot continues the clock with its answer.
     if continuing.nonEmpty then Some(if isHeld then at + KeepUp else at)
     else
       val running =
@@ -129,7 +128,6 @@ final class Simulation(
       val next     = if running.isEmpty then handover else running.map(end => handover.fold(end)(_.min(end)))
       next.map(_.max(at))
 
-  /** The answers since this was asked before. */
   def takeAnswers(): Seq[SimulatorAnswer] =
     val all = answers.toSeq
     answers.clear()
@@ -137,12 +135,12 @@ final class Simulation(
 
   def isPaused: Boolean = paused && continuing.isEmpty
 
-  /** When, told as time, its clock will show this; None while it stands still. */
+  /** The caller's time at which the simulator's clock shows this; None while it is paused. */
   private[simulator] def comesTo(simulated: Instant): Option[Instant] =
     Option.unless(paused || continuing.nonEmpty)(wallTime(simulated))
 
-  /** Simulated time that was skipped because it was too much to compute at once, or because an autopilot in
-    * lockstep was too slow: the simulator's clock is that much behind.
+  /** Simulated time skipped because it was too much to compute in one call, or because an autopilot in
+    * lockstep was too slow: the simulator's clock is behind by that much.
     */
   def behind: Span = lag
 
@@ -159,7 +157,7 @@ final class Simulation(
     paused = on
     if !on then finishStep()
 
-  /** Runs the world as far as the time says, or as far as it was told to continue. */
+  /** Advances the world to the given time, or as far as calls continue it. */
   private def runTo(at: Instant): Unit =
     if continuing.nonEmpty then
       world.advanceTo(until.min(world.now + longestStretch))
@@ -169,7 +167,7 @@ final class Simulation(
       val target = asked.getOrElse(anchored + Span.ofNanos(scaled(at.since(anchoredAt).toNanos, speed)))
       val able   = world.now + longestRun
       world.advanceTo(target.min(able))
-      // What an autopilot is late by is made up for, up to a bound.
+      // An autopilot's delay is made up for, up to a bound.
       val behind          = target.since(world.now)
       val madeUpFor: Span = if isHeld then MostMadeUpFor else Span.Zero
       if asked.nonEmpty then anchor(at)
@@ -205,7 +203,7 @@ final class Simulation(
       answers += SimulatorAnswer(token, Right(Bool(result)))
       workers.release(vehicle, at)
 
-  /** Counts how long moves hold all workers; what every burst does for a moment does not count. */
+  /** Accumulates the time that moves hold all workers; short bursts do not count. */
   private def noteHolding(at: Instant): Unit =
     for since <- fullSince if settings.patience.isDefined && at.since(since) > Moment do
       heldUp = heldUp + (at.since(since) - Moment)
@@ -223,7 +221,7 @@ final class Simulation(
     def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))
     val forms                    = named.getOrElse(call.method, Vector.empty)
     val those                    = forms.filter(_.arity == call.params.size)
-    // Of forms with as many arguments their types decide.
+    // Among forms with equally many arguments, the types decide.
     val form =
       if those.size < 2 then those.headOption else those.find(_.takes(call.params)).orElse(those.headOption)
     form match
@@ -255,8 +253,8 @@ final class Simulation(
         answers += SimulatorAnswer(call.token, Left(Rpclib.threw(call.method, call.params.size, text)))
         workers.release(vehicle, at)
 
-  /** Physics takes far longer than a lock's way to its next holder, so that the moves that wait for one have
-    * it first.
+  /** Starts a stepped advance. It takes far longer than handing over a lock, so moves that wait for one
+    * receive it first.
     */
   private def continueFor(span: Span, token: Long, at: Instant): Unit =
     workers.lastHandover.foreach(handOver(_, at))
@@ -266,7 +264,7 @@ final class Simulation(
     continuing += token
     if first then runTo(at)
 
-  /** When, told as time, the simulator's clock shows `simulated`. */
+  /** The caller's time at which the simulator's clock shows `simulated`. */
   private def wallTime(simulated: Instant): Instant =
     val ahead = simulated.since(anchored).toNanos
     anchoredAt + Span.ofNanos(if speed == 1.0 then ahead else scaled(ahead, 1 / speed) + 1)
@@ -283,22 +281,22 @@ final class Simulation(
 
 object Simulation:
 
-  /** A running simulator is looked after at least this often, so that a call never finds much to compute. */
+  /** A running simulator is advanced at least this often, so that a call never finds much to compute. */
   private val KeepUp = Span.ofMillis(50)
 
-  /** Of the time that an autopilot in lockstep has taken longer than it simulates. */
+  /** Most real time that is made up after an autopilot in lockstep was slower than real time. */
   private val MostMadeUpFor = Span.ofMillis(20)
 
-  /** All workers held for so long are no burden. */
+  /** Holding all workers for less than this does not count. */
   private val Moment = Span.ofMillis(100)
 
   /** Steps of one vehicle that one call may compute: some 30 ms. */
   private val LongestRunSteps = 200_000
 
-  /** To look at so many of a scene's objects, near a vehicle, costs as much as its step. */
+  /** Checking this many of a scene's objects near a vehicle costs as much as its step. */
   private val ObjectsOfAStep = 16
 
-  /** Of a step that was asked for, so many at a time: some 4 ms, between which others are answered. */
+  /** Steps computed in one go of a stepped advance: some 4 ms, between which other calls are answered. */
   private val LongestStretchSteps = 30_000
 
   final private case class Waiting(call: SimulatorCall, order: Move.Order)
@@ -308,11 +306,11 @@ object Simulation:
       GainMethods.all ++ SceneMethods.all ++
       CameraMethods.all ++ AppearanceMethods.all ++ CosysMethods.all
 
-  /** By their names, AirSim's form before Cosys-AirSim's. */
+  /** All functions by name; AirSim's form before Cosys-AirSim's. */
   private[simulator] val named: Map[String, Seq[ServerMethod]] =
     (methods ++ CosysMethods.forms(methods)).groupBy(_.name)
 
-  /** Functions by which a person gets a simulator back that is busy: they never wait behind moves. */
+  /** Functions that let a person regain control of a busy simulator: they never wait behind moves. */
   private val Controls = Set("simPause", "simIsPaused", "ping", "hover", "cancelLastTask", "reset") ++
     Set("getServerVersion", "getMinRequiredClientVersion")
 
@@ -320,8 +318,8 @@ object Simulation:
 
   private val Moves = MoveMethods.all.map(_.name).toSet
 
-  /** Whether a call makes an earlier one needless that has not been run: a move before a hover of its
-    * vehicle, or a reset.
+  /** Whether a call makes an earlier one that has not been run needless: a move before a hover of its
+    * vehicle, or before a reset.
     */
   private[simulator] def supersedes(
       method: String,
@@ -332,5 +330,4 @@ object Simulation:
     Moves(earlier) && earlier != "hover" && (method == "reset" ||
       method == "hover" && params.nonEmpty && earlierParams.lastOption == params.lastOption)
 
-  /** The functions it has. */
   val methodNames: Set[String] = named.keySet

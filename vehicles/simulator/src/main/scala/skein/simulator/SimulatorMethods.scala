@@ -3,7 +3,7 @@ package skein.simulator
 import skein.airsim.wire.*
 import skein.units.*
 
-/** Functions that concern the whole simulator. */
+/** Functions that concern the whole simulator, by AirSim's names. */
 private[simulator] object SimulatorMethods:
   import ServerMethod.*
 
@@ -27,13 +27,13 @@ private[simulator] object SimulatorMethods:
       else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")
   )
 
-  /** Of a renderer that keeps up with AirSim's usual screen. */
+  /** Rate of a renderer that keeps up with a usual screen, as AirSim's. */
   private val FramesPerS = 60.0
 
-  /** A day: far beyond use, and far below what would overflow a clock. */
+  /** Longest stepped advance, s: a day, far beyond use and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
 
-  /** Beyond it physics' steps would be too long. */
+  /** Greatest wind speed, m/s; beyond it physics' steps would be too long. */
   private val FastestWindMps = 300.0
 
   private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))

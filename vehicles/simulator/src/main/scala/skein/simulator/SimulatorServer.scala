@@ -19,16 +19,17 @@ import skein.signal.Kinematics
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** The built-in simulator behind a socket, or whatever a [[Transport]] has: it speaks AirSim's wire, so that
-  * any of its clients can fly it.
+/** The built-in simulator behind a [[Transport]], such as a socket: it speaks AirSim's protocol, so that any
+  * of its clients can fly it.
   *
-  * One actor holds the [[Simulation]]. Physics is computed up to the clock's present whenever a call comes
-  * and whenever a move may end, and every 50 ms at the latest; while the simulator is paused, nothing runs.
+  * One actor holds the [[Simulation]]. Physics is computed up to the clock's present whenever a call is
+  * received and whenever a move may end, and every 50 ms at the latest; while the simulator is paused,
+  * nothing runs.
   *
-  * Calls are run in rounds over the connections ([[CallLines]]), so that no client waits for all that another
-  * has sent, and one that asks now and then goes first; those of a connection that has closed before their
-  * turn are not run. If the simulation itself fails, which is a defect, it stops listening, closes every
-  * connection and says so through [[failed]].
+  * Calls are run in rounds over the connections ([[CallLines]]), so that no client waits for another's whole
+  * queue, and one that calls rarely goes first; calls of a connection that has closed before their turn are
+  * not run. If the simulation itself fails, which is a defect, it stops listening, closes every connection
+  * and completes [[failed]].
   */
 final class SimulatorServer private (
     server: RpcServer,
@@ -41,11 +42,10 @@ final class SimulatorServer private (
     heldUp: AtomicBoolean
 ):
 
-  /** Where it listens, with the actual port. */
+  /** The listening address, with the actual port. */
   def address: Address = server.address
 
-  /** Where it listens for MAVLink, or for autopilots, with the actual ports: by its transport, then by
-    * datagrams.
+  /** The addresses for MAVLink or autopilots, with the actual ports: those of its transport, then datagrams.
     */
   def peerAddresses: Vector[Address] = peers.fold(Vector.empty)(_.addresses)
 
@@ -53,24 +53,24 @@ final class SimulatorServer private (
 
   def peerStats: PeerStats = counters.stats.copy(ignored = peers.fold(0L)(_.ignored))
 
-  /** Completes if it ends without having been closed, with the reason. */
+  /** Completes if it stops without having been closed, with the reason. */
   val failed: Future[Throwable] =
     given ExecutionContext = ExecutionContext.parasitic
     Future.firstCompletedOf(Seq(broken, server.failed))
 
-  /** Simulated time skipped so far because the machine was too slow, or asleep. */
+  /** Simulated time skipped so far because the machine was too slow, or suspended. */
   def behind: Span = Span.ofNanos(behindNanos.get)
 
   /** Whether moves have held all workers for longer than [[SimulatorSettings.patience]]. */
   def hasHeldUp: Boolean = heldUp.get
 
-  /** Where all vehicles truly are; never, once it is closed. */
+  /** The true motion of all vehicles; does not complete once the server is closed. */
   def truth(): Future[SimulatorServer.Truth] =
     val answer = Promise[SimulatorServer.Truth]()
     simulator ! SimulatorServer.Message.Look(answer)
     answer.future
 
-  /** Stops listening and closes all connections; moves under way are not answered. */
+  /** Stops listening and closes all connections; moves in progress are not answered. */
   def close(): Future[Done] =
     simulator ! SimulatorServer.Message.Stop
     given ExecutionContext = ExecutionContext.parasitic
@@ -146,27 +146,25 @@ object SimulatorServer:
     yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp)
 
   private[simulator] enum Message:
-    /** Calls wait. */
+    /** Calls wait to be run. */
     case Work
     case Wake
     case Look(answer: Promise[Truth])
     case Stop
 
-    /** A client sends no more. */
     case Gone(connection: Long, isForgotten: Boolean)
 
-    /** Peers of MAVLink, or autopilots. */
+    /** Events of MAVLink peers and of autopilots. */
     case Joined(peer: JoinedPeer)
     case Heard(channel: Long, bytes: Array[Byte], done: Promise[Done])
     case Left(channel: Long)
 
   final private case class Call(request: RpcRequest, answer: Promise[Either[String, Msg | Encoded]])
 
-  /** Calls run before other work of the process has its turn: some 0.5 ms. */
+  /** Calls run before other work of the process gets its turn: some 0.5 ms. */
   private val CallsAtOnce = 32
 
-  /** @param work whether [[Message.Work]] is on its way
-    */
+  /** @param work whether a [[Message.Work]] has been sent and not handled */
   final private class Running(
       simulation: Simulation,
       counters: PeerCounters,
@@ -247,7 +245,7 @@ object SimulatorServer:
               vehicles.receive(channel, bytes)
               counters.damaged.set(vehicles.damaged)
               counters.unanswered.set(vehicles.unanswered)
-            // An autopilot may have been waited for.
+            // The simulation may have waited for an autopilot.
             if simulation.settings.hil.nonEmpty then simulation.advance(clock.now())
             val _ = done.trySuccess(Done)
             goOn()
@@ -273,7 +271,7 @@ object SimulatorServer:
           )
       )
 
-    /** Images are drawn beside the simulation, which goes on meanwhile. */
+    /** Completes a call; images are drawn outside the simulation, which continues. */
     private def complete(call: Call, result: Either[String, Msg | Encoded | DeferredResult]): Unit =
       result match
         case Left(text)                     => call.answer.success(Left(text)): Unit
@@ -281,8 +279,8 @@ object SimulatorServer:
         case Right(drawing: DeferredResult) =>
           beside.put(call.request.connection)(call.answer.complete(Try(Right(drawing.result()))): Unit)
 
-    /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection.
-      * What never waits behind moves is run in any case.
+    /** Runs waiting calls while a worker is free. What is not taken is dropped with its connection. Calls
+      * that never wait behind moves are run in any case.
       */
     private def takeCalls(): Unit =
       var left = CallsAtOnce

@@ -10,30 +10,30 @@ import skein.scene.Scene
 import skein.units.*
 import skein.vehicle.RotorcraftKind
 
-/** How AirSim's server deals with moves that come faster than they end; see [[Workers]]. */
+/** How the simulator handles moves that arrive faster than they end; see [[Workers]]. */
 enum Overload:
-  /** As AirSim does, with this many workers. */
+  /** As AirSim does, with this number of workers. */
   case Workers(count: Int)
 
-  /** As AirSim does, with its number: one worker for each vehicle and four more. */
+  /** As AirSim does, with its number of workers: one for each vehicle and four more. */
   case AirSim
 
-  /** Not at all: the newest move wins at once and nothing waits. */
+  /** Without a limit: the newest move replaces the older immediately, and nothing waits. */
   case Never
 
-/** What a built-in simulator is.
+/** Settings of a built-in simulator.
   *
-  * @param address where it listens; port 0 takes a free one
+  * @param address listening address; port 0 takes a free one
   * @param speed of its clock against the machine's, on top of the settings' `ClockSpeed`
   * @param patience for how long moves may hold all workers, taken together, beyond moments of 100 ms; then no
-  *   call waits behind moves any more. None: for ever, as AirSim
-  * @param losesCancel asked whenever a move comes that replaces another, for tests of clients: where it says
-  *   so, the other one is not cancelled. AirSim loses a cancel that comes while a move is about to begin
-  * @param scene what stands in the world
-  * @param mavlink where its vehicles are reached by MAVLink, too
-  * @param hil which autopilots outside fly its vehicles; then they are not reached by MAVLink
-  * @param kind what its multirotors are; without one, AirSim's quadrotors
-  * @param grids the folder for voxel grids that clients ask for; without one, none is written
+  *   call waits behind moves any more. None: unlimited, as in AirSim
+  * @param losesCancel called whenever a move replaces another, for tests of clients: if true, the other one
+  *   is not cancelled. AirSim loses a cancel that arrives while a move is about to begin
+  * @param scene objects of the world
+  * @param mavlink ports on which its vehicles also speak MAVLink
+  * @param hil external autopilots that fly its vehicles; then these do not speak MAVLink
+  * @param kind of its multirotors; without one, AirSim's quadrotors
+  * @param grids the folder for voxel grids that clients request; without one, none is written
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -52,12 +52,11 @@ final case class SimulatorSettings(
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
-  /** What the vehicles carry; nothing, where the file's text cannot be read: [[SettingsFile]] says so.
-    */
+  /** The vehicles' sensors; none, where the file's text cannot be read: [[SettingsFile]] reports it. */
   private[simulator] def equipment: SensorSettings =
     SensorSettings.read(world.text).getOrElse(SensorSettings.None)
 
-  /** Autopilots outside want their sensors at whole milliseconds. */
+  /** The kind of its multirotors. External autopilots need sensor readings at whole milliseconds. */
   private[simulator] def multirotors: RotorcraftKind =
     kind.getOrElse(if hil.isEmpty then RotorcraftKind.AirSim else RotorcraftKind.at(AutopilotInterface.Step))
 
@@ -69,11 +68,10 @@ final case class SimulatorSettings(
       case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
 
 object SimulatorSettings:
-  /** AirSim's. */
   val UsualPort = 41451
 
-  /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all
-    * clients: images.
+  /** Limits of its server. Requests are small: the largest, a path, has 14 values a point. At most 384 MiB
+    * are held for all clients: images.
     */
   val Limits: ServerLimits = ServerLimits(
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),

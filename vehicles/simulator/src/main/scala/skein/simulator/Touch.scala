@@ -3,9 +3,9 @@ package skein.simulator
 import skein.scene.Scene
 import skein.units.*
 
-/** Where and when a vehicle touched something, in its own frame.
+/** A vehicle's contact with something, in its own frame.
   *
-  * @param normal away from what it touched
+  * @param normal away from the object
   * @param pointNed of contact
   */
 final private[simulator] case class Touch(

@@ -2,19 +2,18 @@ package skein.simulator
 
 import skein.airsim.{VehicleSettings, WorldSettings}
 
-/** Which vehicles the built-in simulator has, by its settings and by clients that add some. */
+/** Limits on the simulator's vehicles, from its settings and from clients that add some. */
 private[simulator] object VehicleLimits:
-  /** Clients can add until then. */
+  /** Most vehicles; clients cannot add more. */
   val MostVehicles = 256
 
-  /** Letters of a name. */
   val LongestName = 100
 
-  /** From the origin; beyond it numbers would soon be none. */
+  /** Greatest distance from the origin, m; beyond it numbers lose their precision. */
   val FarthestM = 1e6
 
   val Types: Vector[String] =
     Vector(WorldSettings.SimpleFlight, WorldSettings.PhysXCar, WorldSettings.ComputerVision)
 
-  /** Whether its type is one of these, in any case of letters. */
+  /** Whether its type is supported, ignoring case. */
   def flies(vehicle: VehicleSettings): Boolean = Types.exists(_.equalsIgnoreCase(vehicle.vehicleType))

@@ -7,7 +7,7 @@ import skein.units.*
 import upickle.default.Writer
 
 /** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay;
-  * AirSim's GPS tells it 0.2 s late.
+  * AirSim's GPS reports it 0.2 s late.
   */
 private[simulator] object VehicleMethods:
   import ServerMethod.*
@@ -23,7 +23,7 @@ private[simulator] object VehicleMethods:
     many[(Boolean, String)]("armDisarm"):
       case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
     ,
-    // AirSim's vehicles have no evaluation of safety either, and say so.
+    // AirSim's vehicles have no safety evaluation either, and answer so.
     many[(Argument.Unsigned32, Float, Int, Float, Vector3r, Float, Float, Float, String)]("setSafety"):
       case (simulation, (_, _, _, _, _, _, _, _, name)) =>
         multirotor(simulation, name)((_, _) =>
@@ -89,7 +89,7 @@ private[simulator] object VehicleMethods:
             ranger => answer(distance(simulation, index, ranger))
   )
 
-  /** What is so of a vehicle that is found by its name, now. */
+  /** A function that reads the current state of a vehicle found by its name. */
   private def read[V, A: Writer](
       method: String,
       find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
@@ -97,7 +97,7 @@ private[simulator] object VehicleMethods:
     one[String](method): (simulation, name) =>
       find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
 
-  /** The empty name means the first of its kind. */
+  /** A function that reads a sensor by name; an empty name means the first of its kind. */
   private def sensor[A: Writer](method: String, kind: SensorKind, called: String)(
       value: (SimulatedVehicle, Instant) => A
   ): ServerMethod =
@@ -108,7 +108,7 @@ private[simulator] object VehicleMethods:
           then answer(value(vehicle, simulation.world.now))
           else missing(called, sensor)
 
-  /** To what the sensor's front points to, at most its greatest distance. */
+  /** Distance along the sensor's front, at most its range. */
   private def distance(simulation: Simulated, index: Int, ranger: SensorSettings.Ranger): DistanceSensorData =
     val at     = simulation.world.now
     val sensor = simulation.world.placeOf(index, at).outside(ranger.place)
@@ -160,7 +160,7 @@ private[simulator] object VehicleMethods:
     )
 
   private def imu(vehicle: SimulatedVehicle, at: Instant) =
-    // The ground carries a vehicle that stands, and physics does not move it.
+    // Physics does not move a vehicle that stands on the ground.
     val acceleration = if vehicle.isGrounded then Vector3.Zero else vehicle.accelerationNed
     val force        = acceleration - Vector3(0, 0, Gravity)
     ImuData(
@@ -196,8 +196,8 @@ private[simulator] object VehicleMethods:
       Globe.airDensity(altitude).toFloat
     )
 
-  /** Thrust and torque as at sea level: AirSim tells them before it scales them by the density of the air.
-    * The torque is that on the body, whose sign AirSim counts upwards: negative for the two rotors that turn
+  /** Thrust and torque as at sea level: AirSim reports them before it scales them by the air's density. The
+    * torque acts on the body; AirSim counts it upwards: negative for the two rotors that turn
     * counter-clockwise.
     */
   private def rotors(vehicle: SimulatedMultirotor, at: Instant) =
@@ -214,5 +214,5 @@ private[simulator] object VehicleMethods:
 
   private val Gravity = skein.vehicle.Airframe.Gravity
 
-  /** AirSim's rotors reach 6396.667 turns a minute; rad/s. */
+  /** Greatest rotor speed of AirSim, 6396.667 turns a minute, in rad/s. */
   private val MaxRotorSpeed = 6396.667 * 2 * math.Pi / 60

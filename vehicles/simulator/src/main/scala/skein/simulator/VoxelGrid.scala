@@ -11,13 +11,12 @@ import skein.units.Vector3
   */
 private[simulator] object VoxelGrid:
 
-  /** Cells at most: 256 to each side. */
   val LargestCells: Long = 256L * 256 * 256
 
-  /** Cells along north, east and up.
+  /** The number of cells along north, east and up.
     *
     * @param sizeM lengths along north, east and up
-    * @return or what is wrong with the request
+    * @return Left states what is wrong with the request
     */
   def cells(sizeM: (Int, Int, Int), edgeM: Float): Either[String, (north: Int, east: Int, up: Int)] =
     def count(lengthM: Int) = if edgeM > 0 then (lengthM / edgeM).toLong else 0L
@@ -27,10 +26,10 @@ private[simulator] object VoxelGrid:
     then Left(s"a voxel grid has 1 to $LargestCells cells, not $north x $east x $up")
     else Right((north.toInt, east.toInt, up.toInt))
 
-  /** The file. Cost: some 0.1 s for the most cells and vehicles, so it is no work for the simulation's
+  /** Computes the file. Cost: some 0.1 s for the most cells and vehicles, too long for the simulation's
     * thread.
     *
-    * @return or what is wrong with the request
+    * @return Left states what is wrong with the request
     */
   def render(
       moment: Moment,
@@ -52,7 +51,7 @@ private[simulator] object VoxelGrid:
     // The first cell's centre; up is down's opposite.
     val first = centre - Vector3((north / 2).toDouble, (east / 2).toDouble, -(up / 2).toDouble) * edgeM
     def row(j: Int, k: Int) = north * (k + up * j)
-    // Marked body by body: to ask every cell about every body could take a minute.
+    // Marked body by body: testing every cell against every body could take a minute.
     val flying = BitSet()
     for (least, most) <- moment.bounds do
       val (from, to) = (least - first, most - first)
@@ -68,13 +67,13 @@ private[simulator] object VoxelGrid:
     runs.add(flying, north * east * up)
     out.toByteArray
 
-  /** The cells of a row that reach into what lies between two places, given from the first one's centre. */
+  /** The cells of a row that overlap an interval, given relative to the first cell's centre. */
   private def near(least: Double, most: Double, edge: Float, cells: Int): Range =
     val from = math.ceil(least / edge - 0.5).max(0).min(cells.toDouble).toInt
     val to   = math.floor(most / edge + 0.5).max(-1).min(cells.toDouble - 1).toInt
     from to to
 
-  /** Pairs of a value and how often it comes, 255 times at most. */
+  /** Run-length encoding: pairs of a value and its count, at most 255. */
   final private class Runs(out: ByteArrayOutputStream):
     def add(filled: BitSet, cells: Int): Unit =
       var at = 0

@@ -6,23 +6,23 @@ import skein.units.*
 /** Which request runs when, as in AirSim's server: a fixed number of worker threads, one lock per vehicle.
   *
   * A request waits until a worker is free. A move holds its worker until it ends, and its vehicle's lock. A
-  * move that finds the lock taken cancels the one that holds it, and gets the lock a little later. That is
-  * AirSim's flaw: another move that comes within this while sees nothing left to cancel and waits behind, for
-  * the whole of the one before it. A burst of moves thus runs to the end of many, and holds so many workers
-  * that all else waits.
+  * move that finds the lock taken cancels the one that holds it, and receives the lock a little later. That
+  * is AirSim's flaw: another move that arrives in between finds nothing left to cancel and waits for the
+  * whole of the move before it. In a burst many moves thus run to their end, and hold enough workers that all
+  * other calls wait.
   *
-  * The worker of the move that has ended takes the next request at once. Whether it or the lock on its way is
-  * first is a race, in which the lock wins 5 times of 8 here, evenly spread: then a move that the worker
-  * takes cancels the one that has just got the lock. Seen at AirSim: a burst of 8 four-second moves on two
-  * vehicles' six workers holds a ping up for 4 s, one of 20 for 24 s. From these two figures is that share.
+  * The worker of the move that has ended takes the next request immediately. It races with the lock's
+  * handover, which here is first 5 times of 8, evenly spread: then a move that the worker takes cancels the
+  * one that has just received the lock. Observed with AirSim: a burst of 8 four-second moves on two vehicles'
+  * six workers holds a ping up for 4 s, one of 20 for 24 s. The share is fitted to these two figures.
   *
-  * A client that has left holds no worker: what it asked for last goes on, until another client's move comes.
+  * A client that has left holds no worker: its last move continues until another client's move arrives.
   *
-  * Pure bookkeeping: it is told the time, and the caller does what it says. What waits is bounded by who
-  * calls: a server lets each connection have a limited number of requests unanswered.
+  * Pure bookkeeping: the caller passes the time and carries out the decisions. The queue is bounded by the
+  * caller: a server lets each connection have a limited number of requests unanswered.
   *
   * @param limit number of workers; AirSim has one for each vehicle and four more
-  * @param handover how long a lock is on its way to the move that waits; zero lets the newest move win always
+  * @param handover time until a released lock reaches the waiting move; zero lets the newest move always win
   */
 final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   require(limit > 0, s"the number of workers must be positive, not $limit")
@@ -48,32 +48,31 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     var holder     = Option.empty[Claim]
     var handoverAt = Option.empty[Instant]
 
-  /** One more vehicle has a lock; the number of workers stays, as in AirSim. */
+  /** Adds a lock for one more vehicle; the number of workers stays, as in AirSim. */
   def addVehicle(): Unit = locks += Lock()
 
-  /** Whether a request offered now is run at once. */
+  /** Whether a request offered now is run immediately. */
   def isFree: Boolean = busy < limit && jobs.isEmpty
 
-  /** Whether moves hold all workers. */
   def isFull: Boolean = busy >= limit
 
   def offer(job: Job): Unit = jobs.enqueue(job)
 
-  /** The next request, if a worker is free for it.
+  /** Takes the next request, if a worker is free for it.
     *
-    * @param isOpen whether there is one for every request
+    * @param isOpen whether there is a worker for every request
     */
   def take(isOpen: Boolean = false): Option[Job] =
     Option.when((isOpen || busy < limit) && jobs.nonEmpty)(jobs.dequeue())
 
-  /** Requests that nobody wants any more, which waited for a worker. */
+  /** Removes needless requests that waited for a worker, and returns them. */
   def drop(isNeedless: Job => Boolean): Vector[Job] = jobs.dequeueAll(isNeedless).toVector
 
-  /** The request taken is a move: its worker is held from now on. True: it has the lock and starts. False: it
-    * waits, and the vehicle's move is to be cancelled.
+  /** Makes the request just taken a move: its worker is held from now on. True: it has the lock and starts.
+    * False: it waits, and the vehicle's current move is to be cancelled.
     *
-    * @param client who asks
-    * @param isLeft whether it has left meanwhile
+    * @param client who made the request
+    * @param isLeft whether the client has left in the meantime
     */
   def acquire(vehicle: Int, flight: Flight, client: Long = 0, isLeft: Boolean = false): Boolean =
     val lock  = locks(vehicle)
@@ -83,7 +82,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     if free then lock.holder = Some(claim) else lock.waiting.enqueue(claim)
     free
 
-  /** The vehicle's move has ended: its worker is free, and its lock goes to the next. */
+  /** Ends the vehicle's move: frees its worker, and hands its lock to the next. */
   def release(vehicle: Int, at: Instant): Unit =
     val lock = locks(vehicle)
     lock.holder.foreach(_.freeWorker())
@@ -91,16 +90,16 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     if lock.waiting.nonEmpty then
       lock.handoverAt = Some(if jobs.nonEmpty && lockIsFirst() then at else at + handover)
 
-  /** The moves that wait for the vehicle's lock do so no longer.
+  /** Removes moves that wait for the vehicle's lock.
     *
-    * @param all else those of clients that have left
+    * @param all false: only those of clients that have left
     */
   def dismiss(vehicle: Int, all: Boolean): Vector[Flight] =
     val lock = locks(vehicle)
     dismissed(lock, claim => all || claim.isLeft)
 
-  /** A client has left: its moves hold no workers any more. Of those of a vehicle that wait for its lock only
-    * the newest stays.
+  /** Handles a client's departure: its moves hold no workers any more. Of its moves that wait for a vehicle's
+    * lock only the newest stays.
     *
     * @return the others
     */
@@ -120,16 +119,16 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     race = (race + 5) % 8
     race < 5
 
-  /** When the next lock arrives at a move that waits for it. */
+  /** When the next lock arrives at its waiting move. */
   def nextHandover: Option[Instant] =
     var next = Option.empty[Instant]
     for lock <- locks; at <- lock.handoverAt do if next.forall(at < _) then next = lock.handoverAt
     next
 
-  /** When the last of those under way arrives. */
+  /** When the last lock in transit arrives. */
   def lastHandover: Option[Instant] = locks.flatMap(_.handoverAt).maxOption
 
-  /** A move whose lock has arrived by `at`; it starts. */
+  /** Takes a move whose lock has arrived by `at`; it starts. */
   def handOver(at: Instant): Option[(Int, Flight)] =
     locks.indices
       .filter(vehicle => locks(vehicle).handoverAt.exists(_ <= at))

@@ -6,12 +6,11 @@ import skein.scene.{Lidar, Placement, Scene, SceneObject}
 import skein.units.*
 import skein.vehicle.{PathFollowing, RotorcraftKind}
 
-/** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] says what time
-  * it is.
+/** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] sets the time.
   *
   * Physics keeps a grid of whole steps from `start`, while the clock may stand anywhere between two of them:
-  * physics has then been stepped up to the last grid point, and readings are carried on from there. So the
-  * clock advances by exactly what it is told, and how that is cut into pieces does not change the flight.
+  * physics has then been stepped up to the last grid point, and readings are extrapolated from there. So the
+  * clock advances by exactly the given time, and dividing it into several calls does not change the flight.
   *
   * @param start the clock's first reading
   */
@@ -44,12 +43,12 @@ final class World(
   present.foreach(_.start(start))
   setWind(wind)
 
-  /** Those of the settings, then those added. */
+  /** The vehicles of the settings, then those added. */
   private[simulator] def vehicles: Vector[SimulatedVehicle] = present
 
-  /** A vehicle that moves and pilots are made for.
+  /** A vehicle that accepts moves and pilots.
     *
-    * @throws IllegalArgumentException if it is none
+    * @throws IllegalArgumentException if it does not
     */
   private[simulator] def multirotor(vehicle: Int): SimulatedMultirotor = vehicles(vehicle) match
     case multirotor: SimulatedMultirotor => multirotor
@@ -64,7 +63,7 @@ final class World(
     else if vehicle.isCamera then SimulatedCamera(vehicle, settings.origin)
     else SimulatedMultirotor(vehicle, kind.make(), settings.origin)
 
-  /** One more vehicle, at rest at its start. */
+  /** Adds a vehicle, at rest at its start. */
   private[simulator] def add(vehicle: VehicleSettings): Unit =
     val added = made(vehicle)
     added.start(clock)
@@ -73,25 +72,23 @@ final class World(
     present = present :+ added
     equip(present.size - 1, vehicle.name)
 
-  /** The simulator's clock. */
   def now: Instant = clock
 
-  /** Length of one step of physics. */
   def step: Span = stepLength
 
-  /** Lets a pilot fly a vehicle; all pilots are asked at the same times. */
+  /** Lets a pilot fly a vehicle; all pilots take their turns at equal times. */
   private[simulator] def attach(vehicle: Int, pilot: Pilot): Unit =
     pilots += ((vehicle, pilot))
     pilotAt = clock
 
-  /** From now on, time runs as this lets it. */
+  /** Lets a lockstep decide from now on how time advances. */
   private[simulator] def holdTo(lockstep: Lockstep): Unit = this.lockstep = Some(lockstep)
 
-  /** What time depends on beside the clock. */
+  /** The lockstep that time depends on, if any. */
   private[simulator] def heldTo: Option[Lockstep] = lockstep
 
-  /** Advances physics and moves up to this time, in order, or as far as [[holdTo]] lets it. Cost: 0.13 µs a
-    * vehicle and step.
+  /** Advances physics and moves to this time, in order, or as far as [[holdTo]]'s lockstep allows. Cost: 0.13
+    * µs a vehicle and step.
     */
   def advanceTo(to: Instant): Unit =
     for held <- lockstep do
@@ -111,9 +108,9 @@ final class World(
       due = nextTurn
     stepTo(to)
 
-  /** Starts a move, in place of none: [[cancelMove]] first. It may end at once.
+  /** Starts a move; the vehicle must have none: [[cancelMove]] first. It may end immediately.
     *
-    * @param token given back when the move ends
+    * @param token returned when the move ends
     */
   private[simulator] def startMove(vehicle: Int, token: Long, move: Move): Unit =
     moves(vehicle) = Some(Running(token, move, clock, clock))
@@ -122,13 +119,13 @@ final class World(
   /** Ends the vehicle's move, if there is one, with false. */
   def cancelMove(vehicle: Int): Unit = end(vehicle, result = false)
 
-  /** The moves that have ended since this was asked before. */
+  /** Takes the moves that have ended since the last call. */
   def takeEnded(): Seq[Ended] =
     val all = ended.toSeq
     ended.clear()
     all
 
-  /** Whether [[takeEnded]] has anything to give. */
+  /** Whether [[takeEnded]] would return anything. */
   def hasEnded: Boolean = ended.nonEmpty
 
   /** When, at the earliest, the next move can end. */
@@ -145,11 +142,9 @@ final class World(
     scans.forget()
     scans.note(clock, scan)
 
-  /** Where a vehicle is at `at` in the world. */
   private[simulator] def placeOf(vehicle: Int, at: Instant): Placement =
     Placement(vehicles(vehicle).worldPosition(at), vehicles(vehicle).orientation)
 
-  /** The vehicles at `at`, as they look. */
   private[simulator] def bodies(at: Instant): Vector[SceneObject] =
     vehicles.zipWithIndex.map: (vehicle, index) =>
       SceneObject(
@@ -158,7 +153,7 @@ final class World(
         placeOf(index, at)
       )
 
-  /** A lidar's newest scan; of now, if it is one that scans when it is asked. */
+  /** A lidar's newest scan; one of the current instant, if it scans on request. */
   private[simulator] def scanOf(vehicle: Int, name: String, lidar: Lidar): Option[Scan] =
     if lidar.fresh then Some(scan(Scans.Carried(vehicle, name, lidar), clock, clock.toNanos))
     else scans.newest(vehicle, name)
@@ -219,10 +214,10 @@ final class World(
     moves(vehicle) = None
 
 object World:
-  /** A move that has ended, and how: what its call answers. */
+  /** A move that has ended, and the result that its call answers. */
   final case class Ended(vehicle: Int, token: Long, result: Boolean)
 
-  /** In the place of a vehicle's number. */
+  /** Stands for all pilots in place of a vehicle's number. */
   private val AllPilots = -1
 
   private case class Running(token: Long, move: Move, startedAt: Instant, dueAt: Instant)

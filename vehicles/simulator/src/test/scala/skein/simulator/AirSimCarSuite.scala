@@ -12,7 +12,7 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** A car as a loop sees it, over a link of 40 ms there and back. */
+/** A car as a loop's vehicle port, over a link with 40 ms round trips. */
 class AirSimCarSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
@@ -21,7 +21,6 @@ class AirSimCarSuite extends munit.FunSuite:
   ):
     given ExecutionContext = system.dispatcher
 
-    /** Since the drive began, ms. */
     def nowMs: Long = clock.now().toNanos / 1_000_000
 
     def pass(ms: Double): Future[Unit] = after(Span.ofMillis(ms).toDuration)(Future.unit)
@@ -60,7 +59,7 @@ class AirSimCarSuite extends munit.FunSuite:
       yield (answer, drive.nowMs - sentAt)
     assertEquals(ended, (Right(false), 40L))
 
-  test("it follows a velocity that is commanded again and again, and looks where it drives"):
+  test("it follows a repeated velocity command, heading where it drives"):
     val seen = driven: drive =>
       import drive.given
       def go(times: Int): Future[Unit] =
@@ -76,7 +75,7 @@ class AirSimCarSuite extends munit.FunSuite:
     assert((seen.velocityNed - Vector3(3, 5, 0)).norm < 0.1, seen)
     assertEqualsDouble(seen.orientation.yawRad, math.atan2(5, 3), 0.02)
 
-  test("it comes to a place and stops when the action's time is over"):
+  test("it reaches a position and stops when the action's time is over"):
     val (answer, rolling, stood) = driven: drive =>
       import drive.given
       val action = drive.car.act(ahead, Span.ofSeconds(2))
@@ -91,7 +90,7 @@ class AirSimCarSuite extends munit.FunSuite:
     assert(rolling.velocityNed.x > 5, rolling)
     assertEquals(stood.velocityNed, Vector3.Zero)
 
-  test("hovering and landing brake and end the action before; what a car cannot do is refused"):
+  test("hovering and landing brake and end the action before; actions impossible for a car are refused"):
     val (moving, hovering, landing, turning, tilting) = driven: drive =>
       import drive.given
       val moving = drive.car.act(ahead, Span.ofSeconds(10))
@@ -111,7 +110,7 @@ class AirSimCarSuite extends munit.FunSuite:
     for refused <- Seq(turning, tilting) do
       assert(refused.left.exists(_.isInstanceOf[VehicleError.Unsupported]), refused)
 
-  test("where the simulator is gone, an action and the one before end with the error"):
+  test("when the simulator is gone, an action and the one before end with the error"):
     val (first, second) = driven: drive =>
       import drive.given
       for

@@ -48,7 +48,7 @@ class AirSimClientLiveSuite extends munit.FunSuite:
     done(vehicle.hoverAt(VehiclePose(positionNed, Quaternion.Identity)))
     vehicle
 
-  flown.test("versions, vehicles and settings come through"): (_, client) =>
+  flown.test("versions, vehicles and settings are read"): (_, client) =>
     assert(done(client.ping()))
     assertEquals((done(client.serverVersion()), done(client.minRequiredClientVersion())), (4, 1))
     assertEquals(done(client.vehicles()), Seq("Evader", "Pursuer"))
@@ -64,7 +64,7 @@ class AirSimClientLiveSuite extends munit.FunSuite:
     assert((done(pursuer.groundTruth()).positionNed - there).norm < 0.01)
     assert((done(pursuer.pose()).positionNed - there).norm < 0.01)
 
-  flown.test("a reading carries when physics was sampled, asked for and answered"): (_, client) =>
+  flown.test("a reading carries the times of sampling, request and answer"): (_, client) =>
     val evader = done(Multirotor.named(client, "Evader"))
     val before = Clock.system.now()
     val first  = done(evader.kinematics())
@@ -128,7 +128,7 @@ class AirSimClientLiveSuite extends munit.FunSuite:
     done(client.reset())
     assert(!done(evader.isApiControlEnabled()))
 
-  flown.test("sensors tell of a hovering vehicle"): (_, client) =>
+  flown.test("sensors show a hovering vehicle"): (_, client) =>
     val evader = airborne(client, "Evader", Vector3(0, 0, -20))
     // The GPS is silent for its first second.
     done(client.pause())
@@ -138,24 +138,24 @@ class AirSimClientLiveSuite extends munit.FunSuite:
     assertEqualsDouble(done(evader.gps()).value.location.altitude.value, 142, 0.01)
     assertEqualsDouble(done(evader.barometer()).value.altitude.value, 142, 0.5)
     assert(done(evader.magnetometer()).value.x > 0.1)
-    // Told as at sea level: the weight over the share of its density that the air has here.
+    // Reported as at sea level: the weight divided by the relative density of the air here.
     assertEqualsDouble(done(evader.rotors()).value.map(_.thrustN).sum, 9.942, 0.01)
     assertEqualsDouble(done(evader.home()).latitudeDeg, 47.641468, 1e-9)
     assert(done(evader.status()).value.flying)
 
-  flown.test("a wrong vehicle name is told with the names that exist"): (_, client) =>
+  flown.test("a wrong vehicle name is reported with the existing names"): (_, client) =>
     assertEquals(
       Await.result(Multirotor.named(client, "Nope"), 10.seconds).left.map(_.message).left.getOrElse(""),
       "the simulator has no vehicle 'Nope'; it has 'Evader', 'Pursuer'"
     )
 
-  flown.test("the simulator's own words come back in an error"): (_, client) =>
+  flown.test("an error contains the simulator's own text"): (_, client) =>
     val ghost = Multirotor(client, "Nope")
     Await.result(ghost.kinematics(), 10.seconds) match
       case Left(RpcError.Refused("getMultirotorState", text)) =>
         assert(text.contains("Vehicle API for 'Nope'"), text)
       case other => fail(s"$other")
 
-  flown.test("a port that is taken is said clearly"): (server, _) =>
+  flown.test("a port in use is reported as such"): (server, _) =>
     val again = SimulatorServer.start(settings.copy(address = server.address), TcpTransport(), Clock.system)
     assertEquals(Await.result(again.failed, 10.seconds), TransportError.PortTaken(server.address))

@@ -13,11 +13,11 @@ import skein.rpc.{Framed, Framer, RpcMessage, RpcClient}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Answers to moves that are lost on a connection that lives. */
+/** Answers to moves that are lost on a live connection. */
 class AirSimVehicleSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** The simulator's transport; of the messages that it sends, `isLost` takes away some. Messages are whole
+  /** The simulator's transport without those of its messages for which `isLost` is true. Messages are whole
     * segments here.
     */
   private final class Lossy(transport: Transport, isLost: RpcMessage => Boolean) extends Transport:
@@ -41,8 +41,8 @@ class AirSimVehicleSuite extends munit.FunSuite:
       .filterNot(frame => isLost(RpcMessage.fromServer(frame)))
       .map(ByteString.fromArrayUnsafe)
 
-  /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the
-    * second's sending, and how the first ended, and what was said of lost answers.
+  /** Two moves 100 ms apart over a link with 40 ms round trips, and then nothing: when, in ms from the
+    * second's sending, and how the first ended, and the reports on lost answers.
     */
   private def firstOfTwo(isLost: RpcMessage => Boolean)
       : (Long, Either[VehicleError, Boolean], Vector[String]) =
@@ -88,17 +88,17 @@ class AirSimVehicleSuite extends munit.FunSuite:
     case RpcMessage.Reply(_, _, upack.False) => true
     case _                                   => false
 
-  test("a move that is replaced ends a round trip later, and nothing is taken for lost"):
+  test("a replaced move ends a round trip later, and no answer is taken as lost"):
     assertEquals(firstOfTwo(_ => false), (40L, Right(false), Vector.empty))
 
   test(
-    "where its answer is lost it is taken for replaced, once the next " +
-      "move has come and a further cancel has ended nothing"
+    "a lost answer counts as replaced, once the next move is received and a further cancel has ended " +
+      "nothing"
   ):
     val (afterMs, result, noted) = firstOfTwo(isMovesAnswer)
     assertEquals((afterMs, result, noted.size), (780L, Right(false), 1))
 
-  test("a vehicle that gives no sign of life is waited for, as long as the move lasts"):
+  test("a vehicle whose probes are lost is waited for, as long as the move lasts"):
     val (afterMs, result, noted) = firstOfTwo(_ => true)
     assert(afterMs > 10_000, s"$afterMs ms")
     assert(result.left.exists { case VehicleError.TimedOut(_) => true; case _ => false }, result.toString)

@@ -9,7 +9,7 @@ class AppearanceMethodsSuite extends munit.FunSuite:
   private val red            = Arr(Float32(1), Float32(0), Float32(0), Float32(1))
   private def points(n: Int) = Arr(Seq.fill(n)(writeMsg(Vector3r(1, 2, 3)))*)
 
-  test("what AirSim would read past the end of is refused"):
+  test("lists that AirSim would read beyond their end are refused"):
     val bench = Bench()
     assert(bench.error(
       "simPlotPoints",
@@ -28,7 +28,7 @@ class AppearanceMethodsSuite extends munit.FunSuite:
     assert(bench.error("simSetTraceLine", Arr(Float32(1)), Float32(1), Str("")).contains("RGBA"))
     assert(bench.error("simPrintLogMessage", Str("a" * 20_000), Str(""), Int32(0)).contains("at most 10000"))
 
-  test("what only an eye would notice is taken as AirSim takes it"):
+  test("functions with a visible effect only are accepted as by AirSim"):
     val bench = Bench()
     bench.tell("simPlotPoints", points(2), red, Float32(10), Float32(5), Bool(false))
     bench.tell("simPlotArrows", points(1), points(1), red, Float32(5), Float32(2), Float32(-1), Bool(true))
@@ -49,7 +49,7 @@ class AppearanceMethodsSuite extends munit.FunSuite:
     assertEquals(bench.now[Boolean]("simRunConsoleCommand", Str("stat fps")), true)
     assert(bench.error("simSetWeatherParameter", Int32(9), Float32(1)).contains("0 to 8"))
 
-  test("recording is on or off, as it was told"):
+  test("recording is on or off, as last set"):
     val bench = Bench()
     assertEquals(bench.now[Boolean]("isRecording"), false)
     bench.tell("startRecording")

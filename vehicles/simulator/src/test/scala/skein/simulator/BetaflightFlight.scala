@@ -11,14 +11,14 @@ import skein.link.{Address, TcpTransport}
 import skein.signal.Kinematics
 import skein.units.*
 
-/** What became of the vehicle that Betaflight flew to a place 5 m up and was to hold there.
+/** The result of a flight in which Betaflight flies a vehicle to 5 m height and holds the position.
   *
-  * @param isArmed whether Betaflight let itself be armed
-  * @param worstM its greatest distance from the place while it was to hold it
-  * @param updatesPerS of its motors meanwhile, which are at most as many as states: 500 in a second of the
-  *   simulator's clock
-  * @param longestPauseS between two of them, of the simulator's clock
-  * @param track where it was, a line every 0.2 s of the simulator's clock
+  * @param isArmed whether Betaflight could be armed
+  * @param worstM greatest distance from the position while it was to be held
+  * @param updatesPerS motor updates meanwhile, at most one for each state: 500 in a second of the simulator's
+  *   clock
+  * @param longestPauseS between two of them, by the simulator's clock
+  * @param track its positions, a line every 0.2 s of the simulator's clock
   */
 private final case class BetaflightFlight(
     isArmed: Boolean,
@@ -32,9 +32,9 @@ private final case class BetaflightFlight(
       f"of its motors a second, ${longestPauseS * 1000}%.0f ms between two"
 
 private object BetaflightFlight:
-  /** Flies the firmware by the interface that `serve --hil betaflight` has.
+  /** Flies with the firmware through the interface of `serve --hil betaflight`.
     *
-    * @param holdsS for how long the place is to be held, of the simulator's clock
+    * @param holdsS how long to hold the position, by the simulator's clock
     * @param speed of the simulator's clock
     */
   def fly(firmware: Path, holdsS: Double, speed: Double)(using ActorSystem): BetaflightFlight =

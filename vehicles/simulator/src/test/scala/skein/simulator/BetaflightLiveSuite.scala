@@ -7,12 +7,12 @@ import scala.concurrent.duration.*
 import skein.link.PreciseScheduler
 import skein.testing.{Lengthy, Waiting}
 
-/** A real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where
-  * Python and a compiler are. At half the real clock's speed, since it has to run 500 rounds in a second of
-  * the simulator's clock; `betaflightHover` flies for longer, at any speed.
+/** Real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where Python
+  * and a compiler are installed. At half the real clock's speed, since it has to run 500 iterations in a
+  * second of the simulator's clock; `betaflightHover` flies for longer, at any speed.
   */
 class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
-  // To build it on a busy machine takes minutes.
+  // Building it on a busy machine takes minutes.
   override val munitTimeout: Duration = 20.minutes
 
   private given system: ActorSystem = ActorSystem("betaflight", PreciseScheduler.config)
@@ -36,7 +36,7 @@ class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
     def hovered(flight: BetaflightFlight) = flight.isArmed && flight.worstM < 0.3
     def isCalm(flight: BetaflightFlight)  =
       flight.updatesPerS >= CalmUpdatesPerS && flight.longestPauseS <= CalmPauseS
-    // A machine may be busy, or Betaflight hang; it is not so each time.
+    // The machine may be busy, or Betaflight may hang; not every time.
     val telling =
       Iterator.continually(fly()).take(3).flatten.find(flight => hovered(flight) || isCalm(flight))
     // .ci/run counts such lines.
@@ -45,6 +45,8 @@ class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
     assume(telling.isDefined, "inconclusive")
     assert(telling.exists(hovered), telling.map(_.track).mkString)
 
-  /** Of 500. With a quarter of them missing it swings by a metre. */
+  /** Least updates, of 500, in a conclusive flight. With a quarter of them missing the vehicle oscillates by
+    * a metre.
+    */
   private val CalmUpdatesPerS = 400
   private val CalmPauseS      = 0.2

@@ -19,7 +19,7 @@ class CameraMethodsSuite extends munit.FunSuite:
 
   private def near(a: Vector3, b: Vector3): Unit = assert((a - b).norm < 1e-5, s"$a, expected $b")
 
-  test("cameras look where their names say, under AirSim's other names too"):
+  test("cameras look in the direction of their names, under AirSim's other names, too"):
     val bench = Bench()
     for (name, direction) <- Seq(
         "front_center"  -> Vector3(1, 0, 0),
@@ -103,7 +103,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     ).contains("No camera with name nose"))
     assert(bench.error("simGetCameraInfo", Str("0"), Str(""), Bool(true)).contains("No external camera"))
 
-  test("what is looked for in images is kept"):
+  test("detection filters are kept"):
     val bench = Bench()
     for mesh <- Seq("Car*", "Tree*") do
       bench.tell("simAddDetectionFilterMeshName", Str("0"), Int32(0), Str(mesh), Str(""), Bool(false))

@@ -7,7 +7,7 @@ import skein.units.*
 import upack.{Bool, Obj, Str}
 import upickle.default.writeMsg
 
-/** AirSim's car API, on a world with a car and a multirotor. */
+/** AirSim's car API, in a world with a car and a multirotor. */
 class CarSuite extends munit.FunSuite:
   private val car = Str("Car")
 
@@ -27,7 +27,7 @@ class CarSuite extends munit.FunSuite:
     bench.tell("setCarControls", writeMsg(controls), car)
   private def state(bench: Bench): CarState = bench.now[CarState]("getCarState", car)
 
-  test("it drives where it is steered, by the simulator's clock"):
+  test("the car drives where it is steered, by the simulator's clock"):
     val world = bench()
     assertEquals(state(world).gear, 0)
     drive(world, CarControls(throttle = 0.5f))
@@ -44,7 +44,7 @@ class CarSuite extends munit.FunSuite:
     assert(turning.angular_velocity.z_val > 0.3 && turning.linear_acceleration.y_val > 1, turning)
     assertEquals(state(world).timestamp.toNanos, world.simulation.world.now.toNanos)
 
-  test("what is told between two steps of physics is what physics comes to"):
+  test("readings between two steps of physics agree with the next step"):
     val world = bench(yaw = 1)
     drive(world, CarControls(throttle = 1, steering = -0.3f))
     world.pass(2)
@@ -64,7 +64,7 @@ class CarSuite extends munit.FunSuite:
       world.pass(2)
       assertEquals((state(world).speed, state(world).handbrake), (0f, true))
 
-  test("without api control nothing drives it, and its controls are forgotten"):
+  test("without API control nothing drives it, and its controls are reset"):
     val world = bench()
     drive(world, CarControls(throttle = 1))
     assertEquals(world.now[CarControls]("getCarControls", car), CarControls(throttle = 1))
@@ -74,7 +74,7 @@ class CarSuite extends munit.FunSuite:
     world.pass(1)
     assertEquals(state(world).speed, 0f)
 
-  test("controls that name some keys leave the others as they are without them, and numbers may be whole"):
+  test("controls with some keys keep the defaults of the others, and numbers may be whole"):
     val world = bench()
     world.tell("setCarControls", Obj(Str("throttle") -> upack.Int32(1)), car)
     assertEquals(world.now[CarControls]("getCarControls", car), CarControls(throttle = 1))
@@ -83,7 +83,7 @@ class CarSuite extends munit.FunSuite:
       world.error("setCarControls", Obj(Str("throttle") -> upack.Float64(Double.NaN)), car).contains("finite")
     )
 
-  test("a reset and a pose put it elsewhere; paused it stands still"):
+  test("a reset and a pose move it; while paused it stands still"):
     val world = bench()
     drive(world, CarControls(throttle = 1, steering = 0.2f))
     world.pass(2)
@@ -107,7 +107,7 @@ class CarSuite extends munit.FunSuite:
     assertEquals(world.position("Car"), Vector3.Zero)
     assertEquals((state(world).speed, world.now[Boolean]("isApiControlEnabled", car)), (0f, false))
 
-  test("it stops at what stands in its way, and tells what it has touched"):
+  test("it stops at an obstacle, and reports the contact"):
     val wall = SceneObject(
       "Wall",
       Shape.Box(Vector3(0.5, 5, 1)),
@@ -125,7 +125,7 @@ class CarSuite extends munit.FunSuite:
     world.pass(1)
     assert(state(world).speed < -3, "it drives out again")
 
-  test("a function of the other kind of vehicle says so"):
+  test("a function of the other kind of vehicle is refused as such"):
     val world = bench()
     assert(world.error("getMultirotorState", car).contains("expected a multirotor, 'Car' is a car"))
     assert(world.error("takeoff", upack.Float32(20), car).contains("expected a multirotor"))

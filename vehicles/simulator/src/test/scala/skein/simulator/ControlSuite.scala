@@ -6,8 +6,8 @@ import skein.units.*
 import upack.{Bool, Float32, Str}
 import upickle.default.writeMsg
 
-/** Who has control, and what taking and giving it does to a vehicle in flight: as AirSim's SimpleFlight has
-  * it.
+/** API control, and its effect on a vehicle in flight when it is taken or released: as in AirSim's
+  * SimpleFlight.
   */
 class ControlSuite extends munit.FunSuite:
 
@@ -20,9 +20,7 @@ class ControlSuite extends munit.FunSuite:
   private def thrusts(bench: Bench): Seq[Float]        =
     bench.now[RotorStates]("getRotorStates", there).rotors.map(_.thrust)
 
-  test(
-    "a vehicle that hovers and whose api control is taken again falls, counts as landed and is not caught"
-  ):
+  test("a hovering vehicle whose API control is taken again falls, counts as landed and is not caught"):
     val bench = Bench().hovering(-20)
     bench.pass(1)
     assert(!landed(bench))
@@ -39,7 +37,7 @@ class ControlSuite extends munit.FunSuite:
     bench.pass(20)
     assertEqualsDouble(bench.position().z, 0, 0.05)
 
-  test("one whose api control is taken again while it moves is caught when its last goal is 60 ms old"):
+  test("a moving vehicle whose API control is taken again is caught when its last goal is 60 ms old"):
     val bench = Bench().hovering(-20)
     bench.velocity(5, 0, 0, 2)
     bench.pass(2.03)
@@ -52,14 +50,14 @@ class ControlSuite extends munit.FunSuite:
     assert(!landed(bench))
     assert((bench.position() - caught).norm < 0.3, s"${bench.position()}, caught at $caught")
 
-  test("one whose api control is given away falls level until it is taken again and flown"):
+  test("a vehicle whose API control is released falls level until it is taken again and used"):
     val bench = Bench().hovering(-20)
     bench.velocity(5, 0, 0, 3)
     bench.pass(3)
     control(bench, on = false)
     bench.pass(0.5)
     assert(velocity(bench).z > 3.5, s"${velocity(bench)}")
-    // An absent remote control asks for level: the tilt that flew it is gone.
+    // An absent remote control commands level attitude: the tilt that moved it is gone.
     val q = bench.kinematics().orientation
     assertEqualsDouble(2 * math.asin(math.hypot(q.x_val, q.y_val)), 0, 0.02)
     control(bench, on = true)
@@ -67,7 +65,7 @@ class ControlSuite extends munit.FunSuite:
     bench.pass(5)
     assert(velocity(bench).norm < 0.3, s"${velocity(bench)}")
 
-  test("arming an armed vehicle changes nothing, in flight neither"):
+  test("arming an armed vehicle changes nothing, even in flight"):
     def flight(again: Boolean) =
       val bench = Bench().hovering(-20)
       bench.velocityZ(5, 0, -20, 1)
@@ -119,7 +117,7 @@ class ControlSuite extends munit.FunSuite:
       there
     )
 
-  test("a pose that is set leaves a vehicle its velocity and its goal"):
+  test("setting a pose keeps a vehicle's velocity and goal"):
     val moved, left = Bench().hovering(-20)
     for bench <- Seq(moved, left) do
       bench.velocityZ(5, 0, -20, 10)
@@ -133,9 +131,7 @@ class ControlSuite extends munit.FunSuite:
     left.pass(4.5)
     assert((moved.position() - left.position() - Vector3(0, 100, 0)).norm < 1e-3)
 
-  test(
-    "one that holds a position flies back there from where it was put, one that stood on the ground falls"
-  ):
+  test("after setting a pose, a vehicle that held a position flies back, one that stood on the ground falls"):
     val held = Bench().hovering(-20)
     held.pass(1)
     place(held, Vector3(3, 0, -20))
@@ -148,7 +144,7 @@ class ControlSuite extends munit.FunSuite:
     fallen.pass(5)
     assertEqualsDouble(fallen.position().z, 0, 0.05)
 
-  test("skeinHoverAt needs api control and a place above the ground"):
+  test("skeinHoverAt needs API control and a position above the ground"):
     def hoverAt(bench: Bench, down: Double) = bench.error(
       "skeinHoverAt",
       writeMsg(Pose(Vector3r(Vector3(0, 0, down)), Quaternionr(Quaternion.Identity))),
@@ -158,8 +154,8 @@ class ControlSuite extends munit.FunSuite:
     assert(hoverAt(Bench().ready(), 0).contains("expected a place above the ground, came z = 0.0 m"))
 
   test(
-    "position hold wanders when the yaw is not 0, as AirSim's " +
-      "does: at 99 degrees it does not come to rest near"
+    "position hold drifts when the yaw is not 0, as AirSim's does: at 99 degrees it does not come to " +
+      "rest near"
   ):
     def wandering(yawDeg: Double) =
       val bench = Bench().ready()

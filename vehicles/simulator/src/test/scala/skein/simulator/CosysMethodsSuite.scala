@@ -6,14 +6,14 @@ import skein.airsim.wire.*
 import upack.*
 import upickle.default.writeMsg
 
-/** What Cosys-AirSim's published client calls otherwise than AirSim's. `methods.txt` is written by
-  * `list_methods.py` from the client itself; [[CosysClientLiveSuite]] holds it to that.
+/** Functions that Cosys-AirSim's published client calls differently from AirSim's. `list_methods.py` writes
+  * `methods.txt` from the client itself; [[CosysClientLiveSuite]] checks that.
   */
 class CosysMethodsSuite extends munit.FunSuite:
   private val front: Msg = Str("front_center")
   private val none: Msg  = Str("")
 
-  test("every function of Cosys-AirSim's client is there, with as many arguments as it sends"):
+  test("every function of Cosys-AirSim's client exists, with as many arguments as it sends"):
     val source = Source.fromResource("cosys-python/methods.txt")
     val called =
       try source.getLines().map(_.split(' ')).map(words => words(0) -> words(1).toInt).toVector
@@ -43,7 +43,7 @@ class CosysMethodsSuite extends munit.FunSuite:
     assert(bench.error("simGetImage", front, Int32(0), none, Int32(3)).contains("std::bad_cast"))
     assert(bench.error("simGetImage", front, Int32(0)).contains("invalid number of arguments"))
 
-  test("an object's pose is told in NED alone"):
+  test("an object's pose is only available in NED"):
     val bench = Bench(Seq("A"))
     val pose  = bench.now[Pose]("simGetObjectPose", Str("A"), Bool(true))
     assertEquals(pose, bench.now[Pose]("simGetObjectPose", Str("A")))
@@ -53,19 +53,19 @@ class CosysMethodsSuite extends munit.FunSuite:
       bench.now[Seq[String]]("simListInstanceSegmentationObjects").size
     )
 
-  test("a camera tells its state, a multirotor has none of a camera"):
+  test("a camera rig reports its state, and a multirotor has no such state"):
     val bench = Bench.of(VehicleSettings("Cam", vehicleType = "ComputerVision"), VehicleSettings("Drone"))
     val state = bench.now[ComputerVisionState]("getComputerVisionState", Str("Cam"))
     assertEquals(state.timestamp, bench.simulation.world.now)
     assert(bench.error("getComputerVisionState", Str("Drone")).contains("'Drone' is a multirotor"))
 
-  test("AirSim's own setSafety finds no evaluation of safety, and says so"):
+  test("AirSim's own setSafety answers that there is no safety evaluation"):
     val told = bench0.error("setSafety", SampleCalls.params("setSafety")*)
     assert(told.contains("requires safety_eval_ptr_ to be set first"), told)
 
   private def bench0 = Bench(Seq("A"))
 
-  test("the pose of an object that is not there can be set to what is told of it: false"):
+  test("setting the pose of a missing object to its NaN pose answers false"):
     val bench   = Bench(Seq("A"))
     val nowhere = upickle.default.readBinary[Pose](
       bench.answerOf(bench.call("simGetObjectPose", Str("Nothing"))).toOption.get
@@ -81,7 +81,7 @@ class CosysMethodsSuite extends munit.FunSuite:
       ).contains("must be finite numbers")
     )
 
-  test("moveToGPS takes its goal in single precision, as AirSim"):
+  test("moveToGPS uses its goal in single precision, as AirSim does"):
     val bench = Bench().hovering(-20)
     // 47.64157 is 47.641571 as a 32-bit number, and 0.1 m of a degree more is the same number.
     def fly(latitude: Double) =

@@ -5,10 +5,10 @@ import skein.units.*
 import upack.{Bool, Str}
 import upickle.default.writeMsg
 
-/** Orientations that are no rotations, as clients send them by mistake: their direction counts. */
+/** Quaternions that are not of unit length, as clients send them by mistake: they are normalised. */
 class DegenerateOrientationSuite extends munit.FunSuite:
 
-  /** How far from its place it gets within 10 s, m. */
+  /** Greatest distance from its position within 10 s, m. */
   private def off(method: String, q: Quaternionr): Double =
     val bench = Bench().hovering(-20)
     bench.pass(1)
@@ -25,7 +25,7 @@ class DegenerateOrientationSuite extends munit.FunSuite:
       (bench.position() - Vector3(0, 0, -20)).norm
     }.max
 
-  test("a vehicle that is put with an orientation of no length, or of length 2, stays near its place"):
+  test("a vehicle placed with a quaternion of length 0 or 2 stays near its position"):
     for
       method    <- Seq("simSetVehiclePose", "simSetObjectPose", "simSetKinematics")
       (q, most) <- Seq(
@@ -40,7 +40,7 @@ class DegenerateOrientationSuite extends munit.FunSuite:
       val away = off(method, q)
       assert(away <= most, s"$method $q: $away m")
 
-  test("what is put upside down by a quaternion of length 2 is put as by one of length 1"):
+  test("a quaternion of length 2 has the effect of one of length 1, even upside down"):
     assertEquals(
       off("simSetVehiclePose", Quaternionr(1, 1, 1, 1)),
       off("simSetVehiclePose", Quaternionr(0.5f, 0.5f, 0.5f, 0.5f))

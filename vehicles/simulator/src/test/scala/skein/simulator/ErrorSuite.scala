@@ -27,7 +27,7 @@ class ErrorSuite extends munit.FunSuite:
       Seq(Float32(1), Float32(0), Float32(0), Float32(1), Int32(0), Arr(Bool(true), Float32(0)), Str(""))
     assert(Bench().error("moveByVelocity", yawAsArray*).contains("std::bad_cast"))
 
-  test("integers are taken where floats are wanted, bin for str, and yaw modes with missing or more keys"):
+  test("integers are accepted as floats, bin as str, and yaw modes with missing or additional keys"):
     val bench = Bench().ready()
     val move  = bench.call(
       "moveByVelocity",
@@ -92,7 +92,7 @@ class ErrorSuite extends munit.FunSuite:
   test("sensors that a vehicle does not have are named"):
     assert(Bench().error("getLidarData", Str(""), Str("")).contains("No lidar with name  exist on vehicle"))
 
-  test("numbers that are none are refused and change nothing"):
+  test("NaN is refused and changes nothing"):
     val bench = Bench().hovering(-20)
     assert(bench.error("simSetWind", Obj(Str("x_val") -> Float32(Float.NaN))).contains("finite"))
     bench.pass(0.1)

@@ -4,12 +4,12 @@ import skein.airsim.VehicleSettings
 import skein.airsim.wire.*
 import upack.*
 
-/** Whatever numbers a client sends, with each method, the vehicles' states stay numbers. */
+/** For any numbers that a client sends, with every method, the vehicles' states stay finite. */
 class FiniteSuite extends munit.FunSuite:
   private val extremes: Seq[Msg] =
     Seq(Float32(Float.MaxValue), Float32(-1e9f), Float32(3e4f), Float64(1e300), Int32(Int.MinValue))
 
-  /** The value with each of its numbers in turn, and with all of them, replaced. */
+  /** The value with each of its numbers replaced in turn, and with all of them replaced. */
   private def variants(value: Msg, extreme: Msg): Seq[Msg] = value match
     case Float32(_) | Float64(_) | Int32(_) | Int64(_) => Seq(extreme)
     case Arr(values)                                   =>
@@ -49,7 +49,7 @@ class FiniteSuite extends munit.FunSuite:
       car
     else Bench(Seq("Evader")).hovering(-5)
 
-  /** Methods that set something, and calls that use it afterwards. */
+  /** Calls that use the effects of the setters before. */
   private def uses(bench: Bench): Unit =
     if !bench.simulation.world.vehicles.head.settings.isCar then
       bench.velocity(3, -2, -1, 0.4): Unit
@@ -57,7 +57,7 @@ class FiniteSuite extends munit.FunSuite:
       bench.moveTo(10, 10, -10, 5): Unit
 
   for method <- Simulation.methods if method.name != "simCreateVoxelGrid" do
-    test(s"${method.name}: whatever numbers it is given, states stay numbers"):
+    test(s"${method.name}: for any numbers, states stay finite"):
       val params = SampleCalls.params(method.name)
       for
         extreme <- extremes

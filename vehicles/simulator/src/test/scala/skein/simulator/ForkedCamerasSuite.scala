@@ -10,12 +10,12 @@ import skein.units.*
 import skein.vtime.VirtualTime
 import upickle.default.writeMsg
 
-/** Cameras of a server that binds their functions without `external`, as Cosys-AirSim 3 does. */
+/** Cameras of a server whose functions lack `external`, as in Cosys-AirSim 3. */
 class ForkedCamerasSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** Three images, and then a field of view, of a server whose functions of cameras take so many arguments:
-    * what came, and with how many arguments they were asked for.
+  /** Three images, and then a field of view, of a server whose camera functions take `takes` arguments: the
+    * results, and the numbers of arguments in the calls.
     */
   private def asked(takes: Int): (Vector[Boolean], Option[Double], Vector[Int]) = VirtualTime
     .run(seed = 1): system =>
@@ -64,12 +64,12 @@ class ForkedCamerasSuite extends munit.FunSuite:
       )
     .value
 
-  test("a refusal for the number of arguments is asked again with the other form, once for a client"):
+  test("a call refused for its number of arguments is repeated in the other form, once for a client"):
     val (images, fov, counts) = asked(takes = 2)
     assertEquals(images, Vector(true, true, true))
     assertEqualsDouble(fov.get, 60, 1e-3)
     assertEquals(counts, Vector(3, 2, 2, 2, 2))
 
-  test("AirSim's own form stays where it is taken, and another number is told as the server tells it"):
+  test("AirSim's own form is kept where it is accepted, and another error is reported in the server's words"):
     assertEquals(asked(takes = 3)._3, Vector(3, 3, 3, 3))
     assertEquals(asked(takes = 5)._1, Vector(false, false, false))

@@ -30,7 +30,7 @@ class GainMethodsSuite extends munit.FunSuite:
     )
     assertEqualsDouble(speedAfter(tuned, 30), 5, 0.02)
 
-  test("gains of angle, rate and position change flights too, and one vehicle's are no other's"):
+  test("gains of angle, rate and position change flights, too, and only of their own vehicle"):
     val changes =
       Seq("setAngleLevelControllerGains", "setAngleRateControllerGains", "setPositionControllerGains")
     for change <- changes do

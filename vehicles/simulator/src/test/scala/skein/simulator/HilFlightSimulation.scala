@@ -11,8 +11,8 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 object HilFlightSimulation:
-  /** What came of a flight: all bytes that the autopilot was told, as a digest, and where the vehicle truly
-    * was then.
+  /** The result of a flight: all bytes sent to the autopilot, as a digest, and the vehicle's true position at
+    * the end.
     */
   final case class Flight(
       digest: String,
@@ -22,9 +22,9 @@ object HilFlightSimulation:
       stats: PeerStats
   )
 
-  /** The server, PX4's interface and a small autopilot behind it, in virtual time, for so long.
+  /** Runs the server, PX4's interface and a small autopilot behind it, in virtual time.
     *
-    * @param speed of the simulator's clock against virtual time
+    * @param speed of the simulator's clock relative to virtual time
     * @param link between the two
     */
   def fly(seed: Long, lasting: Span, speed: Double = 1, link: LinkProfile = LinkProfile.none): Flight =
@@ -62,13 +62,11 @@ object HilFlightSimulation:
       stats
     )
 
-/** PX4's interface as it is served, in virtual time. */
+/** PX4's interface behind its server, in virtual time. */
 class HilFlightSimulation extends munit.FunSuite:
   import HilFlightSimulation.*
 
-  test(
-    "a small autopilot flies over the served interface, in lockstep and equal seeds alike to the last byte"
-  ):
+  test("a small autopilot flies over the served interface in lockstep, and equal seeds give equal bytes"):
     val first = fly(1, Span.ofSeconds(20))
     assertEquals(first.sensors, 20 * 250)
     assert((first.positionNed - Vector3(0, 0, -5)).norm < 1.5, first.positionNed.toString)
@@ -77,7 +75,7 @@ class HilFlightSimulation extends munit.FunSuite:
     assertEquals((again.digest, again.positionNed), (first.digest, first.positionNed))
     assert(fly(2, Span.ofSeconds(1)).digest != fly(3, Span.ofSeconds(1)).digest, "other seeds, other noise")
 
-  test("an autopilot that is far away hovers: physics waits for what it answers to the newest sensors"):
+  test("an autopilot with a long delay hovers: physics waits for its answer to the newest sensors"):
     val far   = LinkProfile.symmetric(LatencyProfile.parse("constant:400ms", Left(_)).toOption.get)
     val there = fly(1, Span.ofSeconds(12), link = far)
     assert((there.positionNed - Vector3(0, 0, -5)).norm < 1.5, there.positionNed.toString)

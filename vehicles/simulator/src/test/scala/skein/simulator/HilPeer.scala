@@ -8,11 +8,11 @@ import scala.concurrent.Future
 import skein.hil.SmallAutopilot
 import skein.link.{Address, Transport}
 
-/** A small autopilot at the other end of a connection. */
+/** A small autopilot at the far end of a connection. */
 private[simulator] object HilPeer:
-  /** Completes when it has been told the sensors of so much time, µs; then it hangs up.
+  /** Completes when it has received the sensors of this time, µs; then it closes the connection.
     *
-    * @param on is given every piece that comes, before it is answered
+    * @param on called with every received piece, before it is answered
     */
   def fly(autopilot: SmallAutopilot, untilUsec: Long, to: Address, transport: Transport)(
       on: Array[Byte] => Unit = _ => ()

@@ -39,7 +39,7 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
   private def truth(server: SimulatorServer) =
     Await.result(server.truth(), 5.seconds).vehicles.head.kinematics
 
-  test("a small autopilot flies over TCP; a second one is turned away meanwhile"):
+  test("a small autopilot flies over TCP; a second one is refused meanwhile"):
     conclusive:
       serving(AutopilotKind.Px4, speed = 4): server =>
         val at        = server.peerAddresses.head
@@ -50,7 +50,7 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
         other.setSoTimeout(5000)
         assertEquals(other.getInputStream.read(), -1)
         other.close()
-        // Not where it is at the end: on its own the vehicle sinks, and this thread may be told of that late.
+        // Not its final position: without control the vehicle sinks, and this thread may learn that late.
         var seen  = Vector(truth(server))
         val until = 60.seconds.fromNow
         while !flown.isCompleted && until.hasTimeLeft() do seen :+= truth(server)
@@ -79,7 +79,7 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
       assert(autopilot.heard.nonEmpty)
       assert(server.peerStats.foreign > 0)
 
-  test("ArduPilot's frames are answered over UDP, whatever else comes there"):
+  test("ArduPilot's frames are answered over UDP, also among other datagrams"):
     serving(AutopilotKind.ArduPilot): server =>
       val socket = DatagramSocket(0, InetAddress.getLoopbackAddress)
       socket.setSoTimeout(5000)
@@ -95,10 +95,10 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
         val told = ujson.read(String(answer.getData, 0, answer.getLength))
         assertEqualsDouble(told("imu")("accel_body")(2).num, -9.8, 1)
       socket.close()
-      // Before the first frame they are nobody's.
+      // Before the first frame they belong to no autopilot.
       assertEquals((server.peerStats.damaged, server.peerStats.ignored), (499L, 1L))
 
-  test("Betaflight is told the state where it listens, and its controls turn the rotors"):
+  test("Betaflight receives the state on its port, and its controls turn the rotors"):
     val state = DatagramSocket(0, InetAddress.getLoopbackAddress)
     state.setSoTimeout(5000)
     serving(AutopilotKind.Betaflight, stateTo = Address("127.0.0.1", state.getLocalPort)): server =>

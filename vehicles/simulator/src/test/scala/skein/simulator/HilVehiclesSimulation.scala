@@ -7,7 +7,7 @@ import skein.link.Address
 import skein.mavlink.{FrameReader, HilSensor}
 import skein.units.*
 
-/** Autopilots outside, without sockets and without a clock. */
+/** External autopilots, without sockets and without a clock. */
 class HilVehiclesSimulation extends munit.FunSuite:
 
   private final class Flown(kind: AutopilotKind = AutopilotKind.Px4, vehicles: Int = 1, speed: Double = 1):
@@ -26,7 +26,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
 
     def up: Span = simulation.world.now.since(Instant.Epoch)
 
-    /** Lets the clock run on and hands over what comes of it. */
+    /** Advances the clock and passes on the resulting datagrams. */
     def run(
         span: Span,
         every: Span = Span.ofMillis(1)
@@ -47,7 +47,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
   private def flying(autopilot: SmallAutopilot): (Long, Array[Byte]) => Seq[Array[Byte]] =
     (_, bytes) => Seq(autopilot.hear(bytes)).filter(_.nonEmpty)
 
-  test("a small autopilot that knows its sensors alone arms, takes off and hovers over its start"):
+  test("a small autopilot with only its sensors arms, takes off and hovers over its start"):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
     flown.hil.join(0, Vector(1), isDatagrams = false)
@@ -65,7 +65,8 @@ class HilVehiclesSimulation extends munit.FunSuite:
     assertEquals(flown.hil.unanswered, 0L)
 
   test(
-    "while an autopilot owes its answer time stands still; after a second it goes on, and that is counted"
+    "while an autopilot's answer is due time stands still; after a second it continues, and that is " +
+      "counted"
   ):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
@@ -77,12 +78,13 @@ class HilVehiclesSimulation extends munit.FunSuite:
     flown.run(Span.ofMillis(200))((_, _) => Nil)
     assertEquals(flown.hil.unanswered, 1L)
     flown.run(Span.ofSeconds(1))(flying(autopilot))
-    // What it was late by is lost but for a few milliseconds.
+    // Its delay is skipped except for a few milliseconds.
     assert((flown.up - before).toSeconds < 1.2, s"${(flown.up - before).toSeconds} s")
     assert((flown.simulation.behind + flown.up).toSeconds > 3.9)
 
   test(
-    "one silent autopilot holds the others up for a second, then time goes on, and it is waited for again"
+    "one silent autopilot delays the others for a second, then time continues, and it can be waited for " +
+      "again"
   ):
     val flown  = Flown(vehicles = 2)
     val pilots = Map(0L -> SmallAutopilot(), 1L -> SmallAutopilot(Vector3(0, 0, -3)))
@@ -118,7 +120,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
       )
     assertEqualsDouble((flown.up - before).toSeconds, 8.5, 0.8)
 
-  test("an autopilot that comes again and again, answers once and is silent, slows time by little"):
+  test("an autopilot that reconnects repeatedly, answers once and is silent, slows time little"):
     val flown = Flown()
     var comes = 0L
     for _ <- 1 to 20 do
@@ -151,7 +153,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
         )
       assertEqualsDouble((flown.up - before).toSeconds, seconds, 0.03, s"$late ms")
 
-  test("sensors say once that the vehicle was put elsewhere, or back to its start"):
+  test("sensors report once that the vehicle was moved, or returned to its start"):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
     val reader    = FrameReader()
@@ -171,7 +173,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
     flown.simulation.world.reset()
     assertEquals((resets(), resets()), (1, 0))
 
-  test("paused it sends nothing, and a step that is asked for goes on sensor by sensor"):
+  test("while paused it sends nothing, and a stepped advance continues sensor by sensor"):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
     flown.hil.join(0, Vector(1), isDatagrams = false)
@@ -203,7 +205,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
     )
     assert((flown.up - before).toMillis <= 4)
 
-  test("a vehicle whose autopilot has gone is AirSim's again, and falls"):
+  test("a vehicle whose autopilot has disconnected is AirSim's again, and falls"):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
     flown.hil.join(0, Vector(1), isDatagrams = false)
@@ -256,7 +258,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
     assertEqualsDouble(flown.up.toSeconds, 24.9, 0.2, "time goes on without one that is silent for a second")
     assertEquals(flown.hil.unanswered, 1L)
 
-  test("Betaflight is told the state every 2 ms, by the clock, and what is late is left out"):
+  test("Betaflight receives the state every 2 ms, by the clock, and missed ones are left out"):
     val flown = Flown(AutopilotKind.Betaflight)
     flown.hil.join(0, Vector(1), isDatagrams = true)
     var told = 0
@@ -271,7 +273,7 @@ class HilVehiclesSimulation extends munit.FunSuite:
       Nil
     assertEqualsDouble(told.toDouble, 100, 1)
 
-  test("damaged and strange messages of an autopilot leave the vehicle where it is, and time running"):
+  test("damaged and unknown messages of an autopilot do not affect the vehicle or time"):
     for kind <- AutopilotKind.values do
       val random = Random(kind.ordinal)
       val flown  = Flown(kind)

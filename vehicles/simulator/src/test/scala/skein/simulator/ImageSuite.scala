@@ -10,7 +10,7 @@ import skein.units.*
 import upack.*
 import upickle.default.writeMsg
 
-/** What cameras, lidars and distance sensors say of a scene, and what it does to vehicles. */
+/** Readings of cameras, lidars and distance sensors in a scene, and the scene's contacts with vehicles. */
 class ImageSuite extends munit.FunSuite:
   private val scene = SceneFile
     .parse("""objects = [{ name = House, box = [2, 8, 6], at = [11, 0], id = 42 }]""", "a")
@@ -44,7 +44,7 @@ class ImageSuite extends munit.FunSuite:
   private def request(kind: ImageType, floats: Boolean = false, camera: String = "0") =
     ImageRequest(camera, kind.ordinal, floats, compress = false)
 
-  test("images of one call are of one instant, in AirSim's sizes, and of what stands before the camera"):
+  test("images of one call are of one instant, in AirSim's sizes, and show the scene before the camera"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(0, 50, -3))
@@ -58,7 +58,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals((rgb.width, rgb.height, rgb.image_data_uint8.length), (256, 144, 256 * 144 * 3))
     assertEquals((ids.width, ids.height), (100, 60))
     assertEquals(Set(rgb, depth, ids).map(_.time_stamp), Set(bench.simulation.world.now))
-    // The house's front is 10 m to the north of the vehicle, whose front camera sits 25 cm before its centre.
+    // The house's front is 10 m north of the vehicle, whose front camera is 25 cm ahead of its centre.
     assertEqualsFloat(depth.image_data_float(72 * 256 + 128), 9.75f, 1e-3f)
     assertEquals(depth.image_data_uint8.length, 0)
     val middle = 3 * (30 * 100 + 50)
@@ -66,7 +66,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(colour(2) << 16 | colour(1) << 8 | colour(0), Palette.rgb(42))
     assertEquals(rgb.camera_position, Vector3r(0.25f, 0, -3))
 
-  test("a vehicle is seen by another one and not by itself, by its name's id unless another is set"):
+  test("a vehicle is visible to another one and not to itself, by its name's id unless another is set"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(-2, 0, -3))
@@ -85,7 +85,7 @@ class ImageSuite extends munit.FunSuite:
     val info = bench.now[CameraInfo]("simGetCameraInfo", Str("nose"), Str("A"), Bool(false))
     assertEqualsFloat(info.fov, 60, 1e-3f)
 
-  test("the same pose gives the same bytes, whatever was drawn and flown before"):
+  test("equal poses give equal bytes, whatever was drawn and flown before"):
     def digest(bench: Bench) =
       place(bench, "A", Vector3(1, 2, -3))
       place(bench, "B", Vector3(0, 2, -3))
@@ -96,7 +96,7 @@ class ImageSuite extends munit.FunSuite:
     flown.tell("reset")
     assertEquals(digest(flown), digest(this.bench()))
 
-  test("what is not drawn is refused by name, and so are too many images"):
+  test("unsupported image types are refused by name, and so are too many images"):
     val bench                            = this.bench()
     def refusal(requests: ImageRequest*) =
       bench.error("simGetImages", Arr(requests.map(writeMsg(_))*), Str("A"), Bool(false))
@@ -107,7 +107,7 @@ class ImageSuite extends munit.FunSuite:
     assert(refusal(request(ImageType.Scene, camera = "nosuch")).contains("No camera with name nosuch exist"))
     assert(refusal(Seq.fill(65)(request(ImageType.Scene))*).contains("at most 64 images"))
 
-  test("detections are the objects looked for that show a pixel, with the box around their pixels"):
+  test("detections are the filtered objects with a visible pixel, with the box around their pixels"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(50, 0, -3))
@@ -124,7 +124,7 @@ class ImageSuite extends munit.FunSuite:
     bench.tell("simSetDetectionFilterRadius", Str("0"), Int32(0), Float32(500), Str("A"), Bool(false))
     assertEquals(found, Seq.empty)
 
-  test("objects are listed, told and moved, and stand in the way of sight"):
+  test("objects are listed, read and moved, and block lines of sight"):
     val bench = this.bench()
     assertEquals(bench.now[Seq[String]]("simListSceneObjects", Str("H.*")), Seq("House"))
     val there = Pose(Vector3r(30, 0, -3), Quaternionr(1, 0, 0, 0))
@@ -156,7 +156,7 @@ class ImageSuite extends munit.FunSuite:
     assertEqualsFloat(house.min, 10, 0.05f)
     assertEquals(scan("Own").time_stamp, bench.simulation.world.now)
 
-  test("a distance sensor tells how far it is along its front, at most its reach"):
+  test("a distance sensor measures along its front, up to its range"):
     val bench    = this.bench()
     def distance = bench.now[DistanceSensorData]("getDistanceSensorData", Str(""), Str("A")).distance
     place(bench, "B", Vector3(0, 50, -3))
@@ -165,7 +165,7 @@ class ImageSuite extends munit.FunSuite:
     place(bench, "A", Vector3(0, 0, -30))
     assertEqualsFloat(distance, 40, 1e-4f)
 
-  test("who flies into a house bounces off it and is told so"):
+  test("a vehicle that flies into a house bounces off, and the collision is reported"):
     val bench = Bench(scene = scene).hovering(-3)
     bench.call(
       "moveByVelocity",
@@ -189,7 +189,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(told.map(_.object_name), Some("House"))
     assertEquals(told.map(_.normal), Some(Vector3r(-1, 0, 0)))
 
-  test("what does not fit in the settings is told with its key"):
+  test("an invalid value in the settings is reported with its key"):
     def error(text: String) = SensorSettings.read(text).fold(_.message, equipment => fail(s"$equipment"))
     assert(error(
       """{"CameraDefaults": {"CaptureSettings": [{"Width": 0}]}}"""

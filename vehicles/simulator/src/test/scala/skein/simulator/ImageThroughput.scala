@@ -14,7 +14,7 @@ import skein.scene.SceneFile
 import skein.signal.Stamped
 import skein.units.*
 
-/** Images of one camera as they came; from one call to the next. */
+/** Received images of one camera, with the time from each call to the next. */
 private final class Received:
   private val stamps          = CRC32()
   private val exposures       = collection.mutable.HashSet.empty[Long]
@@ -33,15 +33,15 @@ private final class Received:
   def trips: Vector[Double] = synchronized(latencies.toVector)
   def witness: Long         = synchronized(stamps.getValue)
 
-/** Of one camera. */
+/** Most images of one camera in transit. */
 private val MostOnTheWay = 4
 
 /** Raw images of 1280 × 720 from the built-in simulator to a client of the same process, over TCP on
-  * loopback: four cameras at 60 Hz each, at most four images of each on their way, one connection for each
-  * and one for all; then as many as will come; then the same by the official Python client, one call for all
+  * loopback: four cameras at 60 Hz each, at most four images of each in transit, one connection for each and
+  * one for all; then at the greatest possible rate; then by the official Python client, one call for all
   * four, where it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
   *
-  * Each row tells what was asked for, what came, how many images had the exposure of another, and as its
+  * Each row states the requested and the received images, how many images repeated an exposure, and as its
   * witness the CRC of all stamps.
   */
 @main def imageThroughput(seconds: Int): Unit =
@@ -62,8 +62,7 @@ private val MostOnTheWay = 4
   val process =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
 
-  /** @param perSecond of each camera; 0: each is asked anew when its image has come
-    */
+  /** @param perSecond of each camera; 0: each is requested again when its image has arrived */
   def row(name: String, connections: Int, perSecond: Int, lastsS: Double, isShown: Boolean = true): Unit =
     val rpc =
       RpcClient(TcpTransport(), server.address, Clock.system, RpcSettings(bulkConnections = connections))
@@ -75,7 +74,7 @@ private val MostOnTheWay = 4
 
     val onTheWay = cameras.map(_ => AtomicInteger())
 
-    /** Lost, if as many are on their way already. */
+    /** Skips the request if too many are in transit already. */
     def askIfFree(camera: Int): Future[Unit] =
       if onTheWay(camera).get >= MostOnTheWay then Future.unit
       else

@@ -12,9 +12,9 @@ import skein.rpc.MessageWriter
 import upack.*
 import upickle.default.writeMsg
 
-/** Everything that strangers have tried on `./skein serve`, at once and for as long as is wanted, beside an
-  * honest client that asks for a vehicle's state 20 times a second: how long it waited without attackers,
-  * with them, and in the seconds after they had left.
+/** All known attacks on `./skein serve`, simultaneously and for any duration, beside an honest client that
+  * requests a vehicle's state 20 times a second: its waiting times without attackers, with them, and in the
+  * seconds after they had left.
   *
   * Arguments: the port of RPC, that of an autopilot (`--hil px4`) or 0, that of MAVLink by UDP (`--mavlink`)
   * or 0, seconds of the attack, and a seed (default 1).
@@ -37,7 +37,7 @@ object LongAttack:
 
   private val loopback = InetAddress.getLoopbackAddress
 
-  /** Connects again whenever it is thrown out. */
+  /** A client that connects again whenever it is disconnected. */
   private final class Honest(port: Int):
     private var socket = Option.empty[Socket]
     private var lost   = 0
@@ -52,7 +52,7 @@ object LongAttack:
       socket = Some(one)
       id += 1
       one.getOutputStream.write(request(id -> ("getMultirotorState", Seq(Str("")))))
-      // A state is one value, and more than a few bytes; all of it is there once the last has come.
+      // A state is one value of more than a few bytes; it is complete once the last byte has arrived.
       val in    = one.getInputStream
       val first = in.read()
       if first < 0 then throw IOException("closed")
@@ -120,7 +120,7 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
       socket.close()
       held.remove(socket): Unit
 
-  /** Sends, and waits for an answer. */
+  /** Sends calls, and waits for their answers. */
   private def ask(socket: Socket, calls: (String, Seq[Msg])*): Unit =
     socket.getOutputStream.write(request(calls.zipWithIndex.map((call, id) => id -> call)*))
     socket.getInputStream.read(): Unit

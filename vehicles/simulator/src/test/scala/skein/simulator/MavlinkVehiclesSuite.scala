@@ -74,13 +74,13 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     assertEquals(armed.map(_._1).toSet, Set(4, 5))
     assertEquals(armed.groupMapReduce(_._1)(_._2)(_ || _), Map(4 -> false, 5 -> true))
 
-  test("a datagram that was cut off holds back nothing of those behind it"):
+  test("a truncated datagram does not delay later ones"):
     val flown = Flown(isDatagrams = true)
     flown.send(Array(0xfd, 0xff, 0, 0, 0, 0xff, 0xbe, 0x4c, 0, 0, 1, 2, 3).map(_.toByte))
     flown.send(command(1, 400, 1))
     assertEquals(flown.last[CommandAck].result, 0)
 
-  test("numbers that no vehicle can fly by are refused with a text, and nothing of them is flown"):
+  test("impossible setpoints are refused with a text, and do not move the vehicle"):
     val flown = takenOff()
     for (order, result) <- Seq(
         command(1, 511, 32, Float.NaN)                                    -> 2,
@@ -99,7 +99,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     flown.run(Span.ofSeconds(3))
     assertEqualsFloat(flown.last[LocalPositionNed].z, before.z, 0.3f)
 
-  test("a vehicle arms, takes off, flies a velocity, returns, lands and disarms; all of it is told"):
+  test("a vehicle arms, takes off, flies a velocity, returns, lands and disarms; telemetry shows all of it"):
     val flown = takenOff()
     assertEqualsFloat(flown.last[LocalPositionNed].z, -2.5f, 0.35f)
     def fly() = flown.send(SetPositionTargetLocalNed(0, 1, 1, 1, 0xdc7, 0, 0, 0, 3, 0, -1, 0, 0, 0, 0, 0))
@@ -124,7 +124,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     assertEquals(flown.last[ExtendedSysState].landedState, 1)
     assertEquals(flown.last[Heartbeat].baseMode & 128, 0)
 
-  test("each vehicle hears what is meant for it, and all what is meant for all"):
+  test("each vehicle receives its own messages, and all receive broadcasts"):
     val flown = Flown(vehicles = 3)
     flown.send(command(2, 400, 1))
     flown.run(Span.ofSeconds(1.1))
@@ -140,7 +140,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
       Vector(1, 2, 3)
     )
 
-  test("messages come as often as they are asked for"):
+  test("messages are sent as often as requested"):
     val flown = Flown()
     flown.send(command(1, 511, 32, 20_000))
     flown.send(command(1, 511, 30, -1))
@@ -172,7 +172,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
         flown.run(Span.ofMillis(20))
     flown.run(Span.ofSeconds(60))
     flown.heard = Vector.empty
-    for _ <- 1 to 40 do flown.send(Timesync(0, 99)) // Whatever a damaged one has claimed, these end it.
+    for _ <- 1 to 40 do flown.send(Timesync(0, 99)) // enough to end any damaged frame
     assert(flown.heard.exists(_.message match
       case Timesync(_, 99, _, _) => true
       case _                     => false))
@@ -189,7 +189,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
       flown.run(Span.ofSeconds(5))
       assert(flown.simulation.world.multirotor(0).state.kinematics.isFinite)
 
-  test("who asks for all parameters a thousand times at once is answered no more than it could take"):
+  test("a peer that requests all parameters a thousand times is sent no more than it could take"):
     val flown = Flown(vehicles = 5)
     val frame = FrameWriter(245, 190).write(ParamRequestList(0, 1))
     flown.send(Array.fill(1000)(frame).flatten)

@@ -11,8 +11,8 @@ import skein.mavlink.*
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies
-  * three at once. Runs where Python can install that package; it fetches it once per user.
+/** Proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, controls
+  * three simultaneously. Runs where Python can install that package; it fetches it once per user.
   */
 class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavsdk")
@@ -34,13 +34,16 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     finally
       val _ = Await.result(server.close(), 10.seconds)
 
-  /** Of nobody else at this moment. */
+  /** Currently unused UDP ports. */
   private def freePorts(count: Int): Vector[Int] =
     val sockets = Vector.fill(count)(DatagramSocket(0, InetAddress.getLoopbackAddress))
     try sockets.map(_.getLocalPort)
     finally sockets.foreach(_.close())
 
-  test("MAVSDK arms three vehicles at once, takes off, flies velocities, positions and a mission, and lands"):
+  test(
+    "MAVSDK arms three vehicles simultaneously, takes off, flies velocities, positions and a mission, " +
+      "and lands"
+  ):
     Mavsdk.python(): Unit
     conclusive:
       val ports = freePorts(3)
@@ -79,7 +82,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
           val frame = writer.write(definition.decode(random.nextBytes(definition.length)))
           frame(random.nextInt(frame.length)) = random.nextInt(256).toByte
           bad.send(frame.take(1 + random.nextInt(frame.length)))
-          // So many may wait for the server: what came after them would not reach it.
+          // At most this many may wait for the server: later ones would be lost.
           if count % 200 == 0 then assert(bad.isAnswered(definition.id + count), definition.name)
         assert(good.isAnswered(definition.id), definition.name)
       bad.close()
@@ -95,14 +98,14 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     def send(bytes: Array[Byte]): Unit =
       socket.send(DatagramPacket(bytes, bytes.length, InetAddress.getByName(to.host), to.port))
 
-    /** Whether a TIMESYNC of this number is, within 5 s. */
+    /** Whether a TIMESYNC of this number is answered within 5 s. */
     def isAnswered(number: Long): Boolean =
       val packet   = DatagramPacket(new Array[Byte](1 << 16), 1 << 16)
       val until    = 5.seconds.fromNow
       var isHere   = false
       var askAgain = Deadline.now
       while !isHere && until.hasTimeLeft() do
-        // Not for every message of telemetry: so many questions would not reach a busy server either.
+        // Not for every telemetry message: that many requests would overload a busy server.
         if askAgain.isOverdue() then
           send(writer.write(Timesync(0, 1000 + number)))
           askAgain = 1.second.fromNow

@@ -4,9 +4,9 @@ import scala.util.Random
 import scala.util.control.NonFatal
 import upack.*
 
-/** Calls that no honest client makes, of every method in the simulator's table: each parameter in its turn is
-  * nil, of another type, not finite, huge, deep; some are missing, some too many. What is right for a
-  * parameter is found by asking its own reader, so a new method is fuzzed as soon as it stands in the table.
+/** Invalid calls of every method in the simulator's table: each parameter in turn is nil, of another type,
+  * not finite, huge, deeply nested; some are missing, some surplus. A parameter's own reader determines valid
+  * values, so a new method is fuzzed as soon as it is in the table.
   */
 private[simulator] object MethodFuzz:
 
@@ -22,13 +22,13 @@ private[simulator] object MethodFuzz:
       method.arguments.map(argument => palette.filter(accepts(argument, _)).toIndexedSeq)
     private val wrong = (palette ++ extreme).toIndexedSeq
 
-    /** What vehicles may be called after such calls: some add a vehicle. */
+    /** Vehicle names after such calls: some add a vehicle. */
     def names: Seq[Msg] = palette.collect { case name: Str => name }
 
     for (method, values) <- methods.zip(right); (found, i) <- values.zipWithIndex do
       require(found.nonEmpty, s"nothing in the palette is right for parameter $i of ${method.name}")
 
-    /** Every method with each of its parameters in turn being each of the wrong values, the others right. */
+    /** Every method with each of its parameters in turn replaced by each invalid value, the others valid. */
     def each: Iterator[FuzzCall] =
       for
         (method, values) <- methods.iterator.zip(right)
@@ -51,7 +51,7 @@ private[simulator] object MethodFuzz:
         case _                  => usual.updated(random.nextInt(usual.size), any)
       FuzzCall(if random.nextInt(200) == 0 then random.nextString(5) else method.name, params)
 
-  /** Whether an answer's text tells of a defect rather than of a bad call. */
+  /** Whether an answer's text is evidence of a defect rather than of an invalid call. */
   def isDefect(error: String): Boolean =
     error.contains("information: java.") || error.contains("information: scala.") ||
       error.contains("information: skein.") || error.contains("information: upickle.") ||
@@ -127,7 +127,7 @@ private[simulator] object MethodFuzz:
         Arr(Seq.fill(4)(Float32(0.25f))*)
       )
 
-  /** Too costly to be tried for every parameter's reader. */
+  /** Values too costly to try with every parameter's reader. */
   private def extreme: Seq[Msg] = Seq(
     Str("x" * 50_000),
     Binary(new Array[Byte](50_000)),

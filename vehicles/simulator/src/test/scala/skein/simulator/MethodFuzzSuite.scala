@@ -5,7 +5,7 @@ import skein.airsim.wire.MultirotorReading
 import skein.scene.SceneFile
 import upack.{Bool, Msg, Str}
 
-/** Fuzz by method, on the workbench: no sockets, no threads. What [[Siege]] does at length over sockets. */
+/** Fuzzes every method without sockets and threads; a short version of [[Siege]]. */
 class MethodFuzzSuite extends munit.FunSuite:
   private val vehicles = Seq("Evader", "Pursuer")
   private val scene    = SceneFile.named("street").get
@@ -15,8 +15,8 @@ class MethodFuzzSuite extends munit.FunSuite:
       |  "CameraDefaults": {"CaptureSettings": [{"Width": 40, "Height": 24}]}}""".stripMargin
   private val calls = MethodFuzz.Calls(Simulation.methods, vehicles.head)
 
-  /** Every call is answered: at once, but for moves, which the next move of their vehicle or a cancellation
-    * ends.
+  /** Checks that every call is answered: immediately, except for moves, which end by the next move of their
+    * vehicle or by a cancellation.
     */
   private def fuzz(all: Iterator[MethodFuzz.FuzzCall], clue: String): Int =
     val bench  = Bench(vehicles, overload = Overload.Never, scene = scene, text = carrying).ready()
@@ -26,10 +26,10 @@ class MethodFuzzSuite extends munit.FunSuite:
       tokens :+= bench.call(call.method, call.params*) -> call
       count += 1
       if count % 50 == 0 then
-        // Ends a step of physics, which may have been asked to last a day.
+        // Ends a stepped advance, which may have been requested to last a day.
         bench.tell("simPause", Bool(false))
         bench.pass(0.003)
-        // An honest client beside it.
+        // An honest client at the same simulator.
         val reading = bench.now[MultirotorReading]("getMultirotorState", Str("Pursuer"))
         assert(reading.timestamp == bench.simulation.world.now, clue)
       if count % 1000 == 0 then

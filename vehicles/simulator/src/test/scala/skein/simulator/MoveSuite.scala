@@ -5,7 +5,7 @@ import upack.{Bool, Float32, Int32, Str}
 
 class MoveSuite extends munit.FunSuite:
 
-  test("a move answers true when its duration is flown"):
+  test("a move answers true when its duration is over"):
     val bench = Bench().hovering(-20)
     val move  = bench.velocityZ(5, 0, -20, 2)
     bench.pass(1.99)
@@ -14,7 +14,7 @@ class MoveSuite extends munit.FunSuite:
     assertEquals(bench.answeredAt(move), Some(2.0))
     assertEquals(bench.result(move), Some(true))
 
-  test("a newer move cancels the older, which answers false at once"):
+  test("a newer move cancels the older, which answers false immediately"):
     val bench = Bench().hovering(-20)
     val older = bench.velocityZ(5, 0, -20, 10)
     bench.pass(1)
@@ -38,12 +38,12 @@ class MoveSuite extends munit.FunSuite:
     assert(math.abs(overshoot - 1.6) < 0.3, s"overshoot $overshoot m, AirSim's is 1.6 m")
     assert((back - left).norm < 0.1, s"holds at $back, wanted $left")
 
-  test("a duration of zero answers at once: false for moveByVelocityZ, true for the others"):
+  test("a duration of zero answers immediately: false for moveByVelocityZ, true for the others"):
     val bench = Bench().hovering(-20)
     assertEquals(bench.result(bench.velocityZ(5, 0, -20, 0)), Some(false))
     assertEquals(bench.result(bench.velocity(5, 0, 0, 0)), Some(true))
 
-  test("without api control a move answers true and does nothing"):
+  test("without API control a move answers true and does nothing"):
     val bench = Bench()
     val move  = bench.velocity(5, 0, -5, 1)
     bench.pass(1.1)
@@ -120,7 +120,7 @@ class MoveSuite extends munit.FunSuite:
     assertEqualsDouble(math.toDegrees(2 * math.atan2(q.z, q.w)), 90, 6)
     assert((bench.position() - Vector3(0, 0, -10)).norm < 0.2, s"drifted to ${bench.position()}")
 
-  test("hover ends the move under way, and the vehicle stays"):
+  test("hover ends the current move, and the vehicle stays in place"):
     val bench = Bench().hovering(-20)
     val move  = bench.velocity(3, 0, 0, 30)
     bench.pass(3)
@@ -130,7 +130,7 @@ class MoveSuite extends munit.FunSuite:
     assertEquals(bench.result(hover), Some(false))
     assert(bench.kinematics().linear_velocity.toVector.norm < 0.01)
 
-  test("a reset ends moves, puts vehicles back and takes api control away"):
+  test("a reset ends moves, returns vehicles to their starts and takes API control away"):
     val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
     val move  = bench.velocity(3, 0, 0, 30)
     bench.pass(3)
@@ -141,7 +141,7 @@ class MoveSuite extends munit.FunSuite:
     bench.pass(1)
     assertEquals(bench.position("Pursuer"), Vector3.Zero)
 
-  test("wind carries a vehicle that holds its position"):
+  test("wind displaces a vehicle that holds its position"):
     val bench = Bench().hovering(-10)
     bench.tell("simSetWind", upickle.default.writeMsg(skein.airsim.wire.Vector3r(0, 8, 0)))
     bench.pass(3)
@@ -191,7 +191,7 @@ class MoveSuite extends munit.FunSuite:
     bench.pass(2)
     assert(bench.position().z < -2, s"${bench.position()}")
 
-  test("moveByMotorPWMs drives the rotors themselves: at the hover control a level vehicle keeps its height"):
+  test("moveByMotorPWMs drives the rotors directly: at the hover control a level vehicle keeps its height"):
     def climb(control: Float) =
       val bench = Bench().hovering(-20)
       val move  = bench.call(
@@ -210,7 +210,7 @@ class MoveSuite extends munit.FunSuite:
     // Thrust over weight by 10 %, less drag: g/10 · t²/2.
     assertEqualsDouble(climb(0.5947f * 1.1f), 0.49, 0.03)
 
-  test("a vehicle is put at a pose whose quaternion is not of unit length"):
+  test("a vehicle can be placed at a pose whose quaternion is not of unit length"):
     val bench = Bench().ready()
     val pose  = skein.airsim.wire.Pose(
       skein.airsim.wire.Vector3r(1, 2, -3),

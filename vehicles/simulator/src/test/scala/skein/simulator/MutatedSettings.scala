@@ -3,12 +3,12 @@ package skein.simulator
 import java.lang.management.ManagementFactory
 import scala.util.Random
 
-/** Files of settings, changed in a few places: each is read, or refused in one line. */
+/** Settings files, changed in a few places: each is read, or refused in one line. */
 private[simulator] object MutatedSettings:
 
-  /** What they came to.
+  /** Counts of the files by their results.
     *
-    * @param longestMs of processor time that one took
+    * @param longestMs greatest processor time for one file
     */
   final case class Figures(read: Int, refused: Int, longestMs: Double)
 
@@ -24,7 +24,7 @@ private[simulator] object MutatedSettings:
           case Right(file) =>
             read += 1
             file.notice.foreach(assertLine)
-            // It can be flown.
+            // The settings must be usable.
             Simulation(SimulatorSettings(file.world), skein.units.Instant.Epoch)
               .advance(skein.units.Instant.ofNanos(10_000_000)): Unit
           case Left(error) =>
@@ -40,7 +40,7 @@ private[simulator] object MutatedSettings:
   private def mutated(random: Random): String =
     (0 to random.nextInt(3)).foldLeft(Whole)((text, _) => change(text, random))
 
-  /** As texts are changed by mistake: letters, cuts, and other values in the place of one. */
+  /** Changes a text as users do by mistake: letters, cuts, and other values in place of one. */
   private def change(text: String, random: Random): String =
     if text.isEmpty then "{}"
     else
@@ -103,7 +103,7 @@ private[simulator] object MutatedSettings:
       "B": {"VehicleType": "PhysXCar", "X": 10, "IsFpvVehicle": true},
       "C": {"VehicleType": "ComputerVision", "Y": 4, "AutoCreate": false}}}"""
 
-/** Prints what mutated files of settings come to: `settingsFuzz [FILES [SEED]]`. */
+/** Prints the results of mutated settings files: `settingsFuzz [FILES [SEED]]`. */
 @main def settingsFuzz(arguments: String*): Unit =
   val files = arguments.headOption.fold(2000)(_.toInt)
   println(MutatedSettings.run(files, arguments.lift(1).fold(1L)(_.toLong)))

@@ -12,7 +12,7 @@ class NamePatternSuite extends munit.FunSuite:
     val random = Random(43)
     val pieces =
       Vector("a", "b", "x", ".", "[ab]", "[^a]", "[a-c]", "\\d", "\\w", "\\.", "^", "$", "\\b", "|")
-    // The JDK's are wrong about repetitions of what is empty: they are tried apart.
+    // The JDK's expressions are wrong about repetitions of the empty string: these are tested separately.
     def isEmpty(part: String)          = part.contains("\\b") || Pattern.compile(part).matcher("").matches()
     def expression(depth: Int): String =
       val parts = Vector.fill(1 + random.nextInt(4)):
@@ -35,7 +35,7 @@ class NamePatternSuite extends munit.FunSuite:
         s"case $case_: /$text/ on '$name'${if ignoreCase then ", any case" else ""}"
       )
 
-  test("60 nested repetitions, which a search with a way back never ends, are told no in linear time"):
+  test("60 nested repetitions, on which backtracking never ends, are rejected in linear time"):
     for nested <-
         Seq("(.*)*" * 60 + "x", "(a*)*" * 60 + "b", "(a|a)*" * 50 + "b", "(.?)*" * 80, "((a+)+)+" * 30)
     do
@@ -45,7 +45,7 @@ class NamePatternSuite extends munit.FunSuite:
     assert(!NamePattern("(.*)*" * 60 + "x").matches("a" * 100))
     assert(NamePattern("(.*)*" * 60 + "x").matches("a" * 100 + "x"))
 
-  test("what is too large, or takes too much for all names together, is refused"):
+  test("an expression that is too large, or takes too much effort for all names, is refused"):
     assertEquals(refusal("((a{99}){99}){99}"), "the regular expression takes too long")
     assertEquals(
       refusal("(" * 200 + ")" * 200),
@@ -54,7 +54,7 @@ class NamePatternSuite extends munit.FunSuite:
     val pattern = NamePattern("(a?){900}")
     intercept[BadArgument]((1 to 100_000).foreach(_ => pattern.matches("a" * 50)))
 
-  test("what is no expression, or one that is not known here, is told with its place"):
+  test("an invalid or unsupported expression is reported with the position"):
     for (text, why) <- Seq(
         "("      -> "expected ')' at character 2",
         "a)"     -> "unmatched ')' at character 2",
@@ -69,7 +69,7 @@ class NamePatternSuite extends munit.FunSuite:
       )
     do assertEquals(refusal(text), s"no regular expression: $why")
 
-  test("kinds of letters have their names, and escapes their letters"):
+  test("character classes and escapes are supported"):
     assert(NamePattern("[[:alpha:]_]+\\x41\\u0042[\\d\\-]{2}").matches("ab_AB1-"))
     assert(!NamePattern("[^\\w]").matches("a") && NamePattern("\\S\\s").matches("a "))
 

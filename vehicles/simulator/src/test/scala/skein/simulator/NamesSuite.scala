@@ -5,28 +5,28 @@ import skein.airsim.{SensorKind, VehicleSettings}
 import skein.units.*
 import upack.{Obj, Str}
 
-/** Which vehicle and which sensor a name means. */
+/** Resolution of vehicle names and sensor names. */
 class NamesSuite extends munit.FunSuite:
 
   private def north(bench: Bench, name: String): Double =
-    // Homes tell vehicles apart that stand still.
+    // Home positions distinguish vehicles that stand still.
     bench.now[GeoPoint]("getHomeGeoPoint", Str(name)).latitude
 
   private val apart = Seq("Pursuer", "Evader", "Zebra").zipWithIndex.map((name, i) =>
     VehicleSettings(name, Vector3(i * 1000.0, 0, 0))
   )
 
-  test("vehicles are listed by the alphabet, and the first of them is meant by the empty name"):
+  test("vehicles are listed by the alphabet, and the empty name means the first"):
     val bench = Bench.of(apart*)
     assertEquals(bench.now[Seq[String]]("listVehicles"), Seq("Evader", "Pursuer", "Zebra"))
     assertEquals(north(bench, ""), north(bench, "Evader"))
     assertNotEquals(north(bench, "Pursuer"), north(bench, "Evader"))
 
-  test("the one with IsFpvVehicle goes first by the empty name"):
+  test("the empty name means the vehicle with IsFpvVehicle, if there is one"):
     val bench = Bench.of(apart.map(vehicle => vehicle.copy(firstPerson = vehicle.name == "Pursuer"))*)
     assertEquals(north(bench, ""), north(bench, "Pursuer"))
 
-  test("a vehicle type is known in any case"):
+  test("a vehicle type is recognised in any letter case"):
     for kind <- Seq("simpleflight", "SIMPLEFLIGHT", "SimpleFlight", "computervision") do
       assert(SettingsFile.read(s"""{"Vehicles": {"A": {"VehicleType": "$kind"}}}""").isRight, kind)
     assert(SettingsFile.read("""{"Vehicles": {"A": {"VehicleType": "PX4"}}}""").isLeft)
@@ -38,7 +38,7 @@ class NamesSuite extends munit.FunSuite:
     ("getMagnetometerData", "magnetometer", "magnetometer")
   )
 
-  test("a sensor is known by its name or by none; another name is told in AirSim's words"):
+  test("a sensor is found by its name or by none; another name is refused in AirSim's words"):
     val bench = Bench()
     for (method, name, kind) <- sensors do
       assert(bench.answerOf(bench.call(method, Str(name), Str(""))).isRight)
@@ -49,15 +49,15 @@ class NamesSuite extends munit.FunSuite:
           Rpclib.threw(method, 2, s"No $kind with name $wrong exist on vehicle")
         )
 
-  test("sensors that the settings name take the place of the default ones of their kind"):
+  test("sensors in the settings replace the default ones of their kind"):
     val bench =
       Bench.of(VehicleSettings("A", sensors = SensorKind.Default - "imu" + ("Imu1" -> SensorKind.Imu)))
     assert(bench.answerOf(bench.call("getImuData", Str("Imu1"), Str(""))).isRight)
     assert(bench.error("getImuData", Str("imu"), Str("")).contains("No IMU with name imu exist on vehicle"))
 
   test(
-    "rotor states say thrust and torque as at sea level, the torque " +
-      "by the turning direction, the speed never negative"
+    "rotor states have thrust and torque as at sea level, the torque's sign by the turning direction, " +
+      "the speed never negative"
   ):
     val bench  = Bench().hovering(-20)
     val answer = bench.answerOf(bench.call("getRotorStates", Str(""))).toOption.get
@@ -71,7 +71,7 @@ class NamesSuite extends munit.FunSuite:
 
   private def gps(bench: Bench) = bench.now[GpsData]("getGpsData", Str(""), Str(""))
 
-  test("a reset within the GPS's first second silences it for another one; later resets do not"):
+  test("a reset within the GPS's first second silences it for another; later resets do not"):
     val bench = Bench()
     bench.pass(0.9)
     bench.tell("reset")

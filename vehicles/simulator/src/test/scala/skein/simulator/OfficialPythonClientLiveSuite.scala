@@ -10,7 +10,7 @@ import skein.link.{Address, TcpTransport}
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim`
+/** Proof that the built-in simulator speaks AirSim's protocol: the official client, the unmodified `airsim`
   * package of PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it
   * once per user.
   */
@@ -24,7 +24,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
   private val mixed    = vehicles.take(1) :+
     VehicleSettings("Car", Vector3(0, 40, 0), vehicleType = WorldSettings.PhysXCar)
 
-  /** The pursuer carries a lidar, and a distance sensor that looks down. */
+  /** Settings in which the pursuer carries a lidar, and a distance sensor that looks down. */
   private val text =
     val settings = ujson.read(WorldSettings.render(vehicles))
     settings("Vehicles")("Pursuer")("Sensors") = ujson.Obj(
@@ -36,7 +36,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
   test("the official Python client flies a square, reads every sensor, pauses, steps, lands and resets"):
     fly("fly_square.py")
 
-  test("the official Python client flies as AirSim's examples do, and works scene, cameras and markers"):
+  test("the official Python client runs AirSim's examples, and uses scene, cameras and markers"):
     fly("fly_examples.py")
 
   test("the official Python client drives a car as AirSim's example does, beside a multirotor"):
@@ -71,7 +71,7 @@ private[simulator] val OfficialPythonClient = PythonEnvironment(
   imports = "airsim",
   scripts = Some("/airsim-python/fly_square.py"),
   Seq("setuptools", "wheel", "msgpack", "numpy"),
-  // They are built with what lies there already; and airsim's set-up imports the client itself.
+  // They are built with the packages already installed; and airsim's set-up imports the client itself.
   Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
   Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
 )

@@ -15,7 +15,7 @@ class OverloadSuite extends munit.FunSuite:
     assertEquals(moves.map(bench.result), Seq(Some(false), Some(true), Some(true)))
     ends.zip(Seq(0.0, 4.0, 8.0)).foreach((end, expected) => assertEqualsDouble(end, expected, 0.01))
 
-  test("moves that replace each other one at a time all start at once"):
+  test("moves that replace each other one at a time all start immediately"):
     val bench = Bench().hovering(-20)
     val moves =
       for i <- 1 to 50 yield
@@ -28,7 +28,8 @@ class OverloadSuite extends munit.FunSuite:
 
   for (moves, seconds) <- Seq((5, 0.0), (8, 4.0), (20, 24.0)) do
     test(
-      s"a burst of $moves four-second moves holds a reading up for $seconds s, as at AirSim's six workers"
+      s"a burst of $moves four-second moves delays a reading for $seconds s, as with AirSim's six " +
+        "workers"
     ):
       val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
       val sent  = burst(bench, moves)
@@ -37,7 +38,7 @@ class OverloadSuite extends munit.FunSuite:
       assertEqualsDouble(bench.answeredAt(read).get, seconds, 0.02)
       assert(sent.forall(bench.answeredAt(_).nonEmpty))
 
-  test("whatever bursts came before, one of twenty holds a reading up for 20 to 28 s"):
+  test("after any earlier bursts, one of twenty moves delays a reading for 20 to 28 s"):
     val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
     for round <- 1 to 20 do
       burst(bench, 8 + round % 5)
@@ -49,7 +50,7 @@ class OverloadSuite extends munit.FunSuite:
       val took = bench.answeredAt(read).get - sent
       assert(took > 19.9 && took < 28.1, s"round $round: $took s")
 
-  test("with overload off the newest move wins at once and nothing waits"):
+  test("without overload the newest move replaces the older immediately and nothing waits"):
     val bench = Bench(overload = Overload.Never).hovering(-20)
     val moves = burst(bench, 20)
     assertEquals(bench.now[Boolean]("ping"), true)
@@ -57,7 +58,7 @@ class OverloadSuite extends munit.FunSuite:
     bench.pass(4.01)
     assertEqualsDouble(bench.answeredAt(moves.last).get, 4, 1e-9)
 
-  test("a move that waits for its lock has it before physics is stepped"):
+  test("a move that waits for its lock receives it before physics is stepped"):
     val bench = Bench().hovering(-20)
     bench.tell("simPause", upack.Bool(true))
     bench.velocity(-5, 0, 0, 10)
@@ -82,7 +83,7 @@ class OverloadSuite extends munit.FunSuite:
     assert(!bench.isAnswered(read), "as at AirSim, a reading waits")
 
   for (control, params) <- Seq("hover" -> Seq(upack.Str("Evader")), "reset" -> Nil) do
-    test(s"after a $control no move that was asked for before it is flown, and nothing waits"):
+    test(s"after a $control no earlier move is run, and nothing waits"):
       val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
       val moves = burst(bench, 20)
       val read  = bench.call("getMultirotorState", upack.Str(""))
@@ -90,7 +91,7 @@ class OverloadSuite extends munit.FunSuite:
       assertEquals(moves.map(bench.result), Vector.fill(20)(Some(false)))
       assert(bench.isAnswered(read))
 
-  test("while time stands still the newest move wins at once, and however many are asked for, no call waits"):
+  test("while paused the newest move replaces the older immediately, and no call waits"):
     val bench = Bench().hovering(-20)
     bench.tell("simPause", upack.Bool(true))
     val moves = for i <- 1 to 12 yield bench.velocityZ(1, i * 0.1, -5, 1000)
@@ -100,7 +101,7 @@ class OverloadSuite extends munit.FunSuite:
     bench.pass(5)
     assertEqualsFloat(bench.kinematics().linear_velocity.y_val, 1.2f, 0.2f)
 
-  test("a burst of moves of a client that has left holds nothing, and the newest of them is flown"):
+  test("a burst of moves of a client that has left holds no worker, and its newest move runs"):
     val bench = Bench().hovering(-20)
     val moves = for i <- 1 to 12 yield bench.velocityZ(1, i * 0.1, -20, 1000, client = 7)
     val read  = bench.callBy(8)("getMultirotorState", upack.Str(""))
@@ -112,7 +113,7 @@ class OverloadSuite extends munit.FunSuite:
     bench.pass(1.1)
     assertEquals(bench.result(own), Some(true), "nor does another client's move wait behind them")
 
-  test("a client's only move goes on when it has left, without a worker"):
+  test("a client's only move continues after it has left, without a worker"):
     val bench = Bench(overload = Overload.Workers(1)).hovering(-20)
     val move  = bench.velocityZ(3, 0, -20, 2, client = 7)
     val read  = bench.callBy(8)("getMultirotorState", upack.Str(""))
@@ -121,12 +122,12 @@ class OverloadSuite extends munit.FunSuite:
     assert(bench.isAnswered(read))
     bench.pass(2)
     assertEquals(bench.result(move), Some(true))
-    // And what comes of it after it has left.
+    // Also for messages after it has left.
     val late = bench.velocityZ(3, 0, -20, 2, client = 7)
     assert(!bench.isAnswered(late))
     assert(bench.isAnswered(bench.callBy(8)("getMultirotorState", upack.Str(""))))
 
-  test("moves may hold all workers for the time that is set, taken together; then no call waits behind them"):
+  test("moves may hold all workers for the set time, in total; then no call waits behind them"):
     val bench = Bench(patience = Some(Span.ofSeconds(6))).hovering(-20)
     for _ <- 1 to 2 do
       burst(bench, 12): Unit
@@ -138,7 +139,7 @@ class OverloadSuite extends munit.FunSuite:
     assertEquals(moves.init.map(bench.result), Vector.fill(11)(Some(false)))
     assert(bench.isAnswered(bench.call("getMultirotorState", upack.Str(""))))
 
-  test("moves that replace one another now and then use nothing of that time up"):
+  test("moves that replace one another occasionally do not use up that time"):
     val bench = Bench(Seq("A", "B", "C", "D"), patience = Some(Span.ofSeconds(1))).hovering(-20)
     for i <- 1 to 200 do
       for name <- Seq("A", "B", "C", "D") do bench.velocityZ(1, i * 0.01, -20, 10, name): Unit

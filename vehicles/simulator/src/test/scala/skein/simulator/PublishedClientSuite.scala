@@ -4,9 +4,8 @@ import java.nio.file.{Files, Path}
 import scala.io.Source
 import upack.*
 
-/** Everything that AirSim's published Python client calls is answered, and the documentation says how.
-  * `methods.txt` is written by `list_methods.py` from the client itself; [[OfficialPythonClientLiveSuite]]
-  * holds it to that.
+/** Everything that AirSim's published Python client calls is answered and documented. `list_methods.py`
+  * writes `methods.txt` from the client itself; [[OfficialPythonClientLiveSuite]] checks that.
   */
 class PublishedClientSuite extends munit.FunSuite:
 
@@ -26,19 +25,19 @@ class PublishedClientSuite extends munit.FunSuite:
   private val told: Seq[(String, String)] =
     row.findAllMatchIn(page).map(found => found.group(1) -> found.group(2)).toSeq
 
-  test("every function of the published client is there, with as many arguments as it sends"):
+  test("every function of the published client exists, with as many arguments as it sends"):
     assertEquals(called.size, 125)
     val here = Simulation.methods.map(method => method.name -> method.arity).toMap
     for (name, arity) <- called do assertEquals(here.get(name), Some(arity), name)
 
-  test("no function is there twice"):
+  test("no function exists twice"):
     assertEquals(Simulation.methods.map(_.name).distinct.size, Simulation.methods.size)
 
   test("the page lists every function once, and none that does not exist"):
     assertEquals(told.map(_._1).sorted, Simulation.methodNames.toSeq.sorted)
     assertEquals(told.map(_._2).toSet, Set("true", "kept", "checked", "refused"))
 
-  test("what the page says is refused is refused, and nothing else is"):
+  test("exactly the functions that the page calls refused are refused"):
     for (name, how) <- told do
       val answer  = SampleCalls.answered(name)
       val refused = answer match

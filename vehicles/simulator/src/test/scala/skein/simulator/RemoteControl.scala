@@ -3,7 +3,7 @@ package skein.simulator
 import java.net.{DatagramPacket, DatagramSocket, InetAddress}
 import java.nio.{ByteBuffer, ByteOrder}
 
-/** Betaflight's remote control: moves the sticks of its SITL (`rc_packet`), and hears what its motors get
+/** Betaflight's remote control: moves the sticks of its SITL (`rc_packet`), and receives its motors' pulses
   * (`servo_packet_raw`).
   */
 private final class RemoteControl extends AutoCloseable:
@@ -13,13 +13,12 @@ private final class RemoteControl extends AutoCloseable:
   private val sender   = DatagramSocket()
   private val receiver = DatagramSocket(Betaflight.PulsesPort, loopback)
 
-  /** Updates of its motors so far. */
+  /** Number of motor updates so far. */
   @volatile var updates: Long = 0L
 
-  /** The longest time between two of them since this was set to 0, ns. */
+  /** The longest time between two updates since it was reset to 0, ns. */
   @volatile var longestPauseNanos: Long = 0L
 
-  /** Whether its motors turn. */
   @volatile var isArmed = false
 
   Thread.ofPlatform.daemon.start: () =>
@@ -56,7 +55,7 @@ private final class RemoteControl extends AutoCloseable:
     receiver.close()
 
 private object RemoteControl:
-  /** A count of motors, two bytes of nothing, sixteen floats in microseconds. */
+  /** Length of a datagram: number of motors, two unused bytes, sixteen floats in microseconds. */
   private val PulsesLength = 4 + 16 * 4
   private val FirstPulseAt = 4
   private val StoppedUs    = 1000

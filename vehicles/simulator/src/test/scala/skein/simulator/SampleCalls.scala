@@ -7,10 +7,10 @@ import skein.airsim.wire.*
 import upack.*
 import upickle.default.writeMsg
 
-/** One fitting call of each function. */
+/** One valid call of each function. */
 private[simulator] object SampleCalls:
 
-  /** What a fresh simulator with one vehicle answers to it, a move when it ends. */
+  /** The answer of a fresh simulator with one vehicle, of a move when it ends. */
   def answered(name: String): Either[String, Msg] =
     val bench =
       if name.contains("Car") then Bench.of(VehicleSettings("Evader", vehicleType = "PhysXCar"))

@@ -10,12 +10,12 @@ class SceneMethodsSuite extends munit.FunSuite:
   private def pose(x: Double, y: Double, z: Double, q: Quaternion = Quaternion.Identity): Msg =
     writeMsg(Pose(Vector3r(Vector3(x, y, z)), Quaternionr(q)))
 
-  /** A place in the default world, whose origin is AirSim's home, as latitude, longitude and altitude. */
+  /** A position in the default world, whose origin is AirSim's home, as latitude, longitude and altitude. */
   private def point(ned: Vector3): Msg =
     val place = skein.airsim.WorldSettings.DefaultOrigin.locate(ned)
     writeMsg(GeoPoint(place.latitudeDeg, place.longitudeDeg, place.altitude.value.toFloat))
 
-  test("a vehicle is added, stands at its start in its own frame, and flies beside the others"):
+  test("an added vehicle stands at its start in its own frame, and flies beside the others"):
     val bench = Bench()
     assert(bench.now[Boolean]("simAddVehicle", Str("Drone2"), Str("simpleflight"), pose(10, 5, 0), Str("")))
     assert(bench.now[Seq[String]]("listVehicles").contains("Drone2"))
@@ -31,7 +31,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     bench.tell("reset")
     assertEquals(bench.position("Drone2"), Vector3.Zero)
 
-  test("a vehicle added in the air falls, and the wind that blows meets it"):
+  test("a vehicle added in the air falls, and the current wind affects it"):
     val bench = Bench()
     bench.tell("simSetWind", writeMsg(Vector3r(10, 0, 0)))
     bench.tell("simAddVehicle", Str("High"), Str("SimpleFlight"), pose(0, 0, -50), Str(""))
@@ -39,7 +39,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     assert(bench.position("High").z > 3)
     assert(bench.position("High").x > 0.01)
 
-  test("a taken name and another type are answered false; names and numbers have limits"):
+  test("a used name and an unknown type are answered false; names and numbers have limits"):
     val bench                           = Bench()
     def add(name: String, kind: String) =
       bench.now[Boolean]("simAddVehicle", Str(name), Str(kind), pose(0, 0, 0), Str(""))
@@ -62,7 +62,7 @@ class SceneMethodsSuite extends munit.FunSuite:
       Str("")
     ).contains("at most 256"))
 
-  test("kinematics are set as they come, and the flight goes on from there"):
+  test("kinematics are set unchanged, and the flight continues from there"):
     val bench = Bench().hovering(-20)
     val zero  = Vector3r.Zero
     val tilt  = Quaternionr(Quaternion(math.cos(0.1), 0, math.sin(0.1), 0))
@@ -76,7 +76,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     assertEqualsDouble(bench.position().x, 3 + 0.3 * 5, 0.5)
     assertEqualsDouble(bench.position().y, 4 - 0.3 * 2, 0.3)
 
-  test("kinematics that no number could follow are refused"):
+  test("kinematics that would overflow are refused"):
     val zero = Vector3r.Zero
     val far  = KinematicsState(Vector3r(1e30f, 0, 0), Quaternionr(1, 0, 0, 0), zero, zero, zero, zero)
     assert(Bench().error("simSetKinematics", writeMsg(far), Bool(true), Str("")).contains("within"))
@@ -96,7 +96,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     assertEquals(bench.now[Vector3r]("simGetObjectScale", Str("Evader")), Vector3r(2, 2, 2))
     assertEquals(bench.now[Vector3r]("simGetObjectScale", Str("Tree")), Vector3r.Zero)
 
-  test("an expression that a search would try for ever is answered, and what is none is refused"):
+  test("an expression on which backtracking never ends is answered, and an invalid one is refused"):
     val bench = Bench(Seq("a" * 60))
     assertEquals(bench.now[Seq[String]]("simListSceneObjects", Str(".*.*.*.*.*.*.*.*b")), Nil)
     assertEquals(bench.now[Seq[String]]("simListSceneObjects", Str("(.*)*" * 60 + "x")), Nil)
@@ -124,7 +124,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     assert(set("Evader", 300, regex = false))
     assertEquals(id("Evader"), 255)
 
-  test("a vehicle sees what the ground and the others do not hide"):
+  test("a vehicle has a line of sight unless the ground or another vehicle blocks it"):
     val bench                          = Bench(Seq("Evader", "Pursuer"))
     def put(name: String, at: Vector3) =
       bench.tell("simSetVehiclePose", pose(at.x, at.y, at.z), Bool(true), Str(name))
@@ -144,14 +144,14 @@ class SceneMethodsSuite extends munit.FunSuite:
     assert(between(Vector3(-5, 0, -11), Vector3(5, 0, -11)))
     assert(!between(Vector3(0, 0, 5), Vector3(1, 0, -1)))
 
-  test("the world's extents hold the origin"):
+  test("the world's extents contain the origin"):
     val corners = Bench().now[Seq[GeoPoint]]("simGetWorldExtents")
     val home    = skein.airsim.WorldSettings.DefaultOrigin
     assert(corners(0).latitude < home.latitudeDeg && home.latitudeDeg < corners(1).latitude)
     assert(corners(0).longitude < home.longitudeDeg && home.longitudeDeg < corners(1).longitude)
     assert(corners(0).altitude < corners(1).altitude)
 
-  test("there are no assets, levels or meshes, as AirSim says it"):
+  test("assets, levels and meshes are refused in AirSim's words"):
     val bench = Bench()
     assertEquals(bench.now[Seq[String]]("simListAssets"), Seq.empty)
     assertEquals(bench.now[Boolean]("simLoadLevel", Str("Blocks")), false)

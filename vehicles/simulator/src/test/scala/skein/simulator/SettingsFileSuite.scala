@@ -15,7 +15,7 @@ import skein.link.Address
 import upack.{Arr, Bool, Str}
 import upickle.default.writeMsg
 
-/** AirSim's `settings.json`, key by key: obeyed, refused, or told as one without effect. */
+/** AirSim's `settings.json`, key by key: obeyed, refused, or reported as having no effect. */
 class SettingsFileSuite extends munit.FunSuite:
 
   private def read(text: String): SettingsFile =
@@ -33,9 +33,7 @@ class SettingsFileSuite extends munit.FunSuite:
     "Range1": {"SensorType": 5, "Enabled": true, "Pitch": -90},
     "Gps2": {"SensorType": 3, "Enabled": true}}"""
 
-  test(
-    "DefaultSensors are carried by the vehicle that is there without Vehicles, too, and by one that is added"
-  ):
+  test("the default vehicle without Vehicles, and an added one, carry the DefaultSensors"):
     val flown = bench(s"{$sensing}")
     flown.tell(
       "simAddVehicle",
@@ -56,7 +54,7 @@ class SettingsFileSuite extends munit.FunSuite:
     assert(listed.answerOf(listed.call("getLidarData", Str("Lidar1"), Str("A"))).isRight)
     assert(listed.error("getLidarData", Str("Lidar1"), Str("B")).contains("No lidar with name Lidar1"))
 
-  test("ApiServerPort is the port that is listened at, and one that is none is refused"):
+  test("ApiServerPort is the listening port, and an invalid one is refused"):
     assertEquals(read("""{"ApiServerPort": 42099}""").world.apiPort, Some(42099))
     assertEquals(read("{}").world.apiPort, None)
     assertEquals(
@@ -65,7 +63,7 @@ class SettingsFileSuite extends munit.FunSuite:
     )
     assertEquals(problem("""{"ApiServerPort": 80.5}"""), "ApiServerPort: expected a whole number, found 80.5")
 
-  test("vehicles with AutoCreate false are not there, whatever they are"):
+  test("vehicles with AutoCreate false do not exist, whatever their type"):
     val file = read("""{"Vehicles": {"A": {}, "B": {"X": 4, "AutoCreate": false},
       "P": {"VehicleType": "PX4Multirotor", "AutoCreate": false, "UseSerial": false}}}""")
     assertEquals((file.world.vehicles.map(_.name), file.notice), (Vector("A"), None))
@@ -74,7 +72,7 @@ class SettingsFileSuite extends munit.FunSuite:
       "Vehicles: expected at least one without AutoCreate false, found none"
     )
 
-  test("a camera of ComputerVision stays where it is put, by SimMode as by its type"):
+  test("a camera of ComputerVision keeps its position, by SimMode as by its type"):
     for
       text <- Seq(
         """{"SimMode": "ComputerVision"}""",
@@ -100,7 +98,7 @@ class SettingsFileSuite extends munit.FunSuite:
       rig.tell("reset")
       assertEquals(rig.now[Pose]("simGetVehiclePose", Str("")).position, Vector3r(0, 0, 0))
 
-  test("what has no effect is told in one line, by its path; what is switched off is not"):
+  test("keys without effect are reported in one line, by path; disabled parts are not"):
     val file =
       read("""{"SettingsVersion": 1.2, "SimMode": "Multirotor", "ViewMode": "Fpv", "LocalHostIp": "127.0.0.1",
       "SubWindows": [{"WindowID": 0}], "Recording": {"RecordOnMove": false}, "ClockSpeed": 1, "Wind": {"X": 1},
@@ -128,7 +126,7 @@ class SettingsFileSuite extends munit.FunSuite:
     val many = read((1 to 50).map(i => s"\"Unknown$i\": $i").mkString("{", ", ", "}"))
     assert(many.notice.get.endsWith("Unknown20 and 30 more"), many.notice)
 
-  test("a file does not open a simulator to the network; that is told"):
+  test("a file does not open a simulator to the network, and that is reported"):
     assertEquals(read("""{"LocalHostIp": "127.0.0.1"}""").notice, None)
     val open = read("""{"LocalHostIp": "0.0.0.0"}""")
     assert(clue(open.notice.get).contains("LocalHostIp (only this machine can connect, unless --listen"))
@@ -178,5 +176,5 @@ class SettingsFileSuite extends munit.FunSuite:
     assertEquals(sensors.get("Gps2"), Some(SensorKind.Gps))
     assert(!sensors.contains("gps") && sensors.contains("imu"))
 
-  test("a text that is cut says so"):
+  test("a shortened text is marked"):
     assertEquals(SettingsError.shown("a" * 121), "a" * 120 + "…")

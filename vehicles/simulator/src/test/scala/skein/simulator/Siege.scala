@@ -18,11 +18,11 @@ import skein.units.*
 import upack.{Msg, Null, Str}
 
 /** The built-in simulator besieged over loopback sockets, beside an honest client that polls a vehicle's
-  * state: fuzz by method first, then each attack on its own. Every row says how long the honest client waited
-  * while it lasted, and after the attackers had left.
+  * state: fuzzing by method first, then each attack separately. Every row states the honest client's waiting
+  * times during the attack, and after the attackers had left.
   *
-  * Three processes, since a greedy client is not in the server's: this one is the server (its workers
-  * unlimited, for endless moves hold AirSim's workers for ever, by its design) and the honest client, the
+  * Three processes, since a greedy client is not in the server's: this one is the server (with unlimited
+  * workers, since endless moves hold AirSim's workers for ever, by its design) and the honest client, the
   * attackers run in a second.
   *
   * The actor system is set as the command `serve` sets its own.
@@ -94,7 +94,7 @@ object Siege:
     if sorted.isEmpty then Double.NaN
     else sorted(math.min((quantile * sorted.length).toInt, sorted.length - 1))
 
-  /** What is alive, after a collection. */
+  /** Used memory after a garbage collection. */
   private def heapMiB(): Long =
     System.gc()
     (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20
@@ -120,7 +120,7 @@ object Siege:
     said.linesIterator.filterNot(_.startsWith("WARNING")).mkString(" ") + (if code == 0 then ""
                                                                            else s" EXIT $code")
 
-  /** Polls in a thread of its own; waits are in ms. */
+  /** Polls in a thread of its own; waiting times are in ms. */
   private final class Honest(port: Int):
     private val waits      = ConcurrentLinkedQueue[Double]()
     private val stopped    = AtomicBoolean()
@@ -138,7 +138,7 @@ object Siege:
         val _ = waits.add((System.nanoTime() - start) * 1e-6)
         Thread.sleep(5)
 
-    /** The waits since this was asked before, sorted. */
+    /** Takes the waiting times since the last call, sorted. */
     def reset(): Array[Double] =
       Iterator.continually(Option(waits.poll())).takeWhile(_.nonEmpty).flatten.toArray.sorted
 
@@ -146,7 +146,7 @@ object Siege:
       stopped.set(true)
       thread.join()
 
-/** A blocking connection. */
+/** A blocking connection of an attacker. */
 private final class Connection(port: Int):
   private val socket  = Socket(InetAddress.getLoopbackAddress, port)
   private val framer  = new Framer()
@@ -172,8 +172,8 @@ private final class Connection(port: Int):
 
   def close(): Unit = socket.close()
 
-/** The other side of [[Siege]], in a process of its own; loopback only. Arguments: attack, port, amount,
-  * seed; for the fuzz, a file that voxel grids may be written to.
+/** The attackers' process of [[Siege]]; loopback only. Arguments: attack, port, amount, seed; for the fuzz, a
+  * file that voxel grids may be written to.
   */
 object Attackers:
   def main(args: Array[String]): Unit =
@@ -185,10 +185,10 @@ object Attackers:
       case "unfinished" => many(200, port.toInt, amount.toInt)(unfinished)
       case "idle"       => many(256, port.toInt, amount.toInt)(_ => Thread.sleep(200))
       case "deaf"       => many(200, port.toInt, amount.toInt)(deaf)
-    // Leaves as a program does that is killed: with calls under way.
+    // Leaves as a killed program does: with calls in progress.
     Runtime.getRuntime.halt(0)
 
-  /** So many connections at once, each doing this again and again, and connecting again when it is closed. */
+  /** Opens `connections` connections, each of which acts repeatedly, and connects again when it is closed. */
   private def many(connections: Int, port: Int, seconds: Int)(act: Connection => Unit): Unit =
     val end  = System.nanoTime() + seconds * 1_000_000_000L
     val acts = AtomicLong()
@@ -223,7 +223,7 @@ object Attackers:
   private def deaf(connection: Connection): Unit =
     connection.send(burst)
 
-  /** 40,000 keys of equal hashes: Aa and BB have the same. */
+  /** 40,000 keys with equal hashes: those of Aa and BB are equal. */
   private lazy val collisions: Array[Byte] =
     val out  = java.io.ByteArrayOutputStream()
     val keys = Iterator.range(0, 40_000).map(i =>
@@ -253,7 +253,7 @@ object Attackers:
     connection.send(collisions)
     val _ = connection.reply()
 
-  /** 3.9 MB of a message of 4 MB. */
+  /** The first 3.9 MB of a message of 4 MB. */
   private val begun: Array[Byte] =
     val bytes = new Array[Byte](3_900_000)
     Array[Byte](
@@ -278,7 +278,6 @@ object Attackers:
     connection.send(begun)
     val _ = connection.reply()
 
-  /** The id of calls that are not counted. */
   private inline val Nudge = 1_000_000_000L
 
   private def fuzz(port: Int, calls: Int, seed: Long, file: Option[String]): Unit =
@@ -293,7 +292,7 @@ object Attackers:
         val random     = Random(seed * 1000 + lane)
         val source     = MethodFuzz.Calls(Simulation.methods, "SimpleFlight", file)
         val connection = Connection(port)
-        // Of the largest messages some 80 fit into what a server holds for all.
+        // Some 80 of the largest messages fit into a server's memory limit for all clients.
         val window = Semaphore(16)
         val mine   = AtomicLong()
         val asked  = ConcurrentHashMap[Long, String]()
@@ -311,7 +310,7 @@ object Attackers:
                   if MethodFuzz.isDefect(text) && defects.size < 20 then defects.add(text): Unit
                 window.release()
               case _ => ()
-        // Moves of its own wait, or a step of a day: both are ended.
+        // Its own moves wait, or a stepped advance of a day: both are ended.
         def nudge(): Unit =
           connection.ask(Nudge, "simPause", Seq(upack.Bool(false)))
           for name <- source.names do connection.ask(Nudge, "cancelLastTask", Seq(name))

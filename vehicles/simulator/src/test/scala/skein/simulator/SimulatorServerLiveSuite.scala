@@ -11,9 +11,7 @@ import skein.units.*
 import upack.{Bool, Float32, Int32, Msg, Str}
 import upickle.default.writeMsg
 
-/** What becomes of calls whose connection has closed, and of the port when the simulation fails; over real
-  * sockets.
-  */
+/** Calls whose connection has closed, and the port when the simulation fails; over real sockets. */
 class SimulatorServerLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("simulator-server")
 
@@ -34,12 +32,12 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
       assert(System.nanoTime() < patience, s"it never came to hold: $what")
       Thread.`yield`()
 
-  test("calls that wait when their connection closes are not run, and counted; the others' are run"):
+  test("waiting calls whose connection closes are not run, but counted; the others' are run"):
     val server                             = start(settings.copy(overload = Overload.Workers(1)))
     val honest                             = client(server)
     def call(method: String, params: Msg*) = honest.call(method, params)
     Await.result(call("enableApiControl", Bool(true), Str("")), 10.seconds)
-    // The one worker is held by a move.
+    // A move holds the only worker.
     val move = Seq(Float32(0), Float32(0), Float32(0), Float32(1), Int32(0), writeMsg(YawMode.Still), Str(""))
     val flown = call("moveByVelocity", move*)
     until("the move is under way")(server.stats.requests == 2)
@@ -57,7 +55,7 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
     Await.result(honest.close(), 10.seconds)
     Await.result(server.close(), 10.seconds): Unit
 
-  test("a simulation that fails closes its connections and its port, and says why"):
+  test("a failing simulation closes its connections and its port, and reports the reason"):
     @volatile var broken = false
     val clock: Clock     =
       () => if broken then throw IllegalStateException("no more time") else Clock.system.now()

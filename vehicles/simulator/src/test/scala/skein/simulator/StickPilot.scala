@@ -3,9 +3,8 @@ package skein.simulator
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Holds a place by the sticks of a multirotor in angle mode, from what it sees: the place by angles, the
-  * altitude by the throttle. A stick at its end is [[StickPilot.MostTiltDeg]] and
-  * [[StickPilot.MostYawRateDeg]].
+/** Holds a position with the sticks of a multirotor in angle mode: horizontally by angles, the altitude by
+  * the throttle. A stick at its end is [[StickPilot.MostTiltDeg]] and [[StickPilot.MostYawRateDeg]].
   */
 private final class StickPilot(goalNed: Vector3):
   import StickPilot.*

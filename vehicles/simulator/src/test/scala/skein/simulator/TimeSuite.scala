@@ -12,7 +12,7 @@ class TimeSuite extends munit.FunSuite:
     advance(bench)
     (bench.position(), bench.stamp())
 
-  test("a paused simulator stands still, answers getters and takes commands that wait"):
+  test("a paused simulator stands still, answers getters and accepts commands that wait"):
     val bench = Bench().hovering(-20)
     bench.tell("simPause", Bool(true))
     val before = (bench.position(), bench.stamp())
@@ -39,7 +39,7 @@ class TimeSuite extends munit.FunSuite:
       assertEquals(bench.now[Boolean]("simIsPaused"), true)
       bench.pass(0.01)
 
-  test("how time is cut into pieces does not change the flight"):
+  test("dividing time into pieces does not change the flight"):
     val whole  = flight(bench => bench.continueFor(3.0): Unit)
     val tenths = flight(bench => for _ <- 1 to 30 do bench.continueFor(0.1))
     val ran    = flight: bench =>
@@ -61,13 +61,13 @@ class TimeSuite extends munit.FunSuite:
     assertEquals(bench.result(move), Some(true))
     assertEqualsDouble(bench.simulatedS, 10.01, 1e-6)
 
-  test("time that is too long to compute at once is skipped and counted"):
+  test("time too long to compute in one call is skipped and counted"):
     val bench = Bench()
     bench.simulation.advance(Instant.ofNanos(1_000_000_000L) + Span.ofSeconds(1000))
     assertEqualsDouble(bench.simulation.behind.toSeconds, 400, 1e-6)
     assertEqualsDouble(bench.simulatedS, 600, 1e-6)
 
-  test("a long step is computed in pieces, and others are answered meanwhile"):
+  test("a long step is computed in pieces, and other calls are answered meanwhile"):
     val bench = Bench()
     bench.tell("simPause", Bool(true))
     val step = bench.continueFor(1000)
@@ -77,7 +77,7 @@ class TimeSuite extends munit.FunSuite:
     assert(bench.answeredAt(step).nonEmpty)
     assertEqualsDouble(bench.simulatedS, 1000, 1e-9)
 
-  test("readings between two steps of physics are carried on to the clock"):
+  test("readings between two steps of physics are extrapolated to the clock"):
     val bench = Bench().hovering(-20)
     bench.velocity(5, 0, 0, 10)
     bench.pass(5.001)
@@ -86,7 +86,7 @@ class TimeSuite extends munit.FunSuite:
     bench.continueFor(0.001)
     assertEqualsDouble(bench.position().x - here.x, speed * 0.001, 2e-6)
 
-  test("two runs with the same calls are the same to the last bit"):
+  test("two runs with equal calls are equal to the last bit"):
     def run(): Seq[skein.airsim.wire.KinematicsState] =
       val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
       for i <- 1 to 50 yield
@@ -96,7 +96,7 @@ class TimeSuite extends munit.FunSuite:
         bench.kinematics("Pursuer")
     assertEquals(run(), run())
 
-  test("names a vehicle's state by the empty name too"):
+  test("a vehicle's state can be read by the empty name, too"):
     val bench = Bench(Seq("Evader", "Pursuer"))
     assertEquals(bench.now[Seq[String]]("listVehicles"), Seq("Evader", "Pursuer"))
     assertEquals(bench.kinematics(""), bench.kinematics("Evader"))

@@ -15,7 +15,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
 
   private val ground = boxes(Seq.empty)
 
-  /** The header's lines, and the cells. */
+  /** Splits a file into the header's lines and the cells. */
   private def read(file: Array[Byte]): (Seq[String], Vector[Boolean]) =
     val text   = String(file, US_ASCII)
     val start  = text.indexOf("data\n") + 5
@@ -28,8 +28,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     val (header, cells) = read(VoxelGrid.render(ground, Vector3(0, 0, 0), (2, 6, 4), 1).toOption.get)
     assertEquals(header.take(2), Seq("#binvox 1", "dim 2 4 6"))
     assertEquals(cells.size, 2 * 4 * 6)
-    // x fastest, then up, then y: of four layers around z = 0 the one at the ground's height is touched by
-    // it.
+    // x fastest, then up, then y: of four layers around z = 0, the ground touches the one at its height.
     for j <- 0 until 6; k <- 0 until 4; i <- 0 until 2 do
       assertEquals(cells(i + 2 * (k + 4 * j)), k <= 2, s"$i $j $k")
 
@@ -40,7 +39,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     assert(filled.nonEmpty && filled.size < 30, s"${filled.size} cells")
     assert(filled.contains(8 + 10 * (5 + 10 * 5)))
 
-  test("the most vehicles fill a cell each and little more"):
+  test("the greatest number of vehicles fills a cell each and little more"):
     val crowd                 = boxes(Seq.tabulate(256)(i => Vector3(i % 16, i / 16, -500)))
     def cells(moment: Moment) =
       read(VoxelGrid.render(moment, Vector3(0, 0, -500), (128, 128, 128), 1).toOption.get)._2.count(identity)
@@ -63,7 +62,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     do
       assert(VoxelGrid.render(ground, Vector3.Zero, size, edge).isLeft, s"$size $edge")
 
-  folder.test("a grid is written to a new file and over an older grid, and over nothing else"): folder =>
+  folder.test("a grid is written to a new file or over an older grid, and over nothing else"): folder =>
     val grids              = GridFolder(folder)
     val grid               = VoxelGrid.render(ground, Vector3.Zero, (4, 4, 4), 1).toOption.get
     def save(name: String) = grids.file(name).exists(grids.save(_)(grid))
@@ -77,7 +76,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     Files.createSymbolicLink(folder.resolve("link.binvox"), fresh): Unit
     assert(!save("link.binvox"))
 
-  folder.test("no client writes a file elsewhere, nor of another kind, nor more than the folder may hold"):
+  folder.test("no client can write a file elsewhere, of another kind, or beyond the folder's limit"):
     folder =>
       val grids = GridFolder(folder)
       for path <- Seq(
@@ -103,7 +102,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     val said = Bench().error("simCreateVoxelGrid", SampleCalls.params("simCreateVoxelGrid")*)
     assert(said.contains("--grids"), said)
 
-  test("the most cells, each within every one of the most vehicles, are a matter of some 0.1 s"):
+  test("the greatest grid within the greatest number of vehicles takes some 0.1 s"):
     val crowd = boxes(Seq.fill(256)(Vector3.Zero))
     val begun = java.lang.management.ManagementFactory.getThreadMXBean.getCurrentThreadCpuTime
     assert(VoxelGrid.render(crowd, Vector3.Zero, (1, 1, 1), 0.004f).isRight)

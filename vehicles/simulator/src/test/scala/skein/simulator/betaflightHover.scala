@@ -5,9 +5,9 @@ import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.link.{ControlThreads, PreciseScheduler}
 
-/** A real firmware flies the simulator's vehicle: Betaflight's SITL in angle mode, with sticks that a
-  * controller of ours moves. Prints where the vehicle was, and how far it was from its place:
-  * `betaflightHover [SECONDS [SPEED]]`.
+/** Real firmware flies the simulator's vehicle: Betaflight's SITL in angle mode, with sticks that our
+  * controller moves. Prints the vehicle's track, and its distance from its position: `betaflightHover
+  * [SECONDS [SPEED]]`.
   */
 @main def betaflightHover(arguments: String*): Unit =
   given system: ActorSystem = ActorSystem("betaflight", PreciseScheduler.config)
@@ -17,7 +17,7 @@ import skein.link.{ControlThreads, PreciseScheduler}
     val firmware = Betaflight.firmware()
       .fold(reason => sys.error(s"Betaflight's SITL cannot be built here: $reason"), identity)
     require(Betaflight.arePortsFree, "another program has Betaflight's ports")
-    // As `serve` does it, when what runs is compiled.
+    // As in `serve`, once the running code is compiled.
     system.scheduler.scheduleOnce(10.seconds)(ControlThreads.lead(): Unit)(using system.dispatcher): Unit
     val flight = BetaflightFlight.fly(firmware, holdsS, speed)
     println(flight.track)

@@ -2,8 +2,8 @@ package skein.simulator
 
 import skein.units.Span
 
-/** PX4's interface in lockstep, in virtual time: how many times as fast as the clock, and whether three
-  * flights are equal to the last byte. `bench/hil/gaps.c` measures it by the clock.
+/** PX4's interface in lockstep, in virtual time: its speed relative to the clock, and whether three flights
+  * are identical to the last byte. `bench/hil/gaps.c` measures it by the clock.
   */
 @main def hilLockstep(seconds: Int): Unit =
   def round(value: Double) = math.round(value * 100) / 100.0

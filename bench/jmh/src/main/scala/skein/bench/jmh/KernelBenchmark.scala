@@ -22,17 +22,17 @@ class KernelBenchmark extends Rate:
   @TearDown
   def show(): Unit = println(f"witness, mean of the last 10 s: $witness%.4f m")
 
-  /** All candidates on one episode; its timetable is known after the first call. */
+  /** All candidates on one episode, whose timetable is computed by the first call. */
   @Benchmark
   @OperationsPerInvocation(1024 * 1200)
   def candidates(): Double = fly(Works.Candidates(1024, 1024, DelayTable.vpn, 1))
 
-  /** Every world with delays of its own. */
+  /** Every world with independent delays. */
   @Benchmark
   @OperationsPerInvocation(1024 * 1200)
   def singleWorlds(): Double = fly(Works.Candidates(1024, 1, DelayTable.vpn, 1))
 
-  /** The scalar reference, which flies any policy and any model. */
+  /** The scalar reference, which supports any policy and any model. */
   @Benchmark
   @OperationsPerInvocation(1200)
   def scalar(): Double =

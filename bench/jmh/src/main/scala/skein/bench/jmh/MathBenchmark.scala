@@ -4,8 +4,8 @@ import org.openjdk.jmh.annotations.*
 import skein.bench.{Atan2, SinCos}
 import skein.simd.LaneMath
 
-/** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions
-  * of numbers a second, on one thread.
+/** Elementary functions on SIMD floats beside `StrictMath`'s on doubles, which decide scalar flights:
+  * millions of numbers a second, on one thread.
   */
 class MathBenchmark extends Rate:
   private val numbers = Array.tabulate(1024)(i => (i - 512) / 200f)
@@ -43,7 +43,7 @@ class MathBenchmark extends Rate:
     for i <- 0 until 1024 do into(i) = StrictMath.atan2(numbers(i).toDouble, others(i).toDouble).toFloat
     witnessed()
 
-  /** It replaces its numbers, so they are copied first. */
+  /** `exp` with SIMD, in place: the numbers are copied first. */
   @Benchmark
   @OperationsPerInvocation(1024)
   def expByLanes(): Array[Float] =

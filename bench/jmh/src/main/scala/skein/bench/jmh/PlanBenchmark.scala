@@ -4,8 +4,8 @@ import org.openjdk.jmh.annotations.*
 import skein.bench.PlanBench
 import skein.planning.*
 
-/** How many million manoeuvres does the planner draw, fly, price and search upon in a second, on one thread?
-  * Each is 2 s of pursuer and evader in 20 steps.
+/** How many million manoeuvres does the planner sample, simulate, evaluate and optimise in a second, on one
+  * thread? Each is 2 s of pursuer and evader in 20 steps.
   */
 class PlanBenchmark extends Rate:
   private val problem         = PlanBench.problem(behaviours = 1)

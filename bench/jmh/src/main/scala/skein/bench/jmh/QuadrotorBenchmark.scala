@@ -5,8 +5,8 @@ import skein.lanes.plant.LaneQuadrotors
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 
-/** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? By
-  * lanes, `LaneQuadrotors.VEHICLES` of them side by side, and one alone by the scalar reference.
+/** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? With
+  * SIMD, `LaneQuadrotors.VEHICLES` of them side by side, and a single one by the scalar reference.
   */
 class QuadrotorBenchmark extends Rate:
   private var kernel: LaneQuadrotors = null

@@ -3,7 +3,7 @@ package skein.bench.jmh
 import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 
-/** A rate in millions a second, on one thread. */
+/** Settings of all benchmarks: a rate in millions a second, on one thread. */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.Throughput))
 @OutputTimeUnit(TimeUnit.MICROSECONDS)

@@ -21,7 +21,7 @@ public final class Agent {
     instrumentation.addTransformer(new Rewriter(List.copyOf(prefixes), Agent::failed));
   }
 
-  /** The first class that could not be rewritten and why, or null. */
+  /** Returns the first class that could not be rewritten and why, or null. */
   public static String failure() {
     return failure;
   }

@@ -3,8 +3,8 @@ package skein.vtime.agent;
 import java.util.random.RandomGenerator;
 
 /**
- * What rewritten code on a thread asks instead of the JVM: time, randomness, and leave to block or to go
- * elsewhere.
+ * Answers rewritten code on a thread in place of the JVM: time, randomness, and permission to block or to use
+ * other threads.
  */
 public interface Environment {
 
@@ -12,7 +12,8 @@ public interface Environment {
   long nanoTime();
 
   /**
-   * Source of every draw that would have come from {@code ThreadLocalRandom}, {@code Math} or {@code UUID}.
+   * Source of every draw that rewritten code makes from {@code ThreadLocalRandom}, {@code Math} or {@code
+   * UUID}.
    */
   RandomGenerator random();
 

@@ -4,7 +4,7 @@ import java.util.Random;
 import java.util.function.Supplier;
 
 /**
- * Draws from the environment of the thread that asks; without one, or once a seed was set, as any
+ * Draws from the calling thread's environment; without one, or once a seed was set, like any
  * {@code Random}. For generators that outlive runs.
  */
 final class GovernedRandom extends Random {
@@ -37,7 +37,7 @@ final class GovernedRandom extends Random {
     return environment == null ? super.next(bits) : environment.random().nextInt() >>> (32 - bits);
   }
 
-  /** The superclass keeps every second one, for whoever asks next. */
+  /** Overridden because the superclass keeps every second value for the next caller. */
   @Override
   public double nextGaussian() {
     var environment = environment();

@@ -19,10 +19,10 @@ import java.util.concurrent.TimeUnit;
 import java.util.random.RandomGenerator;
 
 /**
- * Where rewritten call sites lead. A thread that has an {@link Environment} is answered by it; any other
- * thread gets what the JVM would have said, so live systems in the same JVM are undisturbed.
+ * The targets of rewritten call sites. A thread that has an {@link Environment} is answered by it; any other
+ * thread gets the JVM's answer, so live systems in this JVM are unaffected.
  *
- * <p>Public only because rewritten classes call it; {@link Rewriter} lists which call becomes which method.
+ * <p>Public only because rewritten classes call it; {@link Rewriter} lists the method for each call.
  */
 public final class Redirect {
   private static final ThreadLocal<Environment> ENVIRONMENT = new ThreadLocal<>();
@@ -55,7 +55,9 @@ public final class Redirect {
     return environment == null ? Instant.now() : instant(environment);
   }
 
-  /** A clock that asks the thread that reads it; its zone is the machine's or, in an environment, UTC. */
+  /**
+   * A clock that reads the time of the calling thread; its zone is the machine's or, in an environment, UTC.
+   */
   public static Clock clock() {
     return clock(ENVIRONMENT.get() == null ? ZoneId.systemDefault() : ZoneOffset.UTC);
   }
@@ -108,7 +110,6 @@ public final class Redirect {
     return ZonedDateTime.now(clock(zone));
   }
 
-  /** For {@code Date::new}. */
   public static Date newDate() {
     return new Date(currentTimeMillis());
   }
@@ -118,23 +119,21 @@ public final class Redirect {
     return Instant.ofEpochSecond(Math.floorDiv(nanos, 1_000_000_000L), Math.floorMod(nanos, 1_000_000_000L));
   }
 
-  /** What is drawn from in the place of a generator. */
+  /** The generator to draw from in place of {@code real}. */
   public static RandomGenerator random(RandomGenerator real) {
     var environment = ENVIRONMENT.get();
     return environment == null ? real : environment.random();
   }
 
-  /** In place of the one that a generator made without any would choose. */
+  /** A seed, in place of the one that a generator made without a seed would choose. */
   public static long seed() {
     return random(ThreadLocalRandom.current()).nextLong();
   }
 
-  /** For {@code Random::new}. */
   public static Random newRandom() {
     return new Random(seed());
   }
 
-  /** For {@code SplittableRandom::new}. */
   public static SplittableRandom newSplittableRandom() {
     return new SplittableRandom(seed());
   }
@@ -144,7 +143,8 @@ public final class Redirect {
   }
 
   /**
-   * In place of what Scala's {@code Random} without a seed draws from: its one instance outlives every run.
+   * Replaces the generator behind Scala's {@code Random} without a seed: its only instance outlives every
+   * run.
    */
   public static Random governed(Random real) {
     return new GovernedRandom(Redirect::environment);
@@ -155,7 +155,7 @@ public final class Redirect {
     return environment == null ? Math.random() : environment.random().nextDouble();
   }
 
-  /** In place of an identity's hash code, which differs from run to run; the caller keeps it. */
+  /** Replaces an identity hash code, which differs from run to run; the caller stores it. */
   public static int hashCodeOf(Object object) {
     var environment = ENVIRONMENT.get();
     return environment == null ? System.identityHashCode(object) : environment.random().nextInt() | 1;

@@ -7,7 +7,7 @@ import java.util.Objects;
 import java.util.function.LongSupplier;
 import java.util.function.Supplier;
 
-/** The system's clock as the redirected calls tell it to the thread that reads it. */
+/** The system's clock, as the redirected calls report it to the reading thread. */
 final class RedirectedClock extends Clock {
   private final ZoneId zone;
   private final Supplier<Instant> instant;

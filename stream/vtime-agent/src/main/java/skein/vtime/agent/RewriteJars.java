@@ -15,8 +15,8 @@ import java.util.zip.ZipInputStream;
 import java.util.zip.ZipOutputStream;
 
 /**
- * Rewrites the jars of a program once, in place, as {@link Agent} would when it runs: such a program needs no
- * agent, beside which a JVM cannot use an ahead-of-time cache.
+ * Rewrites the jars of a program once, in place, as {@link Agent} would at run time: such a program needs no
+ * agent, which would prevent a JVM from using an ahead-of-time cache.
  */
 public final class RewriteJars {
   private static final String AGENT = "skein/vtime/agent/Agent.class";
@@ -24,13 +24,17 @@ public final class RewriteJars {
 
   private RewriteJars() {}
 
-  /** @param folder all jars of the program, this one among them, which receives a class */
+  /**
+   * Runs the rewriting.
+   *
+   * @param folder all jars of the program, including this one, which receives a class
+   */
   public static void main(String... folder) throws IOException {
     List<Path> jars;
     try (Stream<Path> files = Files.list(Path.of(folder[0]))) {
       jars = files.filter(file -> file.toString().endsWith(".jar")).sorted().toList();
     }
-    // Frames are computed anew, for which it is asked what extends what.
+    // Stack map frames are recomputed, which needs the class hierarchy.
     try (var classes = new URLClassLoader(jars.stream().map(RewriteJars::url).toArray(URL[]::new))) {
       var rewriter = new Rewriter(Rewriter.PACKAGES, RewriteJars::fail);
       for (var jar : jars) if (holdsAny(jar)) rewrite(jar, rewriter, classes);

@@ -34,12 +34,12 @@ import java.util.Set;
 import java.util.function.BiConsumer;
 import java.util.random.RandomGenerator;
 
-/** Leads the calls listed here, inside the given packages, to {@link Redirect}. */
+/** Redirects the calls listed here, inside the given packages, to {@link Redirect}. */
 final class Rewriter implements ClassFileTransformer {
   private static final ClassDesc REDIRECT = Redirect.class.describeConstable().orElseThrow();
   private static final ClassDesc DRAWS = ClassDesc.of("skein.vtime.agent.Draws");
 
-  /** The class file of {@link #DRAWS}, which no source has. */
+  /** The class file of {@link #DRAWS}, which has no source. */
   static final byte[] DRAWS_CLASS;
 
   private static final ClassDesc RANDOM = ClassDesc.of("java.util.concurrent.ThreadLocalRandom");
@@ -50,13 +50,15 @@ final class Rewriter implements ClassFileTransformer {
   private static final ClassDesc TIME_UNIT = ClassDesc.of("java.util.concurrent.TimeUnit");
   private static final ClassDesc GENERATOR = ClassDesc.of("java.util.random.RandomGenerator");
 
-  /** A method as a call site names it: {@code owner.name descriptor}. */
+  /** Methods as call sites name them: {@code owner.name descriptor}. */
   private static final Map<String, Target> CALLS = new HashMap<>();
 
-  /** A constructor, named in the same way. */
+  /** Constructors, named by owner and descriptor. */
   private static final Map<String, Making> MAKINGS = new HashMap<>();
 
-  /** Handing a task to an execution context stays as it is, but the environment is asked first. */
+  /**
+   * Methods that hand a task to an execution context: unchanged, but the environment must permit it first.
+   */
   private static final Set<String> SUBMISSIONS =
       Set.of(
           "scala/concurrent/ExecutionContext.execute(Ljava/lang/Runnable;)V",
@@ -67,21 +69,16 @@ final class Rewriter implements ClassFileTransformer {
   private static final String SUPERVISOR_NAME =
       "org/apache/pekko/stream/impl/StreamSupervisor$.nextName()Ljava/lang/String;";
 
-  /**
-   * A shared kill switch tells its streams in the order of these objects' hash codes, which are their
-   * identities'.
-   */
+  /** A shared kill switch calls its streams in the order of these objects' identity hash codes. */
   private static final String KILL_SWITCH_LISTENER = "org/apache/pekko/stream/TerminationSignal$Listener";
 
-  /** Scala's generator: made without a seed, it makes one of Java's. */
+  /** Scala's generator: without a seed it makes one of Java's. */
   private static final String SCALA_RANDOM = "scala/util/Random";
   private static final String UNSEEDED = "java/util/Random.<init>()V";
 
   private record Target(ClassDesc owner, String name, MethodTypeDesc type) {}
 
-  /**
-   * What tells the parameter of the other constructor, and what makes the object where a reference stands.
-   */
+  /** The parameter of the replacing constructor, and the factory for method references. */
   private record Making(Target parameter, Target factory) {}
 
   static {
@@ -121,7 +118,8 @@ final class Rewriter implements ClassFileTransformer {
   }
 
   /**
-   * Has a class's constructor without parameters, of which time or chance is one, be that of a {@code long}.
+   * Replaces a class's constructor without parameters, which depends on time or chance, by that with a {@code
+   * long}.
    */
   private static void redirectMaking(String owner, String parameter, String factory) {
     var made = ClassDesc.of(owner);
@@ -133,8 +131,8 @@ final class Rewriter implements ClassFileTransformer {
   }
 
   /**
-   * {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it: by a static
-   * method of a class that is made here, since all do the same.
+   * {@code ThreadLocalRandom} is final, so each draw from it is replaced instead of the generator: by a
+   * static method of a generated class.
    *
    * @return that class, {@link #DRAWS}
    */
@@ -153,7 +151,7 @@ final class Rewriter implements ClassFileTransformer {
     });
   }
 
-  /** Defines the class that draws lead to, in this JVM. */
+  /** Defines the class of the redirected draws in this JVM. */
   static void defineDraws() {
     try {
       MethodHandles.lookup().defineClass(DRAWS_CLASS);
@@ -177,7 +175,7 @@ final class Rewriter implements ClassFileTransformer {
   private static final ClassDesc SCHEDULER = ClassDesc.of("org.apache.pekko.actor.Scheduler");
   private static final ClassDesc SYSTEM = ClassDesc.of("org.apache.pekko.actor.ActorSystemImpl");
 
-  /** Where every message to an actor passes, on the sender's thread. */
+  /** The classes through which every message to an actor passes, on the sender's thread. */
   private static final Set<String> CELLS =
       Set.of("org/apache/pekko/actor/ActorCell", "org/apache/pekko/actor/UnstartedCell");
   private static final Set<String> DELIVERIES =
@@ -185,7 +183,6 @@ final class Rewriter implements ClassFileTransformer {
           "sendMessage(Lorg/apache/pekko/dispatch/Envelope;)V",
           "sendSystemMessage(Lorg/apache/pekko/dispatch/sysmsg/SystemMessage;)V");
 
-  /** Packages that are always rewritten. */
   static final List<String> PACKAGES = List.of("org/apache/pekko/", "scala/concurrent/");
 
   private final List<String> packages;
@@ -193,7 +190,7 @@ final class Rewriter implements ClassFileTransformer {
 
   /**
    * @param packages internal names such as {@code org/apache/pekko/}; classes below them are rewritten
-   * @param failed told of a class that could not be rewritten, and why
+   * @param failed called with a class that could not be rewritten, and the reason
    */
   Rewriter(List<String> packages, BiConsumer<String, Throwable> failed) {
     this.packages = packages;
@@ -219,14 +216,14 @@ final class Rewriter implements ClassFileTransformer {
       if (isListener) transform = transform.andThen(hashed(model));
       return classFile.transformClass(model, transform);
     } catch (Throwable failure) {
-      // The JVM swallows what a transformer throws and loads the class as it was, which would read the wrong
+      // The JVM ignores a transformer's exceptions and loads the class unchanged, which would read the wrong
       // clock.
       failed.accept(name, failure);
       return null;
     }
   }
 
-  /** Gives a class a hash code that is asked of {@link Redirect#hashCodeOf} once and then kept. */
+  /** Gives a class a hash code that is read from {@link Redirect#hashCodeOf} once and then kept. */
   private static ClassTransform hashed(ClassModel model) {
     var name = model.thisClass().asSymbol();
     var type = MethodTypeDesc.of(CD_int);
@@ -248,7 +245,7 @@ final class Rewriter implements ClassFileTransformer {
                     }));
   }
 
-  /** Has each delivery to an actor first show the system's scheduler to {@link Redirect#delivered}. */
+  /** Makes each delivery to an actor first pass the system's scheduler to {@link Redirect#delivered}. */
   private static ClassTransform guarded(ClassModel cell) {
     var name = cell.thisClass().asSymbol();
     if (cell.methods().stream().filter(Rewriter::isDelivery).count() != DELIVERIES.size())
@@ -297,7 +294,10 @@ final class Rewriter implements ClassFileTransformer {
     }
   }
 
-  /** A method reference such as {@code System::nanoTime} is an argument of the call that makes its lambda. */
+  /**
+   * Rewrites method references such as {@code System::nanoTime}, which are arguments of the call that makes
+   * the lambda.
+   */
   private static void rewriteReferences(CodeBuilder code, InvokeDynamicInstruction call) {
     var arguments = call.bootstrapArgs().stream().map(Rewriter::rewriteReference).toList();
     if (arguments.equals(call.bootstrapArgs())) {
@@ -317,7 +317,7 @@ final class Rewriter implements ClassFileTransformer {
     return MethodHandleDesc.ofMethod(Kind.STATIC, target.owner(), target.name(), target.type());
   }
 
-  /** Replaces the generator that was just made. */
+  /** Replaces a Scala generator directly after its creation. */
   private static void rewriteScalaRandom(CodeBuilder code, CodeElement element) {
     code.with(element);
     if (element instanceof InvokeInstruction call && UNSEEDED.equals(key(call.method())))

@@ -6,7 +6,7 @@ import java.util.SplittableRandom;
 import java.util.function.LongSupplier;
 import java.util.function.Supplier;
 
-/** References to methods and constructors, which in Scala would be compiled to lambdas with calls. */
+/** References to methods and constructors, which Scala would compile to lambdas with calls. */
 final class References {
   private References() {}
 

@@ -10,9 +10,9 @@ import scala.concurrent.duration.*
 import scala.util.{Random, Try}
 import skein.vtime.{VirtualTime, VirtualTimeException}
 
-/** Reads every clock, draws from every source and sleeps in every way that the agent redirects; run with this
-  * package named to it. Prints clocks, draws, the draws of another run, and sleeps, with bars between, and
-  * semicolons in them.
+/** Reads every clock, draws from every source and sleeps in every way that the agent redirects; the agent
+  * must be given this package. Prints clocks, draws, the draws of another run, and sleeps, separated by bars,
+  * with semicolons between values.
   */
 @main def readEverything(): Unit =
   val tokyo = ZoneId.of("Asia/Tokyo")

@@ -4,7 +4,7 @@ import skein.units.Instant
 import upickle.default.ReadWriter
 import upickle.implicits.serializeDefaults
 
-/** What a car's pedals, wheel and gear lever do. Throttle and steering −1 to 1, brake 0 to 1; `manual_gear`
+/** A car's pedals, steering wheel and gear lever. Throttle and steering −1 to 1, brake 0 to 1; `manual_gear`
   * counts only with `is_manual_gear`, −1 is reverse.
   */
 @serializeDefaults(true)
@@ -18,8 +18,8 @@ final private[skein] case class CarControls(
     gear_immediate: Boolean = true
 ) derives ReadWriter
 
-/** Speed along the heading in m/s, negative backwards; the engine's turns a minute. */
-/** Of a camera that is no vehicle; Cosys-AirSim's. */
+/** Speed along the heading in m/s, negative in reverse; the engine's speed in turns a minute. */
+/** The state of a camera rig that is no vehicle; only in Cosys-AirSim. */
 final private[skein] case class ComputerVisionState(kinematics_estimated: KinematicsState, timestamp: Instant)
     derives ReadWriter
 

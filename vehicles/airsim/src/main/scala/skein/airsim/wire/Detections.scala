@@ -2,7 +2,7 @@ package skein.airsim.wire
 
 import upickle.default.ReadWriter
 
-/** An object that a camera sees.
+/** An object in a camera's view.
   *
   * @param box2D around it in the image, pixels from the upper left corner
   * @param box3D around it in its own frame, m

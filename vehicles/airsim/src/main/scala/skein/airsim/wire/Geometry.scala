@@ -12,7 +12,7 @@ private[skein] object Vector3r:
 
   def apply(v: Vector3): Vector3r = Vector3r(v.x.toFloat, v.y.toFloat, v.z.toFloat)
 
-/** AirSim's rotation from body FRD to NED. */
+/** AirSim's quaternion: the rotation from body FRD to NED. */
 final private[skein] case class Quaternionr(w_val: Float, x_val: Float, y_val: Float, z_val: Float)
     derives ReadWriter:
   def toQuaternion: Quaternion = Quaternion(w_val, x_val, y_val, z_val)
@@ -20,7 +20,7 @@ final private[skein] case class Quaternionr(w_val: Float, x_val: Float, y_val: F
 private[skein] object Quaternionr:
   def apply(q: Quaternion): Quaternionr = Quaternionr(q.w.toFloat, q.x.toFloat, q.y.toFloat, q.z.toFloat)
 
-/** Position in m, from the vehicle's own start, NED. */
+/** A pose: position in m, from the vehicle's own start, NED. */
 final private[skein] case class Pose(position: Vector3r, orientation: Quaternionr) derives ReadWriter
 
 /** Degrees and metres above sea level; latitude and longitude are 64-bit on the wire. */

@@ -6,8 +6,8 @@ import upack.{Binary, Msg, Str}
 import upickle.default.{ReadWriter, writeMsg}
 import upickle.implicits.serializeDefaults
 
-/** What an image is asked for; `image_type` is an [[ImageType]]'s number. Of Cosys-AirSim's further key
-  * nothing is asked, and its server does without.
+/** A request for one image; `image_type` is an [[ImageType]]'s number. Cosys-AirSim's additional key is left
+  * out; its server does not need it.
   */
 final private[skein] case class ImageRequest(
     camera_name: String,
@@ -16,13 +16,13 @@ final private[skein] case class ImageRequest(
     compress: Boolean
 ) derives ReadWriter
 
-/** Kinds of images by AirSim's numbers. */
+/** Kinds of images; the ordinals are AirSim's numbers. */
 private[skein] enum ImageType:
   case Scene, DepthPlanar, DepthPerspective, DepthVis, DisparityNormalized, Segmentation, SurfaceNormals,
     Infrared,
     OpticalFlow, OpticalFlowVis
 
-/** An image.
+/** One image of an answer.
   *
   * @param image_data_uint8 a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from
   *   the top, without gaps; empty if `pixels_as_float`
@@ -48,7 +48,9 @@ final private[skein] case class ImageResponse(
 
 private[skein] object ImageResponse:
 
-  /** The answer to `simGetImages`, keys in AirSim's order. Bytes are sent from the arrays they stand in. */
+  /** Encodes the answer to `simGetImages`, keys in AirSim's order. Bytes are sent from their arrays, without
+    * a copy.
+    */
   def encode(images: Seq[ImageResponse]): Encoded = MessageWriter.encode: out =>
     out.array(images.size)
     images.foreach(write(out, _))

@@ -4,8 +4,8 @@ import skein.units.Instant
 import upickle.default.ReadWriter
 import upickle.implicits.serializeDefaults
 
-/** What a client of ours reads of `getMultirotorState`; further keys, which differ between AirSim and its
-  * forks, are passed over.
+/** The part of `getMultirotorState`'s answer that our client reads; further keys, which differ between AirSim
+  * and its forks, are skipped.
   */
 final private[skein] case class MultirotorReading(
     kinematics_estimated: KinematicsState,

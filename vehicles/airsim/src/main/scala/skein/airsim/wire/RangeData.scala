@@ -6,12 +6,12 @@ import upack.Str
 import upickle.default.{ReadWriter, writeMsg}
 import upickle.implicits.serializeDefaults
 
-/** One scan.
+/** One lidar scan.
   *
-  * @param time_stamp when it was taken, on the simulator's clock
+  * @param time_stamp of the scan, on the simulator's clock
   * @param point_cloud x, y, z of each point, m, in the frame that the lidar's settings name
   * @param pose of the lidar, in its vehicle's frame
-  * @param segmentation one id for each point; Cosys-AirSim sends names instead, which are passed over
+  * @param segmentation one id for each point; Cosys-AirSim sends names instead, which are skipped
   */
 @serializeDefaults(true)
 final private[skein] case class LidarData(
@@ -22,7 +22,7 @@ final private[skein] case class LidarData(
 ) derives ReadWriter
 
 private[skein] object LidarData:
-  /** The answer to `getLidarData`, keys in AirSim's order. */
+  /** Encodes the answer to `getLidarData`, keys in AirSim's order. */
   def encode(scan: LidarData): Encoded = MessageWriter.encode: out =>
     out.map(4)
     out.value(Str("time_stamp"))

@@ -3,7 +3,7 @@ package skein.airsim.wire
 import java.nio.charset.StandardCharsets.UTF_8
 import upickle.default.{Reader, SimpleReader}
 
-/** A string that may have come as MessagePack str or bin: old clients send the latter. */
+/** A string received as MessagePack str or bin; old clients send the latter. */
 final private[skein] case class Text(value: String)
 
 private[skein] object Text:

@@ -10,5 +10,4 @@ import upickle.implicits.serializeDefaults
 final private[skein] case class YawMode(is_rate: Boolean = true, yaw_or_rate: Float = 0) derives ReadWriter
 
 private[skein] object YawMode:
-  /** Keep the yaw: rate zero. */
   val Still: YawMode = YawMode()

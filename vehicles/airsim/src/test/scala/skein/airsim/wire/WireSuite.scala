@@ -9,10 +9,10 @@ import upack.{Int32, Obj, Str, UInt64}
 import upack.Binary
 import upickle.default.{Writer, readBinary, writeMsg}
 
-/** Our bytes, read by another library. */
+/** Our encodings, read by an independent library. */
 class WireSuite extends munit.FunSuite:
 
-  /** As the server writes it: behind the reply's header of four bytes. */
+  /** A value's bytes in the server's encoding, after the reply's header of four bytes. */
   private def bytes[A: Writer](value: A): Array[Byte] =
     val writer = new MessageWriter
     writer.reply(0, Right(writeMsg(value)))
@@ -71,7 +71,7 @@ class WireSuite extends munit.FunSuite:
     )
     assertEquals(read(state)("timestamp").asIntegerValue.asLong, at.toNanos)
 
-  test("a client reads what it needs of a state and passes over the rest, as forks send more"):
+  test("a client reads the keys it needs of a state and skips additional ones, which forks send"):
     val sent = writeMsg(state).obj
     sent(Str("ready")) = upack.True
     assertEquals(readBinary[MultirotorReading](writeMsg(Obj(sent))), MultirotorReading(kinematics, at, 1))
@@ -87,7 +87,7 @@ class WireSuite extends munit.FunSuite:
     )
     assertEquals(readBinary[Instant](Int32(5)), Instant.ofNanos(5))
 
-  test("a yaw mode is written whole and read with missing or more keys"):
+  test("a yaw mode is written completely and read with missing or additional keys"):
     assertEquals(read(YawMode()).keySet, Set("is_rate", "yaw_or_rate"))
     assertEquals(
       readBinary[YawMode](Obj(Str("yaw_or_rate") -> Int32(90), Str("x") -> Int32(0))),
@@ -115,7 +115,7 @@ class WireSuite extends munit.FunSuite:
     ImageResponse(image_data_float = Array(1.5f, 65504f, 0.1f), pixels_as_float = true, width = 3, height = 1)
   )
 
-  test("images come in AirSim's shape: bytes are binary, floats an array of 32-bit ones, either is empty"):
+  test("images have AirSim's form: bytes are binary, floats an array of 32-bit ones, either is empty"):
     val maps = MessagePack.newDefaultUnpacker(sent(ImageResponse.encode(images))).unpackValue().asArrayValue
     val rgb  = maps.get(0).asMapValue.entrySet.asScala.toSeq
     assertEquals(
@@ -138,7 +138,7 @@ class WireSuite extends munit.FunSuite:
       Seq(1.5f, 65504f, 0.1f)
     )
 
-  test("a client of ours reads images and scans back, also where keys are missing or more"):
+  test("our client reads images and scans back, also with missing or additional keys"):
     val read = readBinary[Seq[ImageResponse]](sent(ImageResponse.encode(images)))
     assertEquals(read.map(_.image_data_uint8.toSeq), images.map(_.image_data_uint8.toSeq))
     assertEquals(read.map(_.image_data_float.toSeq), images.map(_.image_data_float.toSeq))
@@ -155,7 +155,7 @@ class WireSuite extends munit.FunSuite:
     assertEquals((back.time_stamp, back.pose), (scan.time_stamp, scan.pose))
     assertEquals((back.point_cloud.toSeq, back.segmentation.toSeq), (Seq(1f, -2f, 3f), Seq(42)))
 
-  test("an image is sent from the array it stands in, without a copy"):
+  test("an image is sent from its own array, without a copy"):
     val drawn   = pixels.clone
     val encoded = ImageResponse.encode(Seq(ImageResponse(drawn, width = 100, height = 133))).bytes
     drawn(20_000) = 99

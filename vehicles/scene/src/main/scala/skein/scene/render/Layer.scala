@@ -2,9 +2,9 @@ package skein.scene.render
 
 import skein.scene.Solid
 
-/** Something drawn of what is seen. */
+/** One image, drawn from the faces visible in a view. */
 private[render] trait Layer:
-  /** This face, or [[Layer.Sky]], is seen in these pixels of a row. */
+  /** Draws pixels of a row in which this face, or [[Layer.Sky]], is visible. */
   def fill(face: Int, row: Int, from: Int, until: Int): Unit
 
 private[render] object Layer:
@@ -20,7 +20,7 @@ private[render] object Layer:
     def fill(face: Int, row: Int, from: Int, until: Int): Unit =
       paint(bytes, (row * view.width + from) * 3, until - from, if face == Sky then sky else colours(face))
 
-  /** The same in the faces' own colours, with what is painted on them. */
+  /** The faces' own colours and painted patterns; three bytes a pixel: blue, green, red. */
   final class Lit(view: View, surfaces: Surfaces, sky: Int) extends Layer:
     private val flat = Flat(view, surfaces, sky, (face, _) => face.rgb)
 
@@ -31,7 +31,9 @@ private[render] object Layer:
       if pattern == null then flat.fill(face, row, from, until)
       else paintPattern(pattern, face, row, from, until)
 
-    /** A place on the plate is c + p/i, where p is linear on the image and i the inverse depth. */
+    /** Paints a pattern. A position on the plate is c + p/i, where p is linear on the image and i the inverse
+      * depth.
+      */
     private def paintPattern(pattern: Solid.Pattern, face: Int, row: Int, from: Int, until: Int): Unit =
       val shade    = surfaces.faces(face).rgb
       val toCamera = view.place.position - pattern.origin
@@ -59,7 +61,7 @@ private[render] object Layer:
 
     private inline def cell(at: Double): Int = math.max(0, math.min(Cells - 1, at.toInt))
 
-  /** Metres along the camera's axis. */
+  /** Depth along the camera's axis, m, one number a pixel. */
   final class Planar(view: View, surfaces: Surfaces, beyond: Float) extends Layer:
     val metres: Array[Float] = new Array[Float](view.width * view.height)
 
@@ -73,7 +75,7 @@ private[render] object Layer:
           metres(start + from + i) = 1f / (base + slope * i)
           i += 1
 
-  /** Metres from the camera. */
+  /** Distance from the camera, m, one number a pixel. */
   final class Perspective(view: View, surfaces: Surfaces, beyond: Float) extends Layer:
     val metres: Array[Float] = new Array[Float](view.width * view.height)
 
@@ -94,7 +96,7 @@ private[render] object Layer:
             math.sqrt((upright + across(from + i)).toDouble).toFloat / (base + slope * i)
           i += 1
 
-  /** The pixels that each item shows: the least box around them. */
+  /** The bounding box of the pixels that show each item. */
   final class Extents(surfaces: Surfaces, items: Int) extends Layer:
     val left: Array[Int]   = Array.fill(items)(Int.MaxValue)
     val top: Array[Int]    = Array.fill(items)(Int.MaxValue)
@@ -111,19 +113,17 @@ private[render] object Layer:
 
   private val Cells = skein.scene.AprilTag.Cells
 
-  /** Of a tag's black cells, 0xrrggbb. */
+  /** Colour of a tag's black cells, 0xrrggbb. */
   private val Ink = 0x0a0a0a
 
-  /** Inverse depth at the middles of a row's pixels, from `from` on: what it changes by a pixel, and its
-    * first.
-    */
+  /** Inverse depth at the middle of a row's pixel `from`, and its change from pixel to pixel. */
   private def line(surfaces: Surfaces, face: Int, row: Int, from: Int): (Float, Float) =
     val slope = surfaces.a(face)
     (slope.toFloat, (surfaces.c(face) + surfaces.b(face) * (row + 0.5) + slope * (from + 0.5)).toFloat)
 
   private def dot(a: skein.units.Vector3, b: skein.units.Vector3) = a.x * b.x + a.y * b.y + a.z * b.z
 
-  /** Writes a colour into so many pixels: some by hand, then what is there as often again. */
+  /** Fills `pixels` pixels with a colour: the first ones one by one, then by copies of doubling length. */
   private def paint(bytes: Array[Byte], at: Int, pixels: Int, rgb: Int): Unit =
     val blue   = rgb.toByte
     val green  = (rgb >> 8).toByte

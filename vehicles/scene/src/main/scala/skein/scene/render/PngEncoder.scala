@@ -5,9 +5,9 @@ import java.nio.ByteBuffer
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** PNG files of images of few colours, fast, and the same bytes on every machine: each pixel less the one
-  * above it, in one deflate block of fixed codes whose only matches are runs. What is as in the row above,
-  * most of a drawn image, is found by comparing arrays.
+/** PNG files of images of few colours, fast, with identical bytes on every machine: each pixel minus the one
+  * above it, in one deflate block of fixed codes whose only matches are runs. Pixels equal to the row above,
+  * most of a drawn image, are found by comparing arrays.
   */
 object PngEncoder:
 
@@ -109,7 +109,9 @@ object PngEncoder:
       sum2 = (sum2 + (count - 1) * sum1) % Adler
       repeat(count - 1, distance = 1)
 
-    /** As many bytes again as stand this far back, which are 1 or 3. Fewer than 3 bytes are no match. */
+    /** Writes a copy of `count` bytes from `distance` bytes back, 1 or 3. Fewer than 3 bytes are written as
+      * literals.
+      */
     private def repeat(count: Int, distance: Int): Unit =
       var left = count
       while left > 0 do
@@ -125,7 +127,7 @@ object PngEncoder:
           put(if distance == 1 then 0 else 8, 5)
         left -= length
 
-    /** Bits, the lowest first. */
+    /** Writes the lowest `count` bits of `value`, lowest bit first. */
     private def put(value: Int, count: Int): Unit =
       bits |= value.toLong << held
       held += count
@@ -152,7 +154,7 @@ object PngEncoder:
   private val LengthCodeOf =
     Array.tabulate(LongestMatch + 1)(length => LengthBase.lastIndexWhere(_ <= length))
 
-  /** RFC 1951, 3.2.6; codes go out with their highest bit first. */
+  /** Code lengths of RFC 1951, 3.2.6; codes are written with their highest bit first. */
   private val LiteralBits =
     Array.tabulate(288)(i => if i < 144 then 8 else if i < 256 then 9 else if i < 280 then 7 else 8)
   private val LiteralCodes = Array.tabulate(288): i =>

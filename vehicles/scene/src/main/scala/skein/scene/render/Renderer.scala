@@ -3,14 +3,14 @@ package skein.scene.render
 import skein.scene.{Item, Moment, Solid}
 import skein.units.Vector3
 
-/** Draws what a camera sees of a moment, in one pass for all kinds of images. Flat colours in one light: no
-  * shadows, no haze, no lens. Deterministic: the same moment and view give the same bytes on every machine,
-  * as only additions, products, quotients and square roots of floating-point numbers decide them. Cost of
-  * 1280 × 720 with 60 boxes: below 1.5 ms of one core for [[Kind.Scene]].
+/** Draws a camera's view of a moment, in one pass for all kinds of images. Flat colours in one light: no
+  * shadows, no haze, no lens. Deterministic: equal moments and views give equal bytes on every machine, as
+  * only additions, products, quotients and square roots of floating-point numbers decide them. Cost of 1280 ×
+  * 720 with 60 boxes: below 1.5 ms of one core for [[Kind.Scene]].
   */
 object Renderer:
 
-  /** @param except an item that is not drawn: who bears the camera
+  /** @param except an item that is not drawn: the camera's carrier
     * @param idOf each item's id for segmentation, 0 to 255
     */
   def draw(
@@ -27,7 +27,7 @@ object Renderer:
     Sweep(view, surfaces).run(layers.values.toArray)
     kinds.iterator.map(kind => kind -> imageOf(kind, view, layers(kind.drawnAs))).toMap
 
-  /** The items of which something is seen, each with the least box around its pixels.
+  /** The visible items, each with the bounding box of its pixels.
     *
     * @param except an item that is not drawn
     */
@@ -80,13 +80,13 @@ object Renderer:
       i += 1
     bytes
 
-  /** North, east and up from −1 to 1 as red, green and blue. */
+  /** A face's normal as a colour: red, green and blue are north, east and up, from −1 to 1. */
   private def normalRgb(face: Solid.Face): Int =
     def channel(value: Double) = ((value + 1) * 127.5 + 0.5).toInt
     channel(face.nx) << 16 | channel(face.ny) << 8 | channel(-face.nz)
 
-  /** A square around the place below the camera, as far as counts. Of a camera that stands on the ground it
-    * lies by a hair below it: seen from its edge it would be nothing, and the sky begin at one's feet.
+  /** A square of ground below the camera, up to the greatest visible distance. For a camera on the ground it
+    * lies slightly lower: seen edge-on it would vanish, and the sky would begin at the camera.
     */
   private def ground(camera: Vector3, rgb: Int): Solid =
     val stands = math.abs(camera.z) <= Moment.GroundToleranceM

@@ -3,12 +3,12 @@ package skein.scene.render
 import skein.scene.{Item, Solid}
 import skein.units.Vector3
 
-/** The faces that a view may show, projected: for each the rows that it covers, where it begins and ends in
-  * each, and its inverse depth, which is linear on the image: a·x + b·y + c at the pixel (x, y)'s upper left
-  * corner, 1/m.
+/** The projected faces that may be visible in a view: for each the rows that it covers, its first and last
+  * pixel in each, and its inverse depth, which is linear on the image: a·x + b·y + c at the pixel (x, y)'s
+  * upper left corner, 1/m.
   *
-  * A pixel belongs to a face if its middle does, so that faces that share an edge neither overlap there nor
-  * leave a gap.
+  * A pixel belongs to a face if the pixel's middle does, so that faces that share an edge neither overlap
+  * there nor leave a gap.
   */
 final private[render] class Surfaces(view: View):
   import view.{focalPx, height, place, width}
@@ -39,7 +39,7 @@ final private[render] class Surfaces(view: View):
   private val screenX = new Array[Double](Surfaces.MostCorners)
   private val screenY = new Array[Double](Surfaces.MostCorners)
 
-  /** Adds what of a body faces the camera. */
+  /** Adds the faces of a body that face the camera. */
   def add(solid: Solid): Unit =
     if mayBeSeen(solid) then
       locate(solid)
@@ -86,7 +86,7 @@ final private[render] class Surfaces(view: View):
 
   private def along(u: Vector3, v: Vector3): Double = u.x * v.x + u.y * v.y + u.z * v.z
 
-  /** Projects what of a face lies before the near plane; the number of its corners. */
+  /** Projects the part of a face beyond the near plane; returns the number of its corners. */
   private def cut(loop: Array[Int], nearM: Double): Int =
     var corners = 0
 
@@ -102,8 +102,8 @@ final private[render] class Surfaces(view: View):
       val here = ahead(from) >= nearM
       if here then put(ahead(from), right(from), down(from))
       if here != ahead(to) >= nearM then
-        // From the corner before the plane, whichever way the face goes: its neighbour meets it at the same
-        // place.
+        // Always from the corner before the plane, whatever the face's direction, so that neighbours get
+        // equal cut points.
         val near = if here then from else to
         val far  = if here then to else from
         val t    = (ahead(near) - nearM) / (ahead(near) - ahead(far))
@@ -115,7 +115,7 @@ final private[render] class Surfaces(view: View):
       i += 1
     corners
 
-  /** Notes the rows that a polygon on the image covers, and where; whether it covers any. */
+  /** Records the rows that a polygon on the image covers, and its extent in each; whether it covers any. */
   private def trace(corners: Int): Boolean =
     var area     = 0.0
     var (x0, x1) = (Double.PositiveInfinity, Double.NegativeInfinity)
@@ -159,7 +159,7 @@ final private[render] class Surfaces(view: View):
       spans(offset + 2 * (row - firstRow)) = pixel(x, width)
       row += 1
 
-  /** The first pixel whose middle lies at or behind this, within the image. */
+  /** The first pixel whose middle is at or after this coordinate, clamped to the image. */
   private def pixel(at: Double, size: Int): Int = math.max(0, math.min(size, math.ceil(at - 0.5).toInt))
 
   private def grow(): Unit =
@@ -175,11 +175,11 @@ final private[render] class Surfaces(view: View):
     first = copyOf(first, capacity)
 
 private[render] object Surfaces:
-  /** What is nearer to the camera is not seen, m: AirSim's near plane. */
+  /** The near plane, m, as in AirSim: nothing nearer is drawn. */
   val NearM = 0.1
 
-  /** The ground is seen from a camera that stands upon it, too. */
+  /** The near plane of the ground, m: a camera that stands on the ground must see it. */
   val GroundNearM = 1e-4
 
-  /** Of a face, cut. */
+  /** Most corners of a face after clipping. */
   private val MostCorners = 32

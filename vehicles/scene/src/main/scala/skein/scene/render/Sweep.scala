@@ -2,10 +2,9 @@ package skein.scene.render
 
 import java.util.Arrays
 
-/** Which face is seen where. Row by row, the faces that begin and end along it are passed from left to right;
-  * the nearest one of those passed is seen until it ends, another one begins, or one behind comes through it.
-  * So the cost depends on the number of edges, not of pixels, and visibility is exact whatever the order of
-  * the faces.
+/** Decides which face is visible where. Row by row, it passes the edges of faces from left to right; the
+  * nearest open face is visible until it ends, another one begins, or one behind intersects it. So the cost
+  * depends on the number of edges, not of pixels, and visibility is exact whatever the order of the faces.
   */
 final private[render] class Sweep(view: View, surfaces: Surfaces):
   import surfaces.{bottom, first, spans, top}
@@ -20,7 +19,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
   private var open      = new Array[Int](64)
   private var opened    = 0
 
-  /** Tells every layer what is seen in every pixel, once each. */
+  /** Reports to every layer the visible face of every pixel, exactly once. */
   def run(layers: Array[Layer]): Unit =
     var face = surfaces.count - 1
     while face >= 0 do
@@ -33,7 +32,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
       pass(row, layers)
       row += 1
 
-  /** Who is on this row, and where. */
+  /** Updates the faces that cover this row, and their extents. */
   private def advanceTo(row: Int): Unit =
     var kept = 0
     var i    = 0
@@ -57,7 +56,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
       left(face) = spans(at)
       right(face) = spans(at + 1)
       inverse(face) = surfaces.c(face) + surfaces.b(face) * (row + 0.5) + surfaces.a(face) * 0.5
-      // The order of the row above is nearly this row's.
+      // The order of the previous row is nearly this row's.
       var j = i
       while j > 0 && left(active(j - 1)) > left(face) do
         active(j) = active(j - 1)
@@ -98,7 +97,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
 
   private def inverseAt(face: Int, x: Int): Double = inverse(face) + surfaces.a(face) * x
 
-  /** The open face seen at this pixel; closes those that have ended. Of equally near ones the one added
+  /** The visible open face at this pixel; closes those that have ended. Of equally near ones the one added
     * first.
     */
   private def nearestAt(x: Int): Int =
@@ -118,7 +117,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
         i += 1
     best
 
-  /** The first pixel before `end` where another open face has come before this one, or `end`. */
+  /** The first pixel before `end` where another open face comes in front of this one, or `end`. */
   private def hiddenFrom(face: Int, x: Int, end: Int): Int =
     var until = end
     var i     = 0

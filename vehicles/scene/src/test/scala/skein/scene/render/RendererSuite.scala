@@ -27,7 +27,7 @@ class RendererSuite extends munit.FunSuite:
     case Raster.Numbers(values) => values
     case other                  => fail(s"$kind came as $other")
 
-  test("every pixel shows what a ray through its middle meets, as far away as it meets it"):
+  test("every pixel shows the item that a ray through its middle hits, at its distance"):
     for seed <- 1 to 6 do
       val moment = Moment(Scenes.boxes(40, seed), Vector.empty)
       val view   = eye(seed)
@@ -51,7 +51,7 @@ class RendererSuite extends munit.FunSuite:
       // Where an edge goes through a pixel's very middle, rounding decides.
       assert(others <= 2, s"seed $seed: $others pixels differ")
 
-  test("the same scene and view give the same bytes, on every machine"):
+  test("equal scenes and views give equal bytes, on every machine"):
     val view   = View(Placement.turned(Vector3(0, 0, -3), 2, -5, 10), 320, 180, 90)
     val kinds  = Kind.values.toSeq
     val images = draw(Moment(Scenes.boxes(60, seed = 1), Vector.empty), view, kinds*)
@@ -66,13 +66,13 @@ class RendererSuite extends munit.FunSuite:
     digest.update(PngEncoder.encode(bgr(images, Kind.Scene), 320, 180))
     assertEquals(digest.digest.map(b => f"$b%02x").mkString.take(16), "31eaba862189aeaf")
 
-  test("a kind drawn beside others is as drawn alone"):
+  test("a kind of image drawn beside others equals one drawn alone"):
     val kinds = Seq(Kind.Scene, Kind.Segmentation, Kind.SurfaceNormals)
     val all   = draw(Scenes.Sixty, eye(3), kinds*)
     for kind <- kinds do
       assert(bgr(all, kind).sameElements(bgr(draw(Scenes.Sixty, eye(3), kind), kind)), s"$kind")
 
-  test("the sky is beyond everything, and who bears the camera is not drawn"):
+  test("the sky is beyond everything, and the camera's carrier is not drawn"):
     val up = View(Placement.turned(Vector3(0, 0, -2), 0, 90, 0), 16, 16, 60)
     assertEquals(numbers(draw(Scenes.Sixty, up, Kind.DepthPlanar), Kind.DepthPlanar).toSet, Set(65504f))
     val lone = Moment(
@@ -83,7 +83,7 @@ class RendererSuite extends munit.FunSuite:
     val with1 = Renderer.extents(lone, view)
     assertEquals(with1.map(_.item), Vector(Item.Ground, 1))
     assertEquals(Renderer.extents(lone, view, except = 1).map(_.item), Vector(Item.Ground))
-    // A square of 2 m at 4 m: half of what is seen there across is 4·tan 30°.
+    // A square of 2 m at 4 m: half of the visible width there is 4·tan 30°.
     val half = 32 / (4 * math.tan(math.Pi / 6))
     assertEqualsDouble(with1(1).right - with1(1).left, 2 * half, 1.01)
     assertEqualsDouble(with1(1).bottom - with1(1).top, 2 * half, 1.01)
@@ -113,7 +113,7 @@ class RendererSuite extends munit.FunSuite:
         s"row $row, column $column"
       )
 
-  test("a PNG is read back by another reader as it was drawn"):
+  test("an independent reader reads a PNG back as it was drawn"):
     val random = SplitMix64(5)
     val noise  = Array.fill(3 * 31 * 17)(random.nextInt(256).toByte)
     val stripe = Array.tabulate(3 * 600 * 5)(i => (i / 3 % 600 / 7).toByte)
