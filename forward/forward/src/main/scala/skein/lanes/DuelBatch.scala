@@ -105,7 +105,12 @@ final class DuelBatch(
     * @param links that the worlds fly over: where delays are long for the period, or are recorded ones, no
     *   lanes know them
     */
-  def engine(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean, links: Seq[Delays]): String =
+  def engine(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      shareEpisodes: Boolean,
+      links: Seq[Delays]
+  ): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
       case Left(reason)                                       => stepped.getOrElse(s"scalar: $reason")
       case Right(_) if shares(shareEpisodes) && isAccelerated => accelerator.get.engine
@@ -124,7 +129,12 @@ final class DuelBatch(
   /** Whether all worlds of these policies fly by lanes, or AirSim's quadrotors do at least, over any of the
     * links.
     */
-  def fliesByLanes(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
+  def fliesByLanes(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      shareEpisodes: Boolean,
+      links: Seq[Delays]
+  ): Boolean =
     model.isInstanceOf[QuadrotorResponse] && stepped.isDefined ||
       lanesOf(pursuer, evader, shares(shareEpisodes)).isRight &&
       links.forall(refusal(shares(shareEpisodes), _).isEmpty)
@@ -135,7 +145,11 @@ final class DuelBatch(
     else apart.fold(Some(_), (plant, _) => LoopSupport.refusal(timing, 2, link, plant))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
-  private def lanesOf(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean): Either[String, String] =
+  private def lanesOf(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      shareEpisodes: Boolean
+  ): Either[String, String] =
     for
       _ <- plant
       _ <- Seq(pursuer, evader)
