@@ -9,7 +9,7 @@ case object Chase extends Policy:
   def start: Unit                                             = ()
   def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val way = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
-    (Action.heading(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
+    (Action.Along(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
 
 /** The paper's evader, chased. The field is a setting of every command: `--set chaser-mps=9`. */
 final case class Hunt(chaserMps: Double = 10) extends Scenario:

@@ -63,13 +63,13 @@ private def environments(count: Int): (Double, Float) =
 private def flights(count: Int): (Double, Float) =
   val batch  = DuelBatch(Duel.paper, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag))
   val worlds = new DuelWorlds:
-    def size                        = count
-    override def shareEpisodes      = true
-    def key(world: Int): Int        = world / 128
-    def link(world: Int): Delays    = DelayTable.vpn
+    def size                               = count
+    override def shareEpisodes             = true
+    def key(world: Int): Int               = world / 128
+    def link(world: Int): Delays           = DelayTable.vpn
     def pursuer(world: Int): HeadingPolicy = pursuing
     def evader(world: Int): HeadingPolicy  = evading
-    private val (pursuing, evading) = (PaperPursuer(), PaperEvader())
+    private val (pursuing, evading)        = (PaperPursuer(), PaperEvader())
   var last = 0f
   val rate = bestRate(() => last = batch.fly(worlds).meanLast10sM(0))
   (rate * periods * count, last)

@@ -30,8 +30,14 @@ object GpuRates:
     println("|---|---|---|---|---|---|---|")
     def paper(i: Int): HeadingPolicy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
     def neural(i: Int): HeadingPolicy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
-    val drag                   = PlantResponse(ReducedModel.AirSim)
-    def duels(name: String, timing: LoopTiming, model: VelocityResponse, share: Int, pursuer: Int => HeadingPolicy) =
+    val drag                          = PlantResponse(ReducedModel.AirSim)
+    def duels(
+        name: String,
+        timing: LoopTiming,
+        model: VelocityResponse,
+        share: Int,
+        pursuer: Int => HeadingPolicy
+    ) =
       val count    = candidates / share
       val policies = Vector.tabulate(count)(pursuer)
       val onGpu    = DuelBatch(Duel.paper, timing, model, accelerator = accelerator)
@@ -98,10 +104,10 @@ object GpuRates:
 
   private final class Duels(candidates: Int, policies: Vector[HeadingPolicy]) extends DuelWorlds,
         Together(candidates):
-    private val evader                  = PaperEvader()
-    override def asked: Set[DuelNumber] = GpuRates.asked
-    def pursuer(world: Int): HeadingPolicy     = policies(world / Episodes)
-    def evader(world: Int): HeadingPolicy      = this.evader
+    private val evader                     = PaperEvader()
+    override def asked: Set[DuelNumber]    = GpuRates.asked
+    def pursuer(world: Int): HeadingPolicy = policies(world / Episodes)
+    def evader(world: Int): HeadingPolicy  = this.evader
 
   private final class Teams(candidates: Int, teams: Vector[TeamCandidate]) extends TeamWorlds,
         Together(candidates):

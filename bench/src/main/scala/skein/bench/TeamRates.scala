@@ -81,7 +81,7 @@ object TeamRates:
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
       val way = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
-      (Action.heading(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
+      (Action.Along(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
 
   private def candidate(scenario: Scenario, by: Vector[Quantity]) =
     TeamCandidate(

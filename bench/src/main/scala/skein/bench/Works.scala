@@ -69,13 +69,13 @@ object Works:
     val worlds   = 2048
     val policies = Array.tabulate(256)(i => NeuralPolicy(network, weights.map(_ * (0.5 + i / 256.0))))
     val all      = new DuelWorlds:
-      def size: Int                       = worlds
-      override def shareEpisodes: Boolean = true
-      override def asked: Set[DuelNumber] = Works.asked
-      def key(world: Int): Int            = WorldRandom.key(thread, 0, world / 256)
-      def link(world: Int): DelayTable    = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy     = policies(world % 256)
-      def evader(world: Int): HeadingPolicy      = Works.evader
+      def size: Int                          = worlds
+      override def shareEpisodes: Boolean    = true
+      override def asked: Set[DuelNumber]    = Works.asked
+      def key(world: Int): Int               = WorldRandom.key(thread, 0, world / 256)
+      def link(world: Int): DelayTable       = DelayTable.vpn
+      def pursuer(world: Int): HeadingPolicy = policies(world % 256)
+      def evader(world: Int): HeadingPolicy  = Works.evader
     val outcomes = batch(LoopTiming.Stream(), 1).fly(all)
     (worlds * 1200.0, outcomes.meanLast10sM.map(_.toDouble).sum / worlds)
 
@@ -91,12 +91,12 @@ object Works:
 
   /** Pursuers of different turn rates, `perEpisode` of them in each episode. */
   final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends DuelWorlds:
-    override def shareEpisodes: Boolean = perEpisode > 1
-    override def asked: Set[DuelNumber] = Works.asked
-    def key(world: Int): Int            = WorldRandom.key(seed, 0, world / perEpisode)
-    def link(world: Int): DelayTable    = delays
-    def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
-    def evader(world: Int): HeadingPolicy      = Works.evader
+    override def shareEpisodes: Boolean    = perEpisode > 1
+    override def asked: Set[DuelNumber]    = Works.asked
+    def key(world: Int): Int               = WorldRandom.key(seed, 0, world / perEpisode)
+    def link(world: Int): DelayTable       = delays
+    def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
+    def evader(world: Int): HeadingPolicy  = Works.evader
 
   private val evader = PaperEvader()
 

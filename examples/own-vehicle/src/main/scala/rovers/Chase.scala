@@ -31,15 +31,17 @@ final case class Patrol(corners: Vector[Vector3], mps: Double) extends Policy:
   *
   * @param leader its index in the scenario
   */
-final case class Heel(leader: Int, distanceM: Double, mostMps: Double) extends GoalPolicy:
-  def course(seen: TeamObservation): Course =
+final case class Heel(leader: Int, distanceM: Double, mostMps: Double) extends Policy, Goal:
+  type Memory = Unit
+  def start: Unit                                             = ()
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val north = seen.northM(leader) - seen.northM(seen.self)
     val east  = seen.eastM(leader) - seen.eastM(seen.self)
     val way   = StrictMath.hypot(north, east)
     val speed = (way - distanceM).max(0) / way.max(1e-9)
-    Course.of(north * speed, east * speed, mostMps, seen.headingRad)
+    (seen.towards(north * speed, east * speed, mostMps), ())
 
-  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+  def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val (north, east) = (seen.northMps(leader), seen.eastMps(leader))
     val sinceS        = aheadS - distanceM / StrictMath.hypot(north, east).max(0.1)
     (seen.northM(leader) + north * sinceS, seen.eastM(leader) + east * sinceS)

@@ -49,7 +49,7 @@ final class Rover(transport: Transport, address: Address, clock: Clock)(using sy
         Right(Stamped(kinematics, Instant.ofNanos(at.toDouble.toLong), sentAt, clock.now()))
       case other => wrong("at, a time and four numbers", other))
 
-  def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = action match
+  def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = action.byVelocity match
     case Action.Velocity(velocity, _)         => drive(velocity.x, velocity.y, lasts)
     case Action.VelocityAt(north, east, _, _) => drive(north, east, lasts)
     case Action.Hover                         => hover()

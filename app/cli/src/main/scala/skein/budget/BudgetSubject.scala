@@ -127,6 +127,6 @@ final class DuelSubject(
   private final class Worlds(links: Vector[DelayTable], each: Int)
       extends CellWorlds(links, each, seed),
         DuelWorlds:
-    override def asked: Set[DuelNumber] = objective.asked(policy.role)
-    def pursuer(world: Int): HeadingPolicy     = DuelSubject.this.pursuer
-    def evader(world: Int): HeadingPolicy      = DuelSubject.this.evader
+    override def asked: Set[DuelNumber]    = objective.asked(policy.role)
+    def pursuer(world: Int): HeadingPolicy = DuelSubject.this.pursuer
+    def evader(world: Int): HeadingPolicy  = DuelSubject.this.evader

@@ -33,15 +33,14 @@ enum Action:
   /** Sinks until it stands on the ground. */
   case Land
 
-object Action:
-  /** Flies on a heading at an altitude. */
-  def heading(heading: Radians, speed: MetresPerSecond, down: Metres): Action =
-    VelocityAt(
-      speed.value * StrictMath.cos(heading.value),
-      speed.value * StrictMath.sin(heading.value),
-      down
-    )
+  /** Flies on a heading and holds an altitude.
+    *
+    * @param heading any number of turns
+    * @param down negative above the origin
+    */
+  case Along(heading: Radians, speed: MetresPerSecond, down: Metres, yaw: Yaw = Yaw.Still)
 
+object Action:
   /** Slower than this, a velocity has no direction, m/s. */
   val LeastMps: Double = 1e-9
 
@@ -52,6 +51,7 @@ object Action:
     def headingRad(beforeRad: Double): Double = action match
       case Action.Velocity(velocity, _)         => along(velocity.x, velocity.y, beforeRad)
       case Action.VelocityAt(north, east, _, _) => along(north, east, beforeRad)
+      case Action.Along(heading, _, _, _)       => heading.value
       case Action.Turn(Yaw.Towards(heading))    => heading.value
       case Action.Attitude(_, _, yaw, _)        => yaw.value
       case Action.Position(_, _, _) | Action.Turn(_) | Action.Hover | Action.Land => beforeRad
@@ -60,7 +60,15 @@ object Action:
     def speed: MetresPerSecond = MetresPerSecond(action match
       case Action.Velocity(velocity, _)         => StrictMath.hypot(velocity.x, velocity.y)
       case Action.VelocityAt(north, east, _, _) => StrictMath.hypot(north, east)
+      case Action.Along(_, along, _, _)         => along.value
       case _                                    => 0)
+
+    /** The same, where it is [[Action.Along]] a heading, as a velocity: what vehicles are told. */
+    def byVelocity: Action = action match
+      case Action.Along(heading, speed, down, yaw) =>
+        val (cos, sin) = (StrictMath.cos(heading.value), StrictMath.sin(heading.value))
+        Action.VelocityAt(speed.value * cos, speed.value * sin, down, yaw)
+      case other => other
 
   private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
     if StrictMath.hypot(northMps, eastMps) < LeastMps then beforeRad

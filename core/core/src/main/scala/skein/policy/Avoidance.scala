@@ -27,30 +27,34 @@ final case class Avoidance(
     marginM: Double,
     horizonS: Double,
     arrivePerS: Double = 0.4
-) extends GoalPolicy:
+) extends Policy, Goal:
   private val apartM = minimumM + marginM
   require(apartM > 0 && horizonS > 0, s"discs of $apartM m and a horizon of $horizonS s keep nobody apart")
 
-  def course(seen: TeamObservation): Course =
+  type Memory = Unit
+  def start: Unit                = ()
+  override def isPlanar: Boolean = true
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val wanted = preferred(seen)
     val bounds = boundsOf(seen)
     val within = bounds.nearest(wanted, mostMps)
     val chosen = if within.missing > 0 then bounds.leastBroken(wanted, mostMps) else within.velocity
-    Course.of(chosen.north, chosen.east, mostMps, seen.headingRad)
+    (seen.towards(chosen.north, chosen.east, mostMps), ())
 
-  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+  def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
     val distance      = StrictMath.hypot(north, east)
     val share         = if distance == 0 then 1.0 else (cruiseMps * aheadS / distance).min(1)
     (seen.northM(seen.self) + share * north, seen.eastM(seen.self) + share * east)
 
-  private def preferred(seen: TeamObservation): Velocity =
+  private def preferred(seen: Observation): Velocity =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
     val distance      = StrictMath.hypot(north, east)
     if distance == 0 then Velocity(0, 0)
     else Velocity(north, east) * (cruiseMps.min(arrivePerS * distance) / distance)
 
-  private def boundsOf(seen: TeamObservation): HalfPlanes =
+  private def boundsOf(seen: Observation): HalfPlanes =
     val self   = seen.self
     val own    = Velocity(seen.northMps(self), seen.eastMps(self))
     val reach  = apartM + 2 * mostMps * horizonS

@@ -26,20 +26,21 @@ final case class DynamicWindow(
     bodyM: Double = 0.5,
     lagS: Double = 0.55,
     horizonS: Double = 3
-) extends PlanarPolicy:
+) extends Policy:
   import DynamicWindow.*
 
   type Memory = Unit
-  def start: Unit = ()
+  def start: Unit                = ()
+  override def isPlanar: Boolean = true
 
   override def sensors: Set[String] = Set(sensor)
 
-  def planar(seen: Observation, memory: Unit): (Planar, Unit) =
-    val last = seen.headings(seen.self).value
-    val went = seen.sensed.get(sensor).filter(_.age < TooOld) match
-      case None       => Planar(Radians(last), Some(MetresPerSecond(0)))
-      case Some(scan) => best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, last, scan)
-    (went, ())
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    val (heading, speed) = seen.sensed.get(sensor).filter(_.age < TooOld) match
+      case None       => (seen.headingRad, 0.0)
+      case Some(scan) =>
+        best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, seen.headingRad, scan)
+    (seen.along(heading, speed), ())
 
   // The instants looked at, and how far the velocity has carried until then.
   private val instants       = (1 to (horizonS / StepS).toInt).map(_ * StepS).toArray
@@ -47,14 +48,15 @@ final case class DynamicWindow(
   private val (laneN, laneE) =
     (StrictMath.cos(laneHeading.value), StrictMath.sin(laneHeading.value))
 
-  private def best(position: Vector3, velocity: Vector3, lastRad: Double, scan: Sensed): Planar =
+  /** The best heading, rad, and speed, m/s. */
+  private def best(position: Vector3, velocity: Vector3, lastRad: Double, scan: Sensed): (Double, Double) =
     val points = near(position, scan)
     // Back to the lane over some way, not straight.
     val aside        = -(position.x - laneNorthM) * laneE + (position.y - laneEastM) * laneN
     val aimRad       = laneHeading.value - StrictMath.atan2(aside, AheadM)
     val (aimN, aimE) = (StrictMath.cos(aimRad), StrictMath.sin(aimRad))
     var least        = Double.PositiveInfinity
-    var chosen       = Planar(Radians(aimRad), Some(MetresPerSecond(0)))
+    var chosen       = (aimRad, 0.0)
     for turn <- Turns; share <- Shares do
       val headingRad = aimRad + turn
       val speed      = cruiseMps * share
@@ -67,7 +69,7 @@ final case class DynamicWindow(
         Steady * (1 - StrictMath.cos(headingRad - lastRad))
       if cost < least then
         least = cost
-        chosen = Planar(Radians(headingRad), Some(MetresPerSecond(speed)))
+        chosen = (headingRad, speed)
     chosen
 
   /** How clear of all points a command keeps the body, m; after how many instants it touches one; and where

@@ -1,9 +1,13 @@
 package skein.policy
 
 /** Flees straight away from whoever of the others is nearest, the first of equals. */
-final case class Flee(speedMps: Double) extends TeamPolicy:
+final case class Flee(speedMps: Double) extends Policy:
 
-  def course(seen: TeamObservation): Course =
+  type Memory = Unit
+  def start: Unit                = ()
+  override def isPlanar: Boolean = true
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val self      = seen.self
     var least     = Double.PositiveInfinity
     var awayNorth = 0.0
@@ -18,5 +22,6 @@ final case class Flee(speedMps: Double) extends TeamPolicy:
         awayNorth = north
         awayEast = east
       other += 1
-    if awayNorth == 0 && awayEast == 0 then Course(seen.headingRad, speedMps)
-    else Course(StrictMath.atan2(awayEast, awayNorth), speedMps)
+    val heading =
+      if awayNorth == 0 && awayEast == 0 then seen.headingRad else StrictMath.atan2(awayEast, awayNorth)
+    (seen.along(heading, speedMps), ())

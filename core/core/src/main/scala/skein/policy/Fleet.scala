@@ -9,8 +9,7 @@ import skein.vehicle.VehicleKind
   * @param speed commanded where the policy does not choose one
   * @param startPositionNed m, in the world frame; it also holds this altitude. A car's is 0
   * @param startHeading taken as the last commanded heading before the first decision
-  * @param policy a [[HeadingPolicy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other
-  *   in three dimensions
+  * @param policy how it decides
   * @param kind of vehicle; a car is steered in the plane, or told to stand still
   */
 final case class Agent(
@@ -33,7 +32,7 @@ final case class Agent(
   /** The policy of an agent that plays against one other. */
   def duelPolicy: HeadingPolicy = policy match
     case against: HeadingPolicy => against
-    case _               =>
+    case _                      =>
       throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
 
 /** Who flies: what a loop and forward simulation need of a scenario. Every agent has an opponent: the nearest

@@ -1,7 +1,5 @@
 package skein.policy
 
-import skein.units.Radians
-
 /** Chooses a heading for one vehicle from what it knows of its opponent. A pure function of its arguments, on
   * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same
   * object without allocation.
@@ -9,7 +7,7 @@ import skein.units.Radians
   * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its
   * calls: deciding twice as often must not turn twice as fast.
   */
-trait HeadingPolicy extends PlanarPolicy:
+trait HeadingPolicy extends Policy:
 
   /** The heading to command now, rad, from north (+x) towards east (+y); any number of turns.
     *
@@ -45,13 +43,12 @@ trait HeadingPolicy extends PlanarPolicy:
 
   final override def isAgainstOne: Boolean = true
 
-  /** For pursuers alone: a plan's only goal is to be near the opponent. */
-  final override def isPlannedFor(role: Role): Boolean = role == Role.Pursuer
+  final override def isPlanar: Boolean = true
 
   type Memory = Any
 
   /** Nothing, but for an [[ObservingPolicy]]. */
   def start: Any = ()
 
-  def planar(seen: Observation, memory: Any): (Planar, Any) =
-    (Planar(Radians(headingFor(PlanarObservation.of(seen))), None), memory)
+  def choose(seen: Observation, memory: Any): (Action, Any) =
+    (seen.along(headingFor(PlanarObservation.of(seen)), seen.cruise.value), memory)

@@ -18,9 +18,13 @@ final case class KeepSlot(
     mostMps: Double,
     lagS: Double,
     pursuit: Pursuit = Pursuit()
-) extends GoalPolicy:
+) extends Policy, Goal:
 
-  def course(seen: TeamObservation): Course =
+  type Memory = Unit
+  def start: Unit                = ()
+  override def isPlanar: Boolean = true
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val self                      = seen.self
     val place                     = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val heading                   = circuit.headingRad(place)
@@ -34,7 +38,7 @@ final case class KeepSlot(
     val turnRadps    = alongMps * curvature / (1 - curvature * toTheRightM).max(KeepSlot.LeastShare)
     val slotNorthMps = seen.northMps(leader) - turnRadps * eastOffset
     val slotEastMps  = seen.eastMps(leader) + turnRadps * northOffset
-    Course.of(
+    val action       = seen.towards(
       pursuit.along(
         seen.northM(leader) + northOffset,
         slotNorthMps,
@@ -47,12 +51,12 @@ final case class KeepSlot(
         seen.eastM(self),
         seen.eastMps(self)
       ) + lagS * turnRadps * slotNorthMps,
-      mostMps,
-      seen.headingRad
+      mostMps
     )
+    (action, ())
 
   /** The slot when the leader has flown on along the circuit at its present speed. */
-  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+  def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val here      = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val direction = circuit.headingRad(here)
     val alongMps  =

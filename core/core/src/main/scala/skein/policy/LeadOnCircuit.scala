@@ -5,15 +5,19 @@ package skein.policy
   *
   * @param aheadM about as far as the vehicle flies before it follows a command
   */
-final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends GoalPolicy:
+final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends Policy, Goal:
   def mostMps: Double = speedMps
 
-  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+  def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     circuit.point(circuit.nearest(seen.northM(seen.self), seen.eastM(seen.self)) + speedMps * aheadS)
 
-  def course(seen: TeamObservation): Course =
+  type Memory = Unit
+  def start: Unit                = ()
+  override def isPlanar: Boolean = true
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
     val (toNorth, toEast) = circuit.point(circuit.nearest(north, east) + aheadM)
-    val direction         = StrictMath.hypot(toNorth - north, toEast - east)
-    if direction == 0 then Course(seen.headingRad, speedMps)
-    else Course(StrictMath.atan2(toEast - east, toNorth - north), speedMps)
+    val distance          = StrictMath.hypot(toNorth - north, toEast - east)
+    val heading = if distance == 0 then seen.headingRad else StrictMath.atan2(toEast - east, toNorth - north)
+    (seen.along(heading, speedMps), ())

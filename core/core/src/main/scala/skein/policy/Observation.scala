@@ -33,6 +33,32 @@ final case class Observation(
 ):
   def own: Seen = vehicles(self)
 
+  /** How many vehicles there are. */
+  def count: Int = vehicles.size
+
+  /** A vehicle's place, m. */
+  def northM(vehicle: Int): Double = vehicles(vehicle).kinematics.positionNed.x
+  def eastM(vehicle: Int): Double  = vehicles(vehicle).kinematics.positionNed.y
+
+  /** A vehicle's velocity, m/s. */
+  def northMps(vehicle: Int): Double = vehicles(vehicle).kinematics.velocityNed.x
+  def eastMps(vehicle: Int): Double  = vehicles(vehicle).kinematics.velocityNed.y
+
+  /** Commanded last to the own vehicle. */
+  def headingRad: Double = headings(self).value
+
+  /** To fly on a heading, at the altitude of the own start. */
+  def along(headingRad: Double, speedMps: Double): Action =
+    Action.Along(Radians(headingRad), MetresPerSecond(speedMps), startDown)
+
+  /** To fly with a velocity, no faster than allowed, at the altitude of the own start. One without a
+    * direction keeps the heading.
+    */
+  def towards(northMps: Double, eastMps: Double, mostMps: Double): Action =
+    val speed = StrictMath.hypot(northMps, eastMps)
+    if speed < Action.LeastMps then along(headingRad, 0)
+    else along(StrictMath.atan2(eastMps, northMps), speed.min(mostMps))
+
 /** The estimate of one vehicle's state.
   *
   * @param kinematics world NED, in three dimensions with attitude

@@ -1,13 +1,11 @@
 package skein.policy
 
-import skein.units.Radians
-
 /** @param memory what the policy is given at its next decision
   */
 final case class Decided[M](headingRad: Double, memory: M)
 
-/** A policy with a memory of its own, which also sees the age of each reading. As a [[HeadingPolicy]] it is a pure
-  * function.
+/** A policy with a memory of its own, which also sees the age of each reading. As a [[HeadingPolicy]] it is a
+  * pure function.
   *
   * It flies by lanes if [[decide]] is arithmetic and the memory is a number or a case class of numbers.
   *
@@ -23,9 +21,9 @@ trait ObservingPolicy[M] extends HeadingPolicy:
 
   final override def start: Any = initial
 
-  final override def planar(seen: Observation, memory: Any): (Planar, Any) =
+  final override def choose(seen: Observation, memory: Any): (Action, Any) =
     val decided = decide(PlanarObservation.of(seen), memory.asInstanceOf[M])
-    (Planar(Radians(decided.headingRad), None), decided.memory)
+    (seen.along(decided.headingRad, seen.cruise.value), decided.memory)
 
   /** As a first decision, on readings of now. */
   final def heading(

@@ -12,7 +12,8 @@ package skein.policy
   *   does (0.1 rad). Then the turn rate grows with the decision rate, which confounds the published
   *   comparison of loops.
   */
-final case class PaperPursuer(turnRateRadPerS: Double = 1.0, stepRad: Option[Double] = None) extends HeadingPolicy:
+final case class PaperPursuer(turnRateRadPerS: Double = 1.0, stepRad: Option[Double] = None)
+    extends HeadingPolicy:
 
   def heading(
       dxM: Double,

@@ -1,7 +1,5 @@
 package skein.policy
 
-import skein.units.*
-
 /** How a vehicle decides: a pure function from observation and memory to action and next memory. It
   * integrates over measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as
   * often must not act twice as strongly. It keeps nothing else between decisions, so that a replay can repeat
@@ -20,35 +18,11 @@ trait Policy:
   /** Whether it plays against one opponent and regards nobody else; other policies regard all vehicles. */
   def isAgainstOne: Boolean = false
 
-  /** Whether it steers in the plane, at the altitude of its vehicle's start. */
+  /** Whether it promises to steer in the plane, at the altitude of its vehicle's start. */
   def isPlanar: Boolean = false
-
-  /** Whether plans may decide in its place for a multirotor of this role. */
-  def isPlannedFor(role: Role): Boolean = false
 
   /** The memory before the first decision. */
   def start: Memory
 
   /** The action now, and the next memory. */
   def choose(seen: Observation, memory: Memory): (Action, Memory)
-
-/** A policy that steers in the plane, at the altitude of its vehicle's start: a convenience on top of
-  * [[Policy]].
-  */
-trait PlanarPolicy extends Policy:
-
-  final override def isPlanar: Boolean = true
-
-  /** Where to fly, and what to remember. */
-  def planar(seen: Observation, memory: Memory): (Planar, Memory)
-
-  final def choose(seen: Observation, memory: Memory): (Action, Memory) =
-    val (chosen, next) = planar(seen, memory)
-    (Action.heading(chosen.heading, chosen.speed.getOrElse(seen.cruise), seen.startDown), next)
-
-/** A horizontal velocity to command.
-  *
-  * @param heading any number of turns
-  * @param speed absent: the vehicle's own
-  */
-final case class Planar(heading: Radians, speed: Option[MetresPerSecond])

@@ -5,9 +5,9 @@ import skein.formula.{Answer, Evaluation, Example, Formula, Node, Op, Trace, Unt
 import skein.signal.Kinematics
 import skein.units.*
 
-/** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], or
-  * [[PlanarPolicy.planar]], read from its bytecode. It is for forward simulation, whose vehicles fly
-  * horizontal velocities at the altitude of their start: what is decided for must be one.
+/** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], read from its
+  * bytecode. It is for forward simulation, whose vehicles fly horizontal velocities at the altitude of their
+  * start: what is decided for must be one.
   *
   * @param inputs what each of the formula's inputs is
   * @param motion what is decided
@@ -29,11 +29,11 @@ final class PolicyFormula private (
 
   /** Whether another policy differs in numbers alone. */
   def fits(policy: Policy, assignment: Assignment): Boolean =
-    formula.fits(Deciding.of(policy, assignment)) && start.isLike(memoryOf(policy))
+    formula.fits(Deciding(policy, assignment)) && start.isLike(memoryOf(policy))
 
   /** The numbers of a policy that [[fits]], for the formula's parameters. */
   def parametersOf(policy: Policy): Array[Double] =
-    formula.parametersOf(Deciding.of(policy, assignment))
+    formula.parametersOf(Deciding(policy, assignment))
 
   /** What a policy that [[fits]] remembers before its first decision. */
   def startOf(policy: Policy): Array[Double] = memoryOf(policy).numbers.toArray
@@ -107,7 +107,7 @@ object PolicyFormula:
       _    <- Either.cond(policy.sensors.isEmpty, (), Untraceable("it reads sensors, which no model has"))
       kept <- startOf(policy)
       (memory, starts) = kept
-      target           = Deciding.of(policy, assignment)
+      target           = Deciding(policy, assignment)
       read             = Reading(seen, memory)
       loader           = Option(policy.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
       traced <-
@@ -149,39 +149,48 @@ object PolicyFormula:
         case Motion.Along(heading, speed) => Vector("heading" -> heading, "speed" -> speed)
         case Motion.With(north, east)     => Vector("north" -> north, "east" -> east)
       val start   = trace.input(seen.inputs.indexOf(PolicyInput.StartDown))
-      val leaving = down.filter(_ != start)
+      val leaving = Option.when(down != start)(down)
       val outputs =
         ofMotion ++ leaving.map("down" -> _) ++ next.zipWithIndex.map((node, i) => s"memory$i" -> node)
       (outputs, Decided(motion, leaving, next, turns))
 
-    private type Part = (Motion, Option[Node], Boolean)
+    private type Part = (Motion, Node, Boolean)
 
     private def one(of: String, answer: Answer): Part =
-      if of == classOf[Course].getName then
-        val motion = Motion.Along(answer.get("headingRad", "D").number, answer.get("speedMps", "D").number)
-        (motion, None, false)
-      else if of == classOf[Action.VelocityAt].getName then
-        val motion  = Motion.With(answer.get("northMps", "D").number, answer.get("eastMps", "D").number)
-        val isStill = answer
-          .get("yaw", s"L${classOf[Yaw].getName.replace('.', '/')};")
-          .isOne(Yaw.Still)
-        (motion, Some(answer.get("down", "D").number), !isStill)
-      else
-        val name = of.substring(of.lastIndexOf('.') + 1).replace('$', '.')
-        answer.refuse(
-          s"it decides for $name; forward simulation flies Action.VelocityAt at the start's altitude"
-        )
+      def number(field: String) = answer.get(field, "D").number
+      val motion                =
+        if of == classOf[Action.Along].getName then Motion.Along(number("heading"), number("speed"))
+        else if of == classOf[Action.VelocityAt].getName then
+          Motion.With(number("northMps"), number("eastMps"))
+        else
+          val name = of.substring(of.lastIndexOf('.') + 1).replace('$', '.')
+          answer.refuse(
+            s"it decides for $name; forward simulation flies Action.Along and Action.VelocityAt at the " +
+              "start's altitude"
+          )
+      val yaw = answer.get("yaw", s"L${classOf[Yaw].getName.replace('.', '/')};")
+      (motion, number("down"), !yaw.isOne(Yaw.Still))
 
     private def chosen(trace: Trace)(condition: Node, a: Part, b: Part): Part =
       def either(x: Node, y: Node) = trace.where(condition, x, y)
       val motion                   = (a._1, b._1) match
-        case (Motion.Along(x, v), Motion.Along(y, w)) => Motion.Along(either(x, y), either(v, w))
-        case (Motion.With(x, v), Motion.With(y, w))   => Motion.With(either(x, y), either(v, w))
-        case other                                    => throw IllegalStateException(s"came $other")
-      (motion, a._2.zip(b._2).map(either), a._3 || b._3)
+        case (Motion.With(x, v), Motion.With(y, w)) => Motion.With(either(x, y), either(v, w))
+        case (one, other)                           =>
+          val ((x, v), (y, w)) = (along(trace, one), along(trace, other))
+          Motion.Along(either(x, y), either(v, w))
+      (motion, either(a._2, b._2), a._3 || b._3)
+
+    /** Heading and speed, as [[Action.headingRad]] has them. */
+    private def along(trace: Trace, motion: Motion): (Node, Node) = motion match
+      case Motion.Along(heading, speed) => (heading, speed)
+      case Motion.With(north, east)     =>
+        val speed  = trace.binary(Op.Hypot, north, east)
+        val before = trace.input(seen.inputs.indexOf(PolicyInput.Heading(seen.self)))
+        val isSlow = trace.lt(speed, trace.const(Action.LeastMps))
+        (trace.where(isSlow, before, trace.binary(Op.Atan2, east, north)), speed)
 
 /** An observation in which every number tells which input it is. */
-private final class Tagged(self: Int, count: Int, rivals: Vector[Int], isPredicted: Boolean):
+private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPredicted: Boolean):
   private val told = Vector.newBuilder[PolicyInput]
   private var next = 0
 
@@ -236,28 +245,16 @@ private object Tagged:
   )
 
 /** What is traced of a policy: it decides against the opponent that is the nearest at this moment. */
-private sealed abstract class Deciding(assignment: Assignment):
-  final protected def facing(seen: Observation): Observation =
-    val own = seen.own.kinematics.positionNed
-    seen.copy(opponent =
+private final class Deciding(policy: Policy, assignment: Assignment):
+  def decide(seen: Observation, memory: AnyRef): AnyRef =
+    val own    = seen.own.kinematics.positionNed
+    val facing = seen.copy(opponent =
       assignment.opponentOf(
         seen.self,
         other => own.horizontalDistance(seen.vehicles(other).kinematics.positionNed)
       )
     )
-
-private final class DecidingAction(policy: Policy, assignment: Assignment) extends Deciding(assignment):
-  def decide(seen: Observation, memory: AnyRef): AnyRef =
-    policy.choose(facing(seen), memory.asInstanceOf[policy.Memory])
-
-private final class DecidingPlanar(policy: PlanarPolicy, assignment: Assignment) extends Deciding(assignment):
-  def decide(seen: Observation, memory: AnyRef): AnyRef =
-    val (chosen, next) = policy.planar(facing(seen), memory.asInstanceOf[policy.Memory])
-    (Course(chosen.heading.value, chosen.speed.getOrElse(seen.cruise).value), next)
+    policy.choose(facing, memory.asInstanceOf[policy.Memory])
 
 private object Deciding:
   val Descriptor = "(Lskein/policy/Observation;Ljava/lang/Object;)Ljava/lang/Object;"
-
-  def of(policy: Policy, assignment: Assignment): Deciding = policy match
-    case planar: PlanarPolicy => DecidingPlanar(planar, assignment)
-    case other                => DecidingAction(other, assignment)

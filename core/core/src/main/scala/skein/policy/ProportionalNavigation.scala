@@ -10,7 +10,8 @@ package skein.policy
   * @param gain N; above 2 for a course that ends straight, 3 to 5 in practice
   * @param turnRateRadPerS the most that it turns
   */
-final case class ProportionalNavigation(gain: Double = 3.0, turnRateRadPerS: Double = 1.0) extends HeadingPolicy:
+final case class ProportionalNavigation(gain: Double = 3.0, turnRateRadPerS: Double = 1.0)
+    extends HeadingPolicy:
   require(gain > 0, s"the gain must be positive, came $gain")
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 

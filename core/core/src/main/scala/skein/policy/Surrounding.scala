@@ -11,21 +11,25 @@ package skein.policy
   * @param mostMps the fastest that is commanded
   */
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
-    extends GoalPolicy:
+    extends Policy, Goal:
 
-  def course(seen: TeamObservation): Course =
-    val slot  = slotRad(seen)
-    val north = seen.northM(evader) + ringM * StrictMath.cos(slot)
-    val east  = seen.eastM(evader) + ringM * StrictMath.sin(slot)
-    val self  = seen.self
-    Course.of(
+  type Memory = Unit
+  def start: Unit                = ()
+  override def isPlanar: Boolean = true
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    val slot   = slotRad(seen)
+    val north  = seen.northM(evader) + ringM * StrictMath.cos(slot)
+    val east   = seen.eastM(evader) + ringM * StrictMath.sin(slot)
+    val self   = seen.self
+    val action = seen.towards(
       pursuit.along(north, seen.northMps(evader), seen.northM(self), seen.northMps(self)),
       pursuit.along(east, seen.eastMps(evader), seen.eastM(self), seen.eastMps(self)),
-      mostMps,
-      seen.headingRad
+      mostMps
     )
+    (action, ())
 
-  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+  def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val slot = slotRad(seen)
     (
       seen.northM(evader) + seen.northMps(evader) * aheadS + ringM * StrictMath.cos(slot),
@@ -33,7 +37,7 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
     )
 
   /** The own slot's bearing from the evader, from north towards east. */
-  private[policy] def slotRad(seen: TeamObservation): Double =
+  private[policy] def slotRad(seen: Observation): Double =
     val n      = seen.count - 1
     val own    = bearing(seen, seen.self)
     var before = 0
@@ -44,5 +48,5 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
       if its < own || its == own && vehicle < seen.self then before += 1
     sum / n + (before - (n - 1) / 2.0) * 2 * math.Pi / n
 
-  private def bearing(seen: TeamObservation, vehicle: Int): Double =
+  private def bearing(seen: Observation, vehicle: Int): Double =
     StrictMath.atan2(seen.eastM(vehicle) - seen.eastM(evader), seen.northM(vehicle) - seen.northM(evader))

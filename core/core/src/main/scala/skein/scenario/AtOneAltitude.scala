@@ -15,7 +15,7 @@ private object AtOneAltitude:
       eastM: Double,
       altitudeM: Double,
       headingRad: Double,
-      policy: TeamPolicy
+      policy: Policy
   ): Agent =
     Agent(
       name,

@@ -51,7 +51,7 @@ final case class Convoy(
     val follows = FollowOnCircuit(0, circuit, gapM, mostMps, carMps * AheadS)
     (car("Lead", 0, leads) +: drones) :+ car("Rear", -gapM, follows)
 
-  private def car(name: String, northM: Double, policy: TeamPolicy) =
+  private def car(name: String, northM: Double, policy: Policy) =
     val start = Vector3(northM, 0, 0)
     Agent(name, Role("Car"), MetresPerSecond(carMps), start, Radians(0), policy, VehicleKind.Car)
 

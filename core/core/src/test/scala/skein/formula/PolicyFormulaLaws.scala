@@ -42,65 +42,6 @@ class PolicyFormulaLaws extends munit.FunSuite:
             s"$policy of ${seen.mkString(" ")}"
           )
 
-  private val teams: Seq[(String, SplitMix64 => TeamPolicy)] =
-    def within(random: SplitMix64, least: Double, most: Double) = least + (most - least) * random.nextDouble()
-    def circuit(random: SplitMix64) = Racetrack(within(random, 0, 60), within(random, 5, 30))
-    Seq(
-      "flee"        -> (random => Flee(within(random, 1, 6))),
-      "surrounding" -> (random =>
-        Surrounding(
-          0,
-          within(random, 4, 16),
-          within(random, 4, 12),
-          Pursuit(random.nextDouble(), random.nextDouble())
-        )
-      ),
-      "lead on circuit" -> (random =>
-        LeadOnCircuit(circuit(random), within(random, 2, 8), within(random, 1, 9))
-      ),
-      "keep slot" -> (random =>
-        KeepSlot(0, circuit(random), -within(random, 1, 9), within(random, -9, 9), 10, random.nextDouble())
-      )
-    )
-
-  for
-    (name, draw) <- teams
-    count        <- Seq(3, 6)
-  do
-    test(s"$name in a team of $count: the formula answers to the bit what the method does (seed $seed)"):
-      val random = SplitMix64(seed)
-      for self <- 1 until count do
-        val formula = Formula
-          .of(
-            draw(random),
-            "course",
-            Seq("northM", "eastM", "northMps", "eastMps").map(field => s"seen.$field" -> count).toMap,
-            known = Map("seen.self" -> self)
-          )
-          .fold(throw _, identity)
-        assertEquals(formula.inputs.size, 4 * count + 2)
-        for _ <- 1 to 40 do
-          val policy = draw(random)
-          assert(formula.fits(policy), s"$policy is of another form")
-          // Now and then two at one place, or all of them.
-          def place() = if random.nextDouble() < 0.2 then 0.0 else 60 * random.nextDouble() - 30
-          def numbers = IArray.fill(count)(place())
-          val seen   = TeamObservation(self, numbers, numbers, numbers, numbers, place(), random.nextDouble())
-          val course = policy.course(seen)
-          val input  = Seq(
-            seen.northM,
-            seen.eastM,
-            seen.northMps,
-            seen.eastMps
-          ).flatten :+ seen.headingRad :+ seen.elapsedS
-          val computed = formula.evaluate(input.toArray, formula.parametersOf(policy))
-          for (one, other) <- computed.zip(Seq(course.headingRad, course.speedMps)) do
-            assertEquals(
-              java.lang.Double.doubleToRawLongBits(one),
-              java.lang.Double.doubleToRawLongBits(other),
-              s"$policy of $seen"
-            )
-
   for name <- Seq("learned:8x8", "learned:6tanhx5clip:clip", "learned::clip") do
     test(s"$name: the formula of what is seen answers to the bit what the method does (seed $seed)"):
       val random  = SplitMix64(seed)

@@ -20,7 +20,7 @@ class DynamicWindowSuite extends munit.FunSuite:
   ) =
     val own = Kinematics(position, velocity, Quaternion.Identity, Vector3.Zero)
     window
-      .planar(
+      .choose(
         Observation(
           0,
           Vector(Seen(own, Span.Zero, isPredicted = false)),
@@ -34,14 +34,16 @@ class DynamicWindowSuite extends munit.FunSuite:
         ),
         ()
       )
-      ._1
+      ._1 match
+      case along: Action.Along => along
+      case other               => fail(s"came $other")
 
   test("nothing in the way: straight on, as fast as told"):
-    assertEquals(choose(scan(_ => 40)), Planar(Radians(0), Some(MetresPerSecond(5))))
+    assertEquals(choose(scan(_ => 40)), Action.Along(Radians(0), MetresPerSecond(5), Metres(-4)))
 
   test("nothing seen, or long ago: it stands still"):
-    assertEquals(choose(Map.empty).speed, Some(MetresPerSecond(0)))
-    assertEquals(choose(scan(_ => 40, Span.ofSeconds(1))).speed, Some(MetresPerSecond(0)))
+    assertEquals(choose(Map.empty).speed, MetresPerSecond(0))
+    assertEquals(choose(scan(_ => 40, Span.ofSeconds(1))).speed, MetresPerSecond(0))
 
   test("a tree a little to the right: it passes on the left, and the mirror image on the right"):
     val right = choose(scan(deg => if deg > 0 && deg < 6 then 7 else 40))
@@ -52,7 +54,7 @@ class DynamicWindowSuite extends munit.FunSuite:
   test("a wall across: slower, and along it"):
     val wall  = (deg: Double) => 4 / StrictMath.cos(StrictMath.toRadians(deg)).max(1e-9)
     val chose = choose(scan(deg => if deg < 80 || deg > 280 then wall(deg).min(40) else 40))
-    val onto  = chose.speed.get.value * StrictMath.cos(chose.heading.value)
+    val onto  = chose.speed.value * StrictMath.cos(chose.heading.value)
     assert(onto < 2.5, s"$chose")
 
   test("beside its lane it heads back, not straight across"):
@@ -62,4 +64,7 @@ class DynamicWindowSuite extends munit.FunSuite:
   test("points stay where they were when the vehicle has flown on since"):
     // Seen from 0, a tree at 10 m: from 12 m north it lies behind.
     val tree = scan(deg => if deg < 3 || deg > 357 then 10 else 40)
-    assertEquals(choose(tree, position = Vector3(12, 0, -4)), Planar(Radians(0), Some(MetresPerSecond(5))))
+    assertEquals(
+      choose(tree, position = Vector3(12, 0, -4)),
+      Action.Along(Radians(0), MetresPerSecond(5), Metres(-4))
+    )

@@ -70,22 +70,43 @@ class PolicyFormulaSuite extends munit.FunSuite:
       ) ++ of.memory
     Evaluation(nodes)(inputs.toArray, of.parametersOf(policy)).toVector
 
-  private val policies: Seq[(String, SplitMix64 => Policy)] = Seq(
-    "the chase of the README"                             -> (_ => Chase),
-    "ages and lengths of time"                            -> (_ => Ages),
-    "a memory that is a case class"                       -> (random => Weaving(random.nextDouble())),
-    "a memory that is a vector of case classes"           -> (_ => Trails),
-    "a memory that is a tuple with an option's choice"    -> (_ => Pairs),
-    "loops over the team"                                 -> (_ => Crowd),
-    "the nearest by minBy, maps, sums and indices"        -> (_ => Collections),
-    "cases of an enumeration of its own, by data"         -> (_ => Modes),
-    "yaw, and a choice between actions"                   -> (_ => Looking),
-    "the heading of another and the own"                  -> (_ => Mirror),
-    "a planar policy that chooses its speed now and then" -> (_ => Planning),
-    "a policy against one opponent"                       -> (random => LeadPursuit(random.nextDouble()))
+  private val own: Seq[(String, SplitMix64 => Policy)] = Seq(
+    "the chase of the README"                          -> (_ => Chase),
+    "ages and lengths of time"                         -> (_ => Ages),
+    "a memory that is a case class"                    -> (random => Weaving(random.nextDouble())),
+    "a memory that is a vector of case classes"        -> (_ => Trails),
+    "a memory that is a tuple with an option's choice" -> (_ => Pairs),
+    "loops over the team"                              -> (_ => Crowd),
+    "the nearest by minBy, maps, sums and indices"     -> (_ => Collections),
+    "cases of an enumeration of its own, by data"      -> (_ => Modes),
+    "yaw, and a choice between actions"                -> (_ => Looking),
+    "the heading of another and the own"               -> (_ => Mirror),
+    "a choice between a heading and a velocity"        -> (_ => Braking),
+    "a policy against one opponent"                    -> (random => LeadPursuit(random.nextDouble()))
   )
 
-  for (name, draw) <- policies; self <- Seq(0, 2) do
+  private def ours: Seq[(String, SplitMix64 => Policy)] =
+    def within(random: SplitMix64, least: Double, most: Double) = least + (most - least) * random.nextDouble()
+    def circuit(random: SplitMix64) = Racetrack(within(random, 0, 60), within(random, 5, 30))
+    def pursuit(random: SplitMix64) = Pursuit(random.nextDouble(), random.nextDouble())
+    Seq(
+      "flee"        -> (random => Flee(within(random, 1, 6))),
+      "surrounding" -> (random =>
+        Surrounding(1, within(random, 4, 16), within(random, 4, 12), pursuit(random))
+      ),
+      "lead on circuit" -> (random =>
+        LeadOnCircuit(circuit(random), within(random, 2, 8), within(random, 1, 9))
+      ),
+      "follow on circuit" -> (random => FollowOnCircuit(1, circuit(random), within(random, 2, 8), 9, 3)),
+      "keep slot"         -> (random =>
+        KeepSlot(1, circuit(random), -within(random, 1, 9), within(random, -9, 9), 10, random.nextDouble())
+      ),
+      "avoidance" -> (random =>
+        Avoidance(within(random, -30, 30), within(random, -30, 30), 5, 8, 2, within(random, 0.5, 2), 4)
+      )
+    )
+
+  for (name, draw) <- own ++ ours; self <- Seq(0, 2) do
     test(s"$name, at place $self: the formula decides as the method does (seed $seed)"):
       val random  = SplitMix64(seed)
       val formula = formulaOf(draw(random), self).fold(throw _, identity)
@@ -99,7 +120,8 @@ class PolicyFormulaSuite extends munit.FunSuite:
           val (action, next) = policy.choose(seen, held.asInstanceOf[policy.Memory])
           val came           = answered(formula, policy, seen, numbers)
           val expected       = action match
-            case Action.VelocityAt(north, east, down, _) =>
+            case flown: (Action.VelocityAt | Action.Along) =>
+              val Action.VelocityAt(north, east, down, _) = flown.byVelocity: @unchecked
               assertEquals(down, seen.startDown)
               (north, east)
             case other => fail(s"$other")
@@ -162,7 +184,7 @@ object PolicyFormulaSuite:
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
       val way = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
-      (Action.heading(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
+      (Action.Along(Radians(StrictMath.atan2(way.y, way.x)), seen.cruise, seen.startDown), ())
 
   case object Ages extends Forgetful:
     private val old                       = Span.ofMillis(400)
@@ -173,7 +195,7 @@ object PolicyFormulaSuite:
       val ahead = other.kinematics.positionNed + other.kinematics.velocityNed * late.toSeconds
       val speed = if other.age <= seen.own.age then 3 + seen.actsIn.toMillis / 1000 else 5.0
       val way   = ahead - seen.own.kinematics.positionNed
-      Action.heading(Radians(StrictMath.atan2(way.y, way.x)), MetresPerSecond(speed), seen.startDown)
+      Action.Along(Radians(StrictMath.atan2(way.y, way.x)), MetresPerSecond(speed), seen.startDown)
 
   final case class Phase(angle: Double, isLeft: Boolean, rounds: Int)
   final case class Weaving(rate: Double) extends Policy:
@@ -187,7 +209,7 @@ object PolicyFormulaSuite:
       val way = towards(seen, seen.opponent)
       val by  = if next.rounds > 2 then 0.5 else 1.0
       (
-        Action.heading(Radians(StrictMath.atan2(way.y, way.x) + angle * by), seen.cruise, seen.startDown),
+        Action.Along(Radians(StrictMath.atan2(way.y, way.x) + angle * by), seen.cruise, seen.startDown),
         next
       )
 
@@ -255,15 +277,19 @@ object PolicyFormulaSuite:
   case object Mirror extends Forgetful:
     def action(seen: Observation): Action =
       val between = (seen.headings(seen.opponent).value + seen.headings(seen.self).value) / 2
-      Action.heading(Radians(between), MetresPerSecond(seen.headings.size), seen.startDown)
+      Action.Along(Radians(between), MetresPerSecond(seen.headings.size), seen.startDown)
 
-  case object Planning extends PlanarPolicy:
+  case object Braking extends Policy:
     type Memory = Double
     def start: Double                                               = 0.5
-    def planar(seen: Observation, memory: Double): (Planar, Double) =
-      val way   = towards(seen, seen.opponent)
-      val speed = Option.when(way.norm > 20)(MetresPerSecond(way.norm / 5))
-      (Planar(Radians(seen.headings(seen.self).value + memory * seen.elapsed.toSeconds), speed), memory * 0.9)
+    def choose(seen: Observation, memory: Double): (Action, Double) =
+      val way    = towards(seen, seen.opponent)
+      val turned = seen.headingRad + memory * seen.elapsed.toSeconds
+      val action =
+        if way.norm > 30 then seen.along(turned, seen.cruise.value)
+        else if way.norm > 20 then flying(seen, 0, 0)
+        else flying(seen, way.x / 5, way.y / 5)
+      (action, memory * 0.9)
 
   case object Hovering extends Forgetful:
     def action(seen: Observation): Action = Action.Hover

@@ -1,5 +1,8 @@
 package skein.policy
 
+import skein.signal.Kinematics
+import skein.units.*
+
 /** A team flown by its policies without any delay, each velocity following its command with a first-order
   * lag.
   *
@@ -16,27 +19,28 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   /** The smallest distance of any two so far, m. */
   var leastM: Double = Double.PositiveInfinity
 
-  def seenBy(vehicle: Int): TeamObservation = TeamObservation(
-    vehicle,
-    IArray.from(northM),
-    IArray.from(eastM),
-    IArray.from(northMps),
-    IArray.from(eastMps),
-    heading(vehicle),
-    stepS
-  )
+  def seenBy(vehicle: Int): Observation =
+    TeamFlight.seen(
+      vehicle,
+      northM.toSeq,
+      eastM.toSeq,
+      northMps.toSeq,
+      eastMps.toSeq,
+      heading(vehicle),
+      stepS
+    )
 
   def fly(seconds: Double)(after: => Unit = ()): Unit =
     for _ <- 1 to math.round(seconds / stepS).toInt do
-      val courses = agents.indices.map: vehicle =>
-        agents(vehicle).policy match
-          case team: TeamPolicy => team.course(seenBy(vehicle))
-          case _: HeadingPolicy        => throw IllegalArgumentException("no team")
+      val actions = agents.indices.map: vehicle =>
+        val policy = agents(vehicle).policy
+        policy.choose(seenBy(vehicle), policy.start)._1
       val share = if lagS == 0 then 1.0 else 1 - math.exp(-stepS / lagS)
-      for (course, vehicle) <- courses.zipWithIndex do
-        heading(vehicle) = course.headingRad
-        northMps(vehicle) += share * (course.speedMps * math.cos(course.headingRad) - northMps(vehicle))
-        eastMps(vehicle) += share * (course.speedMps * math.sin(course.headingRad) - eastMps(vehicle))
+      for (action, vehicle) <- actions.zipWithIndex do
+        heading(vehicle) = action.headingRad(heading(vehicle))
+        val speed = action.speed.value
+        northMps(vehicle) += share * (speed * math.cos(heading(vehicle)) - northMps(vehicle))
+        eastMps(vehicle) += share * (speed * math.sin(heading(vehicle)) - eastMps(vehicle))
         northM(vehicle) += northMps(vehicle) * stepS
         eastM(vehicle) += eastMps(vehicle) * stepS
       for one <- agents.indices; other <- 0 until one do leastM = leastM.min(distanceM(one, other))
@@ -44,3 +48,28 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
 
   def distanceM(one: Int, other: Int): Double =
     math.hypot(northM(one) - northM(other), eastM(one) - eastM(other))
+
+object TeamFlight:
+  /** What a vehicle sees of a team, all at one altitude, and against nobody. */
+  def seen(
+      self: Int,
+      northM: Seq[Double],
+      eastM: Seq[Double],
+      northMps: Seq[Double],
+      eastMps: Seq[Double],
+      headingRad: Double,
+      elapsedS: Double
+  ): Observation = Observation(
+    self,
+    Vector.tabulate(northM.size): vehicle =>
+      val place    = Vector3(northM(vehicle), eastM(vehicle), -5)
+      val velocity = Vector3(northMps(vehicle), eastMps(vehicle), 0)
+      Seen(Kinematics(place, velocity, Quaternion.Identity, Vector3.Zero), Span.Zero, isPredicted = false)
+    ,
+    self,
+    Vector.fill(northM.size)(Radians(headingRad)),
+    Span.ofSeconds(elapsedS),
+    0,
+    MetresPerSecond(5),
+    Metres(-5)
+  )

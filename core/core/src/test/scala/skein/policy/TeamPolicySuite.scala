@@ -30,13 +30,13 @@ class TeamPolicySuite extends munit.FunSuite:
       def slots(turnedRad: Double) =
         val around = bearings.map(_ + turnedRad)
         val all    = around.take(3) ++ Seq(Double.NaN) ++ around.drop(3)
-        val flat   = IArray.fill(8)(0.0)
+        val flat   = Seq.fill(8)(0.0)
         for self <- 0 until 8 if self != 3
         yield policy.slotRad(
-          TeamObservation(
+          TeamFlight.seen(
             self,
-            IArray.from(all.map(rad => if rad.isNaN then 0.0 else 9 * math.cos(rad))),
-            IArray.from(all.map(rad => if rad.isNaN then 0.0 else 9 * math.sin(rad))),
+            all.map(rad => if rad.isNaN then 0.0 else 9 * math.cos(rad)),
+            all.map(rad => if rad.isNaN then 0.0 else 9 * math.sin(rad)),
             flat,
             flat,
             0,
@@ -53,12 +53,13 @@ class TeamPolicySuite extends munit.FunSuite:
       )
 
   test("the evader flees straight away from the nearest"):
-    val scene = Surround(vehicles = 3).fleet
-    val seen  = TeamFlight(scene, lagS = 0).seenBy(0)
-    val moved = seen.copy(northM = IArray(0, 3, -2), eastM = IArray(0, 4, -1))
-    val fled  = Flee(4).course(moved)
-    assertEqualsDouble(fled.headingRad, math.atan2(1, 2), 1e-12)
-    assertEquals(fled.speedMps, 4.0)
+    val still = Seq.fill(3)(0.0)
+    val seen  = TeamFlight.seen(0, Seq(0, 3, -2), Seq(0, 4, -1), still, still, 0, 0.1)
+    Flee(4).choose(seen, ())._1 match
+      case Action.Along(heading, speed, down, Yaw.Still) =>
+        assertEqualsDouble(heading.value, math.atan2(1, 2), 1e-12)
+        assertEquals((speed, down), (MetresPerSecond(4), seen.startDown))
+      case other => fail(s"came $other")
 
   test("a place on the circuit is found again from its point, and directions follow the points"):
     val circuit = Racetrack(50, 20)
@@ -219,13 +220,7 @@ class TeamPolicySuite extends munit.FunSuite:
   test("vehicles out of reach, and those that stand in one another, leave numbers"):
     for side <- Seq(0.0, 1e6) do
       val policy = Avoidance(10, 0, cruiseMps = 5, mostMps = 8, minimumM = 2, marginM = 1.5, horizonS = 4)
-      val course = policy.course(TeamObservation(
-        1,
-        IArray(side, 0, 0),
-        IArray(side, 0, 0),
-        IArray(0, 0, 0),
-        IArray(0, 0, 0),
-        0,
-        0.1
-      ))
-      assert(course.headingRad.isFinite && course.speedMps <= 8.001, s"$course")
+      val places = Seq(side, 0, 0)
+      val still  = Seq.fill(3)(0.0)
+      val action = policy.choose(TeamFlight.seen(1, places, places, still, still, 0, 0.1), ())._1
+      assert(action.headingRad(Double.NaN).isFinite && action.speed.value <= 8.001, s"$action")

@@ -47,7 +47,7 @@ class OwnFailureSuite extends munit.FunSuite:
       "(Scout.scala:2)"
     )
     assertEquals(
-      line("org.other.Parser", "patrol.maps.Corners", "patrol.Scout", "skein.policy.PlanarPolicy"),
+      line("org.other.Parser", "patrol.maps.Corners", "patrol.Scout", "skein.policy.HeadingPolicy"),
       "(Corners.scala:1)"
     )
     assertEquals(line("scala.Option", "skein.scenario.Forest", "skein.loop.Decider"), "(Forest.scala:1)")

@@ -107,7 +107,7 @@ final class EnvironmentSimulator private (
         catchUp()
         failed.toLeft(Stamped(last.agents(index).kinematics, simulated, sentAt, clock.now()))
 
-    def act(action: Action, lasts: Span): Future[Answer] = action match
+    def act(action: Action, lasts: Span): Future[Answer] = action.byVelocity match
       case Action.Velocity(velocity, _)         => go(lasts)(_ => velocity)
       case Action.VelocityAt(north, east, _, _) => go(lasts)(_ => Vector3(north, east, 0))
       case Action.Position(place, speed, _)     =>

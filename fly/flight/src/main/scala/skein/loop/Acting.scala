@@ -14,6 +14,7 @@ private object Acting:
       turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, velocity)
     case Action.VelocityAt(north, east, down, yaw) =>
       turned(Setpoint.velocityZ(north, east, down.value), yaw, Vector3(north, east, 0))
+    case along: Action.Along                       => guidance(along.byVelocity)
     case Action.Position(position, speed, yaw)     => PositionGuidance(position, speed, yaw)
     case Action.Turn(yaw)                          => turned(Setpoint.velocity(0, 0, 0), yaw, Vector3.Zero)
     case Action.Attitude(roll, pitch, yaw, thrust) =>

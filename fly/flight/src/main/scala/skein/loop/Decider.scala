@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Policy, Fleet, Observation, PlanarPolicy, Seen, Sensed, TeamObservation}
+import skein.policy.{Action, Fleet, HeadingPolicy, Observation, Policy, Seen, Sensed, Yaw}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -28,27 +28,25 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
     * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
-    val seen = observation(memory, view, now)
+    val (action, held)   = answered(memory, view, now)
+    val heading          = action.headingRad(memory.headingRad)
+    val speed            = Option.unless(policy.isInstanceOf[HeadingPolicy])(action.speed)
+    val (next, decision) = decided(memory, view, now, heading, speed)
+    val told             = action match
+      case Action.Along(_, _, down, Yaw.Still) if down.value == agent.startPositionNed.z => None
+      case other => Some(other.byVelocity)
+    (next.copy(held = held), decision.copy(action = told))
+
+  /** What the policy answers, and what it is to remember.
+    *
+    * @throws skein.units.OwnFailure if it throws, or answers with nothing that a vehicle could be told
+    */
+  def answered(memory: Memory, view: TeamView, now: Instant): (Action, Any) =
     // A memory comes from this policy alone: from its start, or from its last decision.
-    policy match
-      case planar: PlanarPolicy =>
-        val (chosen, held) =
-          PolicyAnswer.of(agent)(planar.planar(seen, memory.held.asInstanceOf[planar.Memory]))
-        val (next, decision) = decided(memory, view, now, chosen.heading.value, chosen.speed)
-        (next.copy(held = held), decision)
-      case _ =>
-        val (action, held) =
-          PolicyAnswer.of(agent)(policy.choose(seen, memory.held.asInstanceOf[policy.Memory]))
-        PolicyAnswer.expectAction(agent, action)
-        val (next, decision) =
-          decided(
-            memory,
-            view,
-            now,
-            action.headingRad(memory.headingRad),
-            Some(action.speed)
-          )
-        (next.copy(held = held), decision.copy(action = Some(action)))
+    val (action, held) = PolicyAnswer.of(agent):
+      policy.choose(observation(memory, view, now), memory.held.asInstanceOf[policy.Memory])
+    PolicyAnswer.expectAction(agent, action)
+    (action, held)
 
   /** Decides once in the place of another policy, of which the memory is, and leaves that policy's own part
     * as it was.
@@ -92,10 +90,6 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   private def age(view: TeamView, now: Instant, reading: Stamped[?]): Span =
     view.alignment.flatMap(_.ageOf(reading, now)).getOrElse(reading.ageByArrival(now))
-
-  /** What the vehicle knows of its team. */
-  def request(memory: Memory, view: TeamView, now: Instant): TeamObservation =
-    TeamObservation.of(observation(memory, view, now))
 
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 

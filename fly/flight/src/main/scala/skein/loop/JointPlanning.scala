@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.loop.planning.PlanStage
 import skein.planning.{Part, PlannerSettings}
-import skein.policy.{Fleet, GoalPolicy}
+import skein.policy.{Fleet, Goal}
 import skein.units.*
 
 /** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its
@@ -65,6 +65,6 @@ object JointPlanning:
         val foreseen  = known.toMap
         val plannings = vehicles.map: vehicle =>
           fleet.agents(vehicle).policy match
-            case goal: GoalPolicy => TeamPlanning(fleet, vehicle, goal, foreseen(vehicle), planning, seed)
-            case _                => PursuitPlanning(fleet, vehicle, foreseen, planning, seed)
+            case goal: Goal => TeamPlanning(fleet, vehicle, goal, foreseen(vehicle), planning, seed)
+            case _          => PursuitPlanning(fleet, vehicle, foreseen, planning, seed)
         Some(JointPlanning(vehicles, plannings))

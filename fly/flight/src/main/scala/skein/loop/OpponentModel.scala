@@ -9,7 +9,7 @@ object OpponentModel:
   /** By which policy it is taken to decide, or why it is taken to fly straight on. */
   private[loop] def of(opponent: Agent): Either[String, HeadingPolicy] = opponent.policy match
     case policy: HeadingPolicy => Planner.refusal(policy).toLeft(policy)
-    case _              => Left("it plays against more than one vehicle")
+    case _                     => Left("it plays against more than one vehicle")
 
   /** Whose decisions plans may foresee, by their places. */
   private[loop] def known(fleet: Fleet): Vector[Int] =

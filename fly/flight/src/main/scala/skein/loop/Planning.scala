@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Agent, Fleet}
+import skein.policy.{Agent, Fleet, Goal, HeadingPolicy, Role}
 import skein.record.PlannedPath
 import skein.units.*
 import skein.vehicle.{PlaneReading, VehicleKind}
@@ -133,7 +133,10 @@ object Planning:
     * on the spot.
     */
   private[loop] def plans(agent: Agent): Boolean =
-    agent.kind == VehicleKind.Multirotor && agent.policy.isPlannedFor(agent.role)
+    agent.kind == VehicleKind.Multirotor && (agent.policy match
+      case _: Goal          => true
+      case _: HeadingPolicy => agent.role == Role.Pursuer
+      case _                => false)
 
   /** Which vehicles plan and which do not, in a line for the user.
     *
@@ -152,7 +155,7 @@ object Planning:
            s"${names(others)} ${
                if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"
              }"),
-      "plan: expected a multirotor that can plan, by a GoalPolicy or by a HeadingPolicy that " +
+      "plan: expected a multirotor that can plan, by a policy with a Goal or by a HeadingPolicy that " +
         s"pursues one opponent, came none: ${names(others)} would fly by their own policies"
     )
 

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Fleet, GoalPolicy, TeamObservation}
+import skein.policy.{Fleet, Goal, Observation}
 import skein.units.*
 import skein.vehicle.PlantModel
 
@@ -13,16 +13,16 @@ import skein.vehicle.PlantModel
 private final class TeamPlanning(
     fleet: Fleet,
     self: Int,
-    policy: GoalPolicy,
+    goal: Goal,
     foreseen: ForeseenVehicle,
     settings: PlanSettings,
     seed: Long
 ) extends Planning(fleet, self, settings, foreseen):
   import Planning.straight
-  private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
+  private val minimumM = goal.minimumM.max(settings.separationM).max(settings.apartM)
 
   private val objective = PlanCost(
-    CommandLimits(0, settings.speedMps(policy.mostMps), TeamPlanning.MostTurnRad / settings.planner.dtS),
+    CommandLimits(0, settings.speedMps(goal.mostMps), TeamPlanning.MostTurnRad / settings.planner.dtS),
     distance = 1,
     carried = 0.5,
     turning = 0.002,
@@ -38,7 +38,7 @@ private final class TeamPlanning(
   def regardsTeam: Boolean = true
 
   def pose(memory: Memory, view: TeamView, now: Instant): Part =
-    val request = decider.request(memory, view, now)
+    val request = decider.observation(memory, view, now)
     val wanted  = Vector.tabulate(planner.steps)(step => placeWanted(request, (step + 1) * planner.dtS))
     val others  =
       if minimumM == 0 then Vector.empty
@@ -58,12 +58,12 @@ private final class TeamPlanning(
     Part(
       // Other speeds than that of the place wanted are for catching up.
       objective.copy(limits = limits, cruiseSpeed = settings.speedMps(speed(along))),
-      alone.copy(suggested = suggested(request, alone, limits)),
+      alone.copy(suggested = suggested(request, memory, alone, limits)),
       Planning.stream(seed, self, memory)
     )
 
-  private def placeWanted(request: TeamObservation, aheadS: Double): (Double, Double) =
-    val place = PolicyAnswer.of(agent)(policy.wanted(request, aheadS))
+  private def placeWanted(request: Observation, aheadS: Double): (Double, Double) =
+    val place = PolicyAnswer.of(agent)(goal.wanted(request, aheadS))
     PolicyAnswer.expectAction(agent, place)
     place
 
@@ -82,18 +82,23 @@ private final class TeamPlanning(
     * at it.
     */
   private def suggested(
-      request: TeamObservation,
+      request: Observation,
+      memory: Memory,
       situation: Situation,
       limits: CommandLimits
   ): Vector[Manoeuvre] =
-    if policy.minimumM > 0 then Vector.empty
-    else Vector(PolicyManoeuvre.of(policy, request, situation, limits, planner.steps, planner.dtS))
+    if goal.minimumM > 0 then Vector.empty
+    else
+      val ways = PolicyManoeuvre
+        .of(agent.policy, memory.held, request, situation, limits, planner.steps, planner.dtS)
+      Vector(ways)
 
   protected def choosesSpeed: Boolean = true
 
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove =
-    val course = policy.course(decider.request(memory, view, now))
-    PlannedMove(course.headingRad - memory.headingRad, settings.speedMps(course.speedMps), Vector.empty)
+    val (action, _) = decider.answered(memory, view, now)
+    val turn        = action.headingRad(memory.headingRad) - memory.headingRad
+    PlannedMove(turn, settings.speedMps(action.speed.value), Vector.empty)
 
 private object TeamPlanning:
   /** Of a multirotor that turns on the spot, in a step. What is less than its policy turns keeps a vehicle

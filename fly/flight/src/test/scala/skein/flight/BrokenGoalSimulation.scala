@@ -9,10 +9,12 @@ import skein.units.*
 /** What becomes of a plan whose goal a policy cannot tell. */
 class BrokenGoalSimulation extends munit.FunSuite:
 
-  private final case class Wanting(place: () => (Double, Double)) extends GoalPolicy:
-    def course(seen: TeamObservation): Course                           = Course(0, 1)
-    def mostMps: Double                                                 = 5
-    def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) = place()
+  private final case class Wanting(place: () => (Double, Double)) extends Policy, Goal:
+    type Memory = Unit
+    def start: Unit                                                 = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit)     = (seen.along(0, 1), ())
+    def mostMps: Double                                             = 5
+    def wanted(seen: Observation, aheadS: Double): (Double, Double) = place()
 
   private final case class Errand(place: () => (Double, Double)) extends Scenario:
     def agents: Vector[Agent] = Vector(

@@ -92,20 +92,22 @@ final case class Couriers() extends Scenario:
   ))
 
 /** Straight to a place. */
-final case class ToGoal(goal: (Double, Double)) extends GoalPolicy:
+final case class ToGoal(goal: (Double, Double)) extends Policy, Goal:
   def mostMps: Double = 6
 
-  private def way(seen: TeamObservation) =
+  private def way(seen: Observation) =
     (goal._1 - seen.northM(seen.self), goal._2 - seen.eastM(seen.self))
 
-  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
+  def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val (north, east) = way(seen)
     val share         = (5 * aheadS / math.hypot(north, east).max(1e-9)).min(1)
     (seen.northM(seen.self) + north * share, seen.eastM(seen.self) + east * share)
 
-  def course(seen: TeamObservation): Course =
+  type Memory = Unit
+  def start: Unit                                             = ()
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     val (north, east) = way(seen)
-    Course.of(north, east, mostMps = 5, seen.headingRad)
+    (seen.towards(north, east, mostMps = 5), ())
 
 /** The paper's two, who may not come near each other, in a round field; the evader, which does not plan, may
   * leave it.

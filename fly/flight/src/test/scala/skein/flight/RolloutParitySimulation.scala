@@ -220,7 +220,7 @@ object AnyPolicies:
     seen.vehicles(vehicle).kinematics.positionNed - seen.own.kinematics.positionNed
 
   private def heading(seen: Observation, way: Vector3, by: Double) =
-    Action.heading(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
+    Action.Along(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
 
   final case class Phase(angle: Double, isLeft: Boolean)
 
@@ -256,10 +256,10 @@ object AnyPolicies:
       (heading(seen, way, 0.2 * mean.max(-1).min(1)), next)
 
   /** Leads by the age of what it knows. */
-  case object Ages extends PlanarPolicy:
+  case object Ages extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
-    def planar(seen: Observation, memory: Unit): (Planar, Unit) =
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
       val other = seen.vehicles(seen.opponent)
       val way   = towards(seen, seen.opponent) + other.kinematics.velocityNed * other.age.toSeconds
-      (Planar(Radians(StrictMath.atan2(way.y, way.x)), None), ())
+      (heading(seen, way, 0), ())

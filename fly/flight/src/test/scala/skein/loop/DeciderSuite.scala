@@ -46,9 +46,9 @@ class DeciderSuite extends munit.FunSuite:
 
   test("no vehicle is told a heading that is no finite number"):
     val lost = Decider(scenario, 1, skein.policy.PaperPursuer(Double.NaN))
-    val told = intercept[ArithmeticException](lost.decide(lost.start, view, millis(200)))
+    val told = intercept[OwnFailure](lost.decide(lost.start, view, millis(200)))
     assert(
-      told.getMessage.contains("the policy of Pursuer decided for a heading that is no finite number: NaN")
+      told.getMessage.contains("the policy of Pursuer decided for what no vehicle can do: Along(NaN")
     )
 
   private def failureOf(action: => Action): String =

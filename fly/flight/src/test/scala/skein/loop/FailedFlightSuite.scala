@@ -57,12 +57,12 @@ class FailedFlightSuite extends munit.FunSuite:
       settings: LoopSettings = LoopSettings()
   ): FlightResult = VirtualTime
     .run(seed = 1): system =>
-      given ActorSystem      = system
-      given ExecutionContext = system.dispatcher
-      val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val duel               = PaperDuel().fleet
-      var decisions          = 0
-      val failing: HeadingPolicy    = (_, _, _, _, own, _, _) =>
+      given ActorSystem          = system
+      given ExecutionContext     = system.dispatcher
+      val clock                  = Clock.ofNanos(VirtualTime.clock(system))
+      val duel                   = PaperDuel().fleet
+      var decisions              = 0
+      val failing: HeadingPolicy = (_, _, _, _, own, _, _) =>
         decisions += 1
         if decisions > 20 then throw error else own
       val scenario = duel.copy(agents = duel.agents.map: agent =>

@@ -1,17 +1,7 @@
 package skein.loop
 
 import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, SeparationCost, Target}
-import skein.policy.{
-  Policy,
-  Course,
-  Fleet,
-  GoalPolicy,
-  KeepHeading,
-  HeadingPolicy,
-  Role,
-  TeamObservation,
-  TeamPolicy
-}
+import skein.policy.{Action, Fleet, Goal, HeadingPolicy, KeepHeading, Observation, Policy, Role}
 import skein.scenario.{Kept, PaperDuel}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -36,8 +26,8 @@ class PlanningSuite extends munit.FunSuite:
   private def pursuit(settings: PlanSettings, fleet: Fleet = fleet) =
     PursuitPlanning(fleet, pursuer, foreseen(fleet), settings, seed = 3)
 
-  private def teamwork(fleet: Fleet, policy: GoalPolicy, settings: PlanSettings) =
-    TeamPlanning(fleet, pursuer, policy, foreseen(fleet)(pursuer), settings, seed = 3)
+  private def teamwork(fleet: Fleet, goal: Goal, settings: PlanSettings) =
+    TeamPlanning(fleet, pursuer, goal, foreseen(fleet)(pursuer), settings, seed = 3)
 
   private def jointly(fleet: Fleet, settings: PlanSettings) =
     JointPlanning.of(fleet, LoopSettings(planning = settings, seed = 3)).fold(fail(_), identity)
@@ -120,7 +110,7 @@ class PlanningSuite extends munit.FunSuite:
   test(
     "the opponent is taken to fly by the policy that the scenario states, from the heading it was sent last"
   ):
-    val evader                       = fleet.opponentOf(pursuer, places)
+    val evader                  = fleet.opponentOf(pursuer, places)
     def flownBy(policy: Policy) =
       Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
     def target(policy: Policy) =
@@ -140,7 +130,7 @@ class PlanningSuite extends munit.FunSuite:
     assert(target(Lucky).isInstanceOf[Target.Along])
     // Of those alone that somebody plans against.
     def all(policy: Policy) = Fleet(fleet.agents.map(_.copy(policy = policy)))
-    val luckyPursuers            = Fleet(fleet.agents.map(agent =>
+    val luckyPursuers       = Fleet(fleet.agents.map(agent =>
       if agent.role == Role.Pursuer then agent.copy(policy = Lucky) else agent.copy(policy = KeepHeading)
     ))
     assertEquals(OpponentModel.missing(luckyPursuers), Vector.empty)
@@ -158,10 +148,12 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(streams.distinct.size, streams.size)
 
   /** A slot that moves north at 3 m/s, whatever is seen. */
-  private final class Moving(override val minimumM: Double = 0) extends GoalPolicy:
-    def mostMps: Double                                                 = 6
-    def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) = (3 * aheadS, 4)
-    def course(seen: TeamObservation): Course                           = Course(0, 3)
+  private final class Moving(override val minimumM: Double = 0) extends Policy, Goal:
+    def mostMps: Double                                             = 6
+    def wanted(seen: Observation, aheadS: Double): (Double, Double) = (3 * aheadS, 4)
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) = (seen.along(0, 3), ())
 
   private def teamPart(policy: Moving, settings: PlanSettings, decidedBefore: Option[Span] = None) =
     val team = Fleet(fleet.agents.map(_.copy(policy = policy)))
@@ -238,8 +230,10 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(posed(0).situation.others.size, 0)
     assert(!posed(0).objective.separation.isKept)
 
-  private object Together extends TeamPolicy:
-    def course(seen: TeamObservation): Course = Course(0, 1)
+  private object Together extends Policy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) = (seen.along(0, 1), ())
 
   test("in the plan's place the policy of one of a team decides its heading and its speed"):
     val team             = Fleet(fleet.agents.map(_.copy(policy = Moving())))

@@ -38,18 +38,22 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
   private val duels = PaperDuel(pairs = 2).fleet
 
   /** Flies where the rest of the team is heading, and away from where it is. */
-  private object Together extends TeamPolicy:
-    def course(seen: TeamObservation): Course =
+  private object Together extends Policy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
       val others = (0 until seen.count).filter(_ != seen.self)
       val north  = others.map(other => seen.northM(other) + seen.northMps(other)).sum
       val east   = others.map(other => seen.eastM(other) - seen.eastMps(other)).sum
-      Course(math.atan2(east, north), 2)
+      (seen.along(math.atan2(east, north), 2), ())
 
   /** A place of its own beside all others, that moves north. */
-  private object Slot extends GoalPolicy:
-    def mostMps: Double                                                 = 6
-    def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) = (3 * aheadS, 8.0 * seen.self)
-    def course(seen: TeamObservation): Course                           = Course(0, 3)
+  private object Slot extends Policy, Goal:
+    def mostMps: Double                                             = 6
+    def wanted(seen: Observation, aheadS: Double): (Double, Double) = (3 * aheadS, 8.0 * seen.self)
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) = (seen.along(0, 3), ())
 
   private def team(policy: Policy) = Fleet(duels.agents.take(3).map(_.copy(policy = policy)))
 

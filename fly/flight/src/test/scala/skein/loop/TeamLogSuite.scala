@@ -55,8 +55,11 @@ class TeamLogSuite extends munit.FunSuite:
       books.log.failed(0, "reading 3", error)
       assertEquals(books.recording.events.map(one => (one.kind, one.detail)), Vector(kind -> "reading 3: x"))
 
-  private object Together extends TeamPolicy:
-    def course(seen: TeamObservation): Course = Course(seen.northM.sum, 2)
+  private object Together extends Policy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
+      (seen.along(seen.vehicles.indices.map(seen.northM).sum, 2), ())
 
   test("of a policy that regards its team it is on record whom else it saw, of a duellist not"):
     val duels = PaperDuel(pairs = 2).fleet

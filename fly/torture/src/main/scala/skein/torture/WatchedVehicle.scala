@@ -54,7 +54,7 @@ final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Se
         case Success(Right(state)) => told += ReportedState(question, state)
 
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
-    val (north, east) = action match
+    val (north, east) = action.byVelocity match
       case Action.VelocityAt(north, east, _, _) => (north, east)
       case Action.Velocity(velocityNed, _)      => (velocityNed.x, velocityNed.y)
       case _                                    => (0.0, 0.0)

@@ -20,26 +20,22 @@ private[skein] final class Choosing(agent: RolloutAgent, regardsYaw: Boolean):
 
   /** @throws OwnFailure if the policy throws, or decides for what forward simulation does not fly
     */
-  def choose(seen: Observation): Chosen = policy match
-    case planar: PlanarPolicy =>
-      val (chosen, next) = OwnFailure.told(whose)(planar.planar(seen, memory.asInstanceOf[planar.Memory]))
-      memory = next
-      val speed   = chosen.speed.getOrElse(seen.cruise).value
-      val heading = chosen.heading.value
-      Chosen(heading, speed, speed * StrictMath.cos(heading), speed * StrictMath.sin(heading))
-    case _ =>
-      val (action, next) = OwnFailure.told(whose)(policy.choose(seen, own))
-      memory = next
-      action match
-        case Action.VelocityAt(north, east, seen.startDown, yaw)
-            if north.isFinite && east.isFinite && (yaw == Yaw.Still || !regardsYaw) =>
-          val before = seen.headings(seen.self).value
-          Chosen(action.headingRad(before), action.speed.value, north, east)
-        case other => throw OwnFailure(
-            whose,
-            s"decided for $other; forward simulation flies velocities at the altitude of the vehicle's start " +
-              s"(${seen.startDown.value} m down)${if regardsYaw then ", without turning" else ""}"
-          )
+  def choose(seen: Observation): Chosen =
+    val (action, next) = OwnFailure.told(whose)(policy.choose(seen, own))
+    memory = next
+    def holds(yaw: Yaw) = yaw == Yaw.Still || !regardsYaw
+    action match
+      case Action.Along(heading, speed, seen.startDown, yaw) if holds(yaw) =>
+        val (cos, sin) = (StrictMath.cos(heading.value), StrictMath.sin(heading.value))
+        Chosen(heading.value, speed.value, speed.value * cos, speed.value * sin)
+      case Action.VelocityAt(north, east, seen.startDown, yaw)
+          if north.isFinite && east.isFinite && holds(yaw) =>
+        Chosen(action.headingRad(seen.headingRad), action.speed.value, north, east)
+      case other => throw OwnFailure(
+          whose,
+          s"decided for $other; forward simulation flies velocities at the altitude of the vehicle's start " +
+            s"(${seen.startDown.value} m down)${if regardsYaw then ", without turning" else ""}"
+        )
 
 private[skein] object Choosing:
   /** A velocity, m/s, and the heading and speed that stand for it where others ask for them. */

@@ -6,9 +6,7 @@ import skein.policy.{
   ObservingPolicy,
   PlanarObservation,
   HeadingPolicy,
-  Seen,
-  TeamObservation,
-  TeamPolicy
+  Seen
 }
 import skein.signal.Kinematics
 import skein.units.{Instant, Metres, MetresPerSecond, OwnFailure, Radians, Span}
@@ -99,7 +97,7 @@ private[skein] final class Controller(
   private var sentNumber    = 0
   private var made, unused  = 0
 
-  /** Asks policies of neither kind that is asked by numbers alone. */
+  /** Asks policies that are not asked by numbers alone. */
   private val choosing                = Choosing(world.agents(agent), world.regardsYaw)
   private var chosenNorth, chosenEast = 0.0
   private var isChosen                = false
@@ -182,12 +180,8 @@ private[skein] final class Controller(
     val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
     policy match
-      case duel: HeadingPolicy     => decided = heading(duel, observation, elapsed)
-      case team: TeamPolicy =>
-        val course = asked(team.course(seen(observation, elapsed)))
-        decided = course.headingRad
-        speed = course.speedMps
-      case _ =>
+      case duel: HeadingPolicy => decided = heading(duel, observation, elapsed)
+      case _                   =>
         val chosen = choosing.choose(observed(observation, elapsedNs))
         decided = chosen.headingRad
         speed = chosen.speedMps
@@ -291,16 +285,6 @@ private[skein] final class Controller(
     */
   private def asked[A](answer: => A): A =
     OwnFailure.told(OwnFailure.named("policy", policy))(answer)
-
-  private def seen(observation: RolloutView, elapsedS: Double): TeamObservation = TeamObservation(
-    agent,
-    IArray.from(observation.x),
-    IArray.from(observation.y),
-    IArray.from(observation.vx),
-    IArray.from(observation.vy),
-    decided,
-    elapsedS
-  )
 
   /** Puts where the vehicles will be in the place of where they were read. */
   private def ahead(observation: RolloutView, forecast: Forecast): Unit =

@@ -6,8 +6,8 @@ import skein.simd.Forms
 import skein.units.Metres
 
 /** Which policies decide for nothing but horizontal velocities at the altitude of their vehicle's start:
-  * forward simulation flies no other. [[skein.policy.Policy.isPlanar]] promises it; of others it is seen
-  * in their formula.
+  * forward simulation flies no other. [[skein.policy.Policy.isPlanar]] promises it; of others it is seen in
+  * their formula.
   */
 private object Level:
   private val known = ConcurrentHashMap[(Int, Assignment, Boolean), Forms[Policy, PolicyFormula]]()

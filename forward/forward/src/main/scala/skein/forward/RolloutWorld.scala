@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.policy.{Assignment, HeadingPolicy, TeamPolicy}
+import skein.policy.{Assignment, HeadingPolicy}
 import skein.signal.{Kinematics, Stamped}
 
 /** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their
@@ -25,9 +25,7 @@ private[skein] final class RolloutWorld(
   val assignment: Assignment      = engagement.assignment
 
   /** By vehicle: whether its policy is asked as any is, and not by numbers alone. */
-  val isAsked: Array[Boolean] = agents.map(_.policy match
-    case _: (HeadingPolicy | TeamPolicy) => false
-    case _                        => true)
+  val isAsked: Array[Boolean] = agents.map(!_.policy.isInstanceOf[HeadingPolicy])
 
   /** Whether all that readings tell is kept. */
   val keepsKinematics: Boolean = keepsAll || isAsked.contains(true)

@@ -28,7 +28,7 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
   */
 private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => VelocityResponse):
   private var last: (HeadingPolicy, HeadingPolicy, Delays) = (null, null, null)
-  private var rollout: Rollout               = null
+  private var rollout: Rollout                             = null
 
   def apply(worlds: DuelWorlds, world: Int): Rollout =
     val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))

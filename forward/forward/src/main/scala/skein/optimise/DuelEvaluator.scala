@@ -42,16 +42,18 @@ final class DuelEvaluator(
         Array.tabulate(keys.length): episode =>
           objective.value(outcomes, candidate * keys.length + episode, role, durationS)
 
-  private def pursuer(candidate: HeadingPolicy): HeadingPolicy = if role == Role.Pursuer then candidate else opponent
-  private def evader(candidate: HeadingPolicy): HeadingPolicy  = if role == Role.Evader then candidate else opponent
+  private def pursuer(candidate: HeadingPolicy): HeadingPolicy =
+    if role == Role.Pursuer then candidate else opponent
+  private def evader(candidate: HeadingPolicy): HeadingPolicy =
+    if role == Role.Evader then candidate else opponent
 
   /** The candidate does not enter the key: all meet the same delays. */
   private final class Worlds(policies: Array[HeadingPolicy], keys: Array[Int]) extends DuelWorlds:
-    def size: Int                       = policies.length * keys.length
-    override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
-    override def episodesOfEach: Int    = keys.length
-    override def asked: Set[DuelNumber] = objective.asked(role)
-    def key(world: Int): Int            = keys(world % keys.length)
-    def link(world: Int): Delays        = DuelEvaluator.this.link
-    def pursuer(world: Int): HeadingPolicy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
-    def evader(world: Int): HeadingPolicy      = DuelEvaluator.this.evader(policies(world / keys.length))
+    def size: Int                          = policies.length * keys.length
+    override def shareEpisodes: Boolean    = DuelEvaluator.this.shareEpisodes
+    override def episodesOfEach: Int       = keys.length
+    override def asked: Set[DuelNumber]    = objective.asked(role)
+    def key(world: Int): Int               = keys(world % keys.length)
+    def link(world: Int): Delays           = DuelEvaluator.this.link
+    def pursuer(world: Int): HeadingPolicy = DuelEvaluator.this.pursuer(policies(world / keys.length))
+    def evader(world: Int): HeadingPolicy  = DuelEvaluator.this.evader(policies(world / keys.length))

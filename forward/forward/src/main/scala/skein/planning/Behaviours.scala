@@ -6,8 +6,9 @@ import skein.simd.WorldRandom
 object Behaviours:
 
   /** A target as it is taken to be, counting half, and others around it, drawn from a stream: elsewhere by
-    * about 0.2 m, and deciding by the policy that it may be taken for ([[skein.policy.HeadingPolicy.guessed]]). The
-    * same stream gives the same behaviours, so that all candidates of a tick meet the same.
+    * about 0.2 m, and deciding by the policy that it may be taken for
+    * ([[skein.policy.HeadingPolicy.guessed]]). The same stream gives the same behaviours, so that all
+    * candidates of a tick meet the same.
     */
   def around(target: Target, count: Int, stream: Long): Vector[Behaviour] =
     require(count > 0, s"at least one behaviour is needed, came $count")

@@ -1,6 +1,8 @@
 package skein.planning
 
-import skein.policy.{TeamPolicy, TeamObservation}
+import skein.policy.{Observation, Policy}
+import skein.units.{Radians, Span, Vector3}
+import skein.vehicle.PlaneReading
 
 /** What a vehicle's own policy would do, as a manoeuvre. */
 object PolicyManoeuvre:
@@ -8,38 +10,31 @@ object PolicyManoeuvre:
   /** The policy is asked before each step of the horizon, where the vehicle has then flown under its answers,
     * and all others straight on. Its headings are met as fast as the limits allow.
     *
+    * @param memory the policy's own
     * @param observation at the beginning
     * @param situation of the same vehicle at the same moment
     */
   def of(
-      policy: TeamPolicy,
-      observation: TeamObservation,
+      policy: Policy,
+      memory: Any,
+      observation: Observation,
       situation: Situation,
       limits: CommandLimits,
       steps: Int,
       dtS: Double
   ): Manoeuvre =
-    var own: PredictedVehicle[?]                   = situation.own
-    val (turns, speeds)                            = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
-    var heading                                    = situation.headingRad
-    def ownIn(values: IArray[Double], own: Double) = values.updated(observation.self, own)
+    var own: PredictedVehicle[?] = situation.own
+    val (turns, speeds)          = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
+    var heading                  = situation.headingRad
+    var held                     = memory
     for step <- 0 until steps do
-      val aheadS = step * dtS
-      val at     = own.motion
-      val turnS  = if step == 0 then situation.sinceDecisionS else dtS
-      val course = policy.course(
-        observation.copy(
-          northM = ownIn(later(observation.northM, observation.northMps, aheadS), at.northM),
-          eastM = ownIn(later(observation.eastM, observation.eastMps, aheadS), at.eastM),
-          northMps = ownIn(observation.northMps, at.northMps),
-          eastMps = ownIn(observation.eastMps, at.eastMps),
-          headingRad = heading,
-          elapsedS = turnS
-        )
-      )
-      val speed = math.min(math.max(course.speedMps, limits.minSpeed), limits.maxSpeed)
+      val turnS          = if step == 0 then situation.sinceDecisionS else dtS
+      val seen           = later(observation, own.motion, step * dtS, heading, turnS)
+      val (action, next) = policy.choose(seen, held.asInstanceOf[policy.Memory])
+      held = next
+      val speed = math.min(math.max(action.speed.value, limits.minSpeed), limits.maxSpeed)
       val most  = limits.turnRateAt(speed)
-      val turn  = math.IEEEremainder(course.headingRad - heading, 2 * math.Pi)
+      val turn  = math.IEEEremainder(action.headingRad(heading) - heading, 2 * math.Pi)
       val rate  = if turnS > 0 then math.min(math.max(turn / turnS, -most), most) else 0.0
       turns(step) = rate.toFloat
       speeds(step) = speed.toFloat
@@ -47,5 +42,29 @@ object PolicyManoeuvre:
       own = own.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
-  private def later(places: IArray[Double], velocities: IArray[Double], aheadS: Double): IArray[Double] =
-    IArray.tabulate(places.length)(index => places(index) + velocities(index) * aheadS)
+  /** What is seen when the own vehicle has flown there and the others straight on. */
+  private def later(
+      seen: Observation,
+      own: PlaneReading,
+      aheadS: Double,
+      headingRad: Double,
+      elapsedS: Double
+  ): Observation =
+    val vehicles = seen.vehicles.zipWithIndex.map: (each, vehicle) =>
+      val (at, velocity) = (each.kinematics.positionNed, each.kinematics.velocityNed)
+      val kinematics     =
+        if vehicle == seen.self then
+          each.kinematics.copy(
+            positionNed = Vector3(own.northM, own.eastM, at.z),
+            velocityNed = Vector3(own.northMps, own.eastMps, velocity.z)
+          )
+        else
+          each.kinematics.copy(positionNed =
+            Vector3(at.x + velocity.x * aheadS, at.y + velocity.y * aheadS, at.z)
+          )
+      each.copy(kinematics = kinematics)
+    seen.copy(
+      vehicles = vehicles,
+      headings = seen.headings.updated(seen.self, Radians(headingRad)),
+      elapsed = Span.ofSeconds(elapsedS)
+    )

@@ -157,9 +157,7 @@ class EngagementSuite extends munit.FunSuite:
       .zipWithIndex
       .map:
         case ((north, speed), number) =>
-          val policy: TeamPolicy = seen =>
-            Course(if seen.northM(seen.self) > seen.northM(1) then math.Pi else 0, speed)
-          agent(Role.Traveller, number, north, 0, KeepHeading).copy(policy = policy)
+          agent(Role.Traveller, number, north, 0, KeepHeading).copy(policy = ToSecond(speed))
     val rollout = Rollout(
       Engagement.of(Fleet(agents), 5),
       LoopTiming.Paused(),
@@ -186,6 +184,13 @@ class EngagementSuite extends munit.FunSuite:
     )
 
   /** Runs in one direction for ever. */
+  /** Along the meridian, towards the second one. */
+  private final case class ToSecond(mps: Double) extends Policy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
+      (seen.along(if seen.northM(seen.self) > seen.northM(1) then math.Pi else 0, mps), ())
+
   private final case class LeadAway(headingRad: Double) extends HeadingPolicy:
     def heading(
         dxM: Double,

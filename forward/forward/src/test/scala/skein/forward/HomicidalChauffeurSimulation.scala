@@ -45,7 +45,12 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     )
     Rollout(engaged, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
 
-  private def closestM(pursuer: HeadingPolicy, evader: HeadingPolicy, start: Start, durationS: Double): Double =
+  private def closestM(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      start: Start,
+      durationS: Double
+  ): Double =
     duel(pursuer, evader, start, durationS).fly(0).minDistanceM
 
   /** Flies until it is captured; without capture, until the end. */

@@ -10,12 +10,18 @@ import skein.vehicle.*
 /** What the rollout must give because geometry, game theory or numerics say so. */
 class RolloutOracleSuite extends munit.FunSuite:
   private val away: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
-  private val lag          = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
-  private val perfect      = LoopTiming.Predictive(predictor = lag.predictor)
-  private val loops        =
+  private val lag                 = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
+  private val perfect             = LoopTiming.Predictive(predictor = lag.predictor)
+  private val loops               =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream(), perfect)
 
-  private def duel(pursuer: HeadingPolicy, evader: HeadingPolicy, startX: Double, startY: Double, durationS: Double): Duel =
+  private def duel(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      startX: Double,
+      startY: Double,
+      durationS: Double
+  ): Duel =
     Duel(
       Duel.paper.pursuer.copy(policy = pursuer),
       Duel.paper.evader.copy(policy = evader, startX = startX, startY = startY, startHeadingRad = 0),
@@ -46,7 +52,8 @@ class RolloutOracleSuite extends munit.FunSuite:
   for loop <- loops do
     test(s"${loop.productPrefix}: the mirrored duel is the mirror image"):
       // Unlike the paper's evader, this one breaks away to the side on which it is.
-      val evader: HeadingPolicy    = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
+      val evader: HeadingPolicy =
+        (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
       def fly(side: Double) =
         val start = duel(PaperPursuer(), evader, 21, 2 * side, 20)
         val whole = start.copy(evader = start.evader.copy(startHeadingRad = 0.4 * side))

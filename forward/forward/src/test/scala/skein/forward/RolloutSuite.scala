@@ -11,9 +11,9 @@ import skein.vehicle.{PlaneReading, Plant}
 class RolloutSuite extends munit.FunSuite:
   private val loops =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
-  private val towards: HeadingPolicy       = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
-  private val awayFrom: HeadingPolicy      = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
-  private val lag: VelocityResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val towards: HeadingPolicy  = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
+  private val awayFrom: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
+  private val lag: VelocityResponse   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
@@ -73,9 +73,9 @@ class RolloutSuite extends munit.FunSuite:
       assertClose(distances(Rollout(turned, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
   test("with symmetric policies the mirrored duel is the mirror image"):
-    val evader: HeadingPolicy    = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
-    val key               = WorldRandom.key(5, 0, 0)
-    def fly(side: Double) =
+    val evader: HeadingPolicy = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
+    val key                   = WorldRandom.key(5, 0, 0)
+    def fly(side: Double)     =
       val duel = Duel(
         Duel.paper.pursuer.copy(policy = PaperPursuer(), startY = 3 * side),
         Duel.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),

@@ -140,7 +140,7 @@ object AnyPolicySimulation:
     seen.vehicles(vehicle).kinematics.positionNed - seen.own.kinematics.positionNed
 
   private def heading(seen: Observation, way: Vector3, by: Double = 0) =
-    Action.heading(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
+    Action.Along(Radians(StrictMath.atan2(way.y, way.x) + by), seen.cruise, seen.startDown)
 
   trait Forgetful extends Policy:
     type Memory = Unit

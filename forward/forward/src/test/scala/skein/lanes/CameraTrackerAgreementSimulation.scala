@@ -107,12 +107,12 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
   /** What the front of forward simulation flies is this, to the bit. */
   private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: DuelKernel): Unit =
     val all = new DuelWorlds:
-      def size: Int                       = worlds
-      override def shareEpisodes: Boolean = true
-      def key(world: Int): Int            = episode
-      def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy     = CameraTrackerAgreementSimulation.this.pursuer(world)
-      def evader(world: Int): HeadingPolicy      = CameraTrackerAgreementSimulation.this.evader(world)
+      def size: Int                          = worlds
+      override def shareEpisodes: Boolean    = true
+      def key(world: Int): Int               = episode
+      def link(world: Int): Delays           = DelayTable.vpn
+      def pursuer(world: Int): HeadingPolicy = CameraTrackerAgreementSimulation.this.pursuer(world)
+      def evader(world: Int): HeadingPolicy  = CameraTrackerAgreementSimulation.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)

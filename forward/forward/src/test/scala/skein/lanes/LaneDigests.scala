@@ -68,12 +68,12 @@ object LaneDigests:
     val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = evaderAsideM), durationS = 4)
     val out  = DuelBatch(duel, timing, model, threads = 1).fly(
       new DuelWorlds:
-        def size: Int                       = count
-        override def shareEpisodes: Boolean = shared
-        def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
-        def link(world: Int): Delays        = if shared then links(1) else links(world % links.size)
-        def pursuer(world: Int): HeadingPolicy     = pursuing(world)
-        def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.01 * world)
+        def size: Int                          = count
+        override def shareEpisodes: Boolean    = shared
+        def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
+        def link(world: Int): Delays           = if shared then links(1) else links(world % links.size)
+        def pursuer(world: Int): HeadingPolicy = pursuing(world)
+        def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.01 * world)
       ,
       captureRadiusM = 3.9
     )

@@ -17,12 +17,12 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
   )
 
   private def worlds(shared: Boolean): DuelWorlds = new DuelWorlds:
-    def size: Int                       = 256
-    override def shareEpisodes: Boolean = shared
-    def key(world: Int): Int            = WorldRandom.key(5, 0, world / 128)
-    def link(world: Int): Delays        = DelayTable.vpn
-    def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.6 + 0.004 * (world % 128))
-    def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.01 * (world % 128))
+    def size: Int                          = 256
+    override def shareEpisodes: Boolean    = shared
+    def key(world: Int): Int               = WorldRandom.key(5, 0, world / 128)
+    def link(world: Int): Delays           = DelayTable.vpn
+    def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.004 * (world % 128))
+    def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.01 * (world % 128))
 
   private val train = PlantResponse(Train(lagS = 0.6))
 
@@ -72,9 +72,9 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     test(s"$name flies by lanes under ${timing.productPrefix} where every world has delays of its own"):
       val batch = DuelBatch(short, timing, vehicle, threads = 1)
       val all   = new DuelWorlds:
-        def size: Int                   = 256
-        def key(world: Int): Int        = WorldRandom.key(5, 1, world)
-        def link(world: Int): Delays    = if world % 2 == 0 then DelayTable.vpn else DelayTable.direct
+        def size: Int                          = 256
+        def key(world: Int): Int               = WorldRandom.key(5, 1, world)
+        def link(world: Int): Delays           = if world % 2 == 0 then DelayTable.vpn else DelayTable.direct
         def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.002 * world)
         def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.005 * world)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, Seq(DelayTable.vpn)).isFast)

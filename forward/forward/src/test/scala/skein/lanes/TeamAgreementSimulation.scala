@@ -13,7 +13,7 @@ import skein.forward.{
 }
 import skein.lanes.policy.TeamLanes
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, TimetableVehicles}
-import skein.policy.{Course, TeamPolicy, TeamObservation}
+import skein.policy.{Action, Observation, Policy}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
 import skein.simd.{BoundFunction, WorldRandom}
@@ -86,7 +86,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
         agreement.add(world, first)(())
       agreement.check(s"seed $seed")
 
-  private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
+  private def policies(of: Engagement) = of.agents.map(_.policy)
 
 object TeamAgreementSimulation:
   /** What one decision was made from in all worlds, and the velocity and the direction that it came to. */
@@ -130,22 +130,23 @@ object TeamAgreementSimulation:
     def difference(
         k: Int,
         timeS: Double,
-        seen: TeamObservation,
+        seen: Observation,
         made: Vector[Made],
         world: Int,
         own: Array[Double]
     ): Option[Agreement.Departure] =
       def where    = s"world $world, vehicle $self, decision $k, at $timeS s"
       val now      = made.last
-      val readings = Vector(seen.northM, seen.eastM, seen.northMps, seen.eastMps).flatMap(_.toSeq)
-      val ours     = now.readings.map(_(world).toDouble)
-      val cos      = StrictMath.cos(seen.headingRad)
-      val sin      = StrictMath.sin(seen.headingRad)
-      val doubles  = inputs(readings, cos, sin, seen.elapsedS, own)
-      val floats   = inputs(ours, now.cos(world), now.sin(world), now.elapsedS, own)
-      val away     = readings.zip(ours).map((x, y) => math.abs(x - y)).max
+      val readings =
+        Vector(seen.northM, seen.eastM, seen.northMps, seen.eastMps).flatMap(seen.vehicles.indices.map(_))
+      val ours    = now.readings.map(_(world).toDouble)
+      val cos     = StrictMath.cos(seen.headingRad)
+      val sin     = StrictMath.sin(seen.headingRad)
+      val doubles = inputs(readings, cos, sin, seen.elapsed.toSeconds, own)
+      val floats  = inputs(ours, now.cos(world), now.sin(world), now.elapsedS, own)
+      val away    = readings.zip(ours).map((x, y) => math.abs(x - y)).max
       munit.Assertions.assert(away < Agreement.mostOff(timeS), s"$where: $away off in a reading")
-      munit.Assertions.assertEqualsDouble(now.elapsedS, seen.elapsedS, 1e-6, where)
+      munit.Assertions.assertEqualsDouble(now.elapsedS, seen.elapsed.toSeconds, 1e-6, where)
       // The own direction is that decided before.
       if made.size == 1 then munit.Assertions.assertEqualsDouble(now.cos(world), cos, 1e-6, where)
       else
@@ -204,11 +205,14 @@ object TeamAgreementSimulation:
       )
 
   /** Notes what a policy sees, and answers as it does. */
-  final class Log(policy: TeamPolicy) extends TeamPolicy:
-    val seen: ArrayBuffer[TeamObservation]        = ArrayBuffer.empty
-    def course(observed: TeamObservation): Course =
+  final class Log(val policy: Policy) extends Policy:
+    val seen: ArrayBuffer[Observation] = ArrayBuffer.empty
+    type Memory = policy.Memory
+    def start: Memory                                                   = policy.start
+    override def isPlanar: Boolean                                      = true
+    def choose(observed: Observation, memory: Memory): (Action, Memory) =
       seen += observed
-      policy.course(observed)
+      policy.choose(observed, memory)
 
   object NoScores extends TimetableScores:
     def start(worlds: Int): Unit = ()

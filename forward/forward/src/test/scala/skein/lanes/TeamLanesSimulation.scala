@@ -377,14 +377,17 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     assert(batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).isFast, engine)
 
 /** How often it turns depends on what it sees. */
-object Zigzag extends TeamPolicy:
-  def course(seen: TeamObservation): Course =
+object Zigzag extends Policy:
+  type Memory = Unit
+  def start: Unit                                             = ()
+  override def isPlanar: Boolean                              = true
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
     var turns = 0
     var north = seen.northM(seen.self)
     while north > 1 do
       north /= 2
       turns += 1
-    Course(turns * 0.5, 3)
+    (seen.along(turns * 0.5, 3), ())
 
 final case class North(vehicle: Int) extends Quantity:
   def of(places: Positions): Double = places.northM(vehicle)

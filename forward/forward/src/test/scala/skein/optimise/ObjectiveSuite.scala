@@ -50,11 +50,11 @@ class ObjectiveSuite extends munit.FunSuite:
     val model    = VelocityResponses.lag(0.9, 0.8, 0.05)
     val pursuers = Vector(PaperPursuer(0.4), PaperPursuer(1.0), PaperPursuer(1.8))
     val worlds   = new DuelWorlds:
-      def size: Int                    = pursuers.size
-      def key(world: Int): Int         = WorldRandom.key(1, 0, 0)
-      def link(world: Int): DelayTable = DelayTable.direct
-      def pursuer(world: Int): HeadingPolicy  = pursuers(world)
-      def evader(world: Int): HeadingPolicy   = PaperEvader()
+      def size: Int                          = pursuers.size
+      def key(world: Int): Int               = WorldRandom.key(1, 0, 0)
+      def link(world: Int): DelayTable       = DelayTable.direct
+      def pursuer(world: Int): HeadingPolicy = pursuers(world)
+      def evader(world: Int): HeadingPolicy  = PaperEvader()
     val outcomes = DuelBatch(duel, LoopTiming.Futures(), model, 1).fly(worlds, captureRadiusM = 4.5)
     for (pursuer, world) <- pursuers.zipWithIndex do
       val own = duel.copy(pursuer = duel.pursuer.copy(policy = pursuer))

@@ -193,4 +193,5 @@ private final class DuelGroup(
       agent += 1
 
 private object DuelGroup:
-  private def turning(rateRadPerS: Double): HeadingPolicy = if rateRadPerS > 0 then SteeredPolicy(0) else Turned(0)
+  private def turning(rateRadPerS: Double): HeadingPolicy =
+    if rateRadPerS > 0 then SteeredPolicy(0) else Turned(0)

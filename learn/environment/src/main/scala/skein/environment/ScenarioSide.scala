@@ -3,7 +3,7 @@ package skein.environment
 import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, Rollout, VelocityResponse}
 import skein.optimise.TeamObjective
-import skein.policy.{Agent, Policy, Fleet, PaperPursuer, HeadingPolicy, Role, TeamPolicy}
+import skein.policy.{Agent, Fleet, HeadingPolicy, PaperPursuer, Policy, Role}
 import skein.scenario.{Positions, Quantity, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
 import skein.signal.SplitMix64
@@ -45,7 +45,7 @@ private[environment] final case class ScenarioSide(
     val flown  = agents.zipWithIndex.map: (agent, place) =>
       val (least, most)    = settings.startWithinM
       val (moved, bearing) = (least + random.nextDouble() * (most - least), 2 * math.Pi * random.nextDouble())
-      val chosen: Policy =
+      val chosen: Policy   =
         if place == learner then policy
         else if agent.role == role then beside.getOrElse(agent.policy)
         else agent.policy
@@ -139,7 +139,4 @@ private[environment] object ScenarioSide:
   private def refusal(scenario: Scenario): Option[String] =
     if scenario.agents.exists(_.kind != VehicleKind.Multirotor) then Some("which has cars")
     else if scenario.eyes.nonEmpty || scenario.equipment.nonEmpty then Some("which sees by cameras or lidars")
-    else
-      scenario.agents.find(agent => !agent.policy.isInstanceOf[HeadingPolicy | TeamPolicy]).map(agent =>
-        s"whose vehicle ${agent.name} decides in three dimensions"
-      )
+    else None

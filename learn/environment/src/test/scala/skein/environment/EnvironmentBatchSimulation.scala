@@ -53,10 +53,10 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)
     val runKey = EnvironmentTimetables.keyOf(EnvironmentTimetables.indexOf(SplitMix64.seedOf(seed, 0)))
     val worlds = new DuelWorlds:
-      def size                        = 1
-      override def shareEpisodes      = true
-      def key(world: Int): Int        = runKey
-      def link(world: Int): Delays    = config.link
+      def size                               = 1
+      override def shareEpisodes             = true
+      def key(world: Int): Int               = runKey
+      def link(world: Int): Delays           = config.link
       def pursuer(world: Int): HeadingPolicy = PaperPursuer()
       def evader(world: Int): HeadingPolicy  = PaperEvader()
     val flown = DuelBatch(duel, config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)

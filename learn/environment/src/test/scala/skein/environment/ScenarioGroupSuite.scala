@@ -202,8 +202,11 @@ object Own:
     case "NaN"    => Double.NaN
     case _        => 1
 
-final case class Away(how: String) extends TeamPolicy:
-  def course(seen: TeamObservation): Course = Course(Own.answer(how), 4)
+final case class Away(how: String) extends Policy:
+  type Memory = Unit
+  def start: Unit                                             = ()
+  override def isPlanar: Boolean                              = true
+  def choose(seen: Observation, memory: Unit): (Action, Unit) = (seen.along(Own.answer(how), 4), ())
 
 final case class Off(how: String) extends Quantity:
   def of(positions: Positions): Double = Own.answer(how)

@@ -56,10 +56,10 @@ class SideTaskSimulation extends munit.FunSuite:
     val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
     val duel   = Duel.paperAt(20, 20)
     val worlds = new DuelWorlds:
-      def size                        = 4
-      override def shareEpisodes      = true
-      def key(world: Int): Int        = world
-      def link(world: Int): Delays    = DelayTable.vpn
+      def size                               = 4
+      override def shareEpisodes             = true
+      def key(world: Int): Int               = world
+      def link(world: Int): Delays           = DelayTable.vpn
       def pursuer(world: Int): HeadingPolicy = policy
       def evader(world: Int): HeadingPolicy  = PaperEvader()
     val batch = DuelBatch(duel, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)

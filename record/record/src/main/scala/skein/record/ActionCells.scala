@@ -32,6 +32,7 @@ private[record] object ActionCells:
   def of(action: Action): ActionCells = action match
     case Action.Velocity(velocity, yaw)            => cells(action, velocity, 0, yaw)
     case Action.VelocityAt(north, east, down, yaw) => cells(action, Vector3(north, east, down.value), 0, yaw)
+    case along: Action.Along                       => of(along.byVelocity)
     case Action.Position(position, speed, yaw)     => cells(action, position, speed.value, yaw)
     case Action.Turn(yaw)                          => cells(action, Vector3.Zero, 0, yaw)
     case Action.Attitude(roll, pitch, yaw, thrust) =>
@@ -47,10 +48,10 @@ private[record] object ActionCells:
     ActionCells(nameOf(action), numbers.x, numbers.y, numbers.z, amount, mode, value)
 
   private def nameOf(action: Action): String = action match
-    case _: Action.Velocity   => "Velocity"
-    case _: Action.VelocityAt => "VelocityAt"
-    case _: Action.Position   => "Position"
-    case _: Action.Turn       => "Turn"
-    case _: Action.Attitude   => "Attitude"
-    case Action.Hover         => "Hover"
-    case Action.Land          => "Land"
+    case _: Action.Velocity                    => "Velocity"
+    case _: (Action.VelocityAt | Action.Along) => "VelocityAt"
+    case _: Action.Position                    => "Position"
+    case _: Action.Turn                        => "Turn"
+    case _: Action.Attitude                    => "Attitude"
+    case Action.Hover                          => "Hover"
+    case Action.Land                           => "Land"

@@ -36,6 +36,7 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
   def act(action: Action, lasts: Span): Future[Answer] = action match
     case Action.VelocityAt(north, east, _, _) => drive(lasts)(_ => (north, east))
     case Action.Velocity(velocity, _)         => drive(lasts)(_ => (velocity.x, velocity.y))
+    case along: Action.Along                  => act(along.byVelocity, lasts)
     case Action.Position(place, speed, _)     =>
       drive(lasts): now =>
         val wanted = GoTo.velocityNed(now.positionNed, now.velocityNed, place, speed)

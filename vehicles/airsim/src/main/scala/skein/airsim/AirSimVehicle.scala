@@ -35,6 +35,7 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
       sent(withdrawn => multirotor.moveByVelocityZ(velocity, down, lasts, yaw, Some(withdrawn)))
     case Action.Velocity(velocityNed, yaw) =>
       sent(withdrawn => multirotor.moveByVelocity(velocityNed, lasts, yaw, Some(withdrawn)))
+    case along: Action.Along                      => act(along.byVelocity, lasts)
     case Action.Position(positionNed, speed, yaw) =>
       sent(_ => multirotor.moveToPosition(positionNed, speed, timeout = lasts, yaw = yaw))
     case Action.Turn(Yaw.Towards(heading))         => sent(_ => multirotor.rotateToYaw(heading, lasts))

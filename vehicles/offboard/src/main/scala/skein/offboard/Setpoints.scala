@@ -21,6 +21,7 @@ private[offboard] object Setpoints:
       val velocity = Vector3(north, east, 0)
       val at       = Vector3(0, 0, down.value - originNed.z)
       Some(local(system, at, velocity, 1 | 2 | 32 | Acceleration, turn(yaw, velocity)))
+    case along: Action.Along                => of(along.byVelocity, state, originNed, system)
     case Action.Position(place, speed, yaw) =>
       val goal = place - originNed
       val way  = goal - state.positionNed

@@ -2,7 +2,6 @@ package skein.loop.learning
 
 import skein.policy.*
 import skein.signal.{NormalQuantile, SplitMix64}
-import skein.units.Radians
 
 /** A network that changes while it flies, between two decisions and never in one. It tries out: normal noise
   * is added to what it would do, drawn from the seed and the decision's number. Decided again from the
@@ -37,7 +36,7 @@ final class LearningPolicy(
 
   override def start: Any = None
 
-  override def planar(seen: Observation, memory: Any): (Planar, Any) =
+  override def choose(seen: Observation, memory: Any): (Action, Any) =
     for news <- lessons.news(seen.decisions) do
       note(seen.decisions, news)
       news.parameters.foreach(parameters => newest = version(parameters))
@@ -51,7 +50,8 @@ final class LearningPolicy(
     val policy = newest
     val share  = (policy.share(observed) + explore * normal(seen.decisions)).max(-1.0).min(1.0)
     val turn   = share * (policy.turnRateRadPerS * observed.elapsedS + policy.turnRad)
-    (Planar(Radians(observed.ownHeadingRad + turn), None), Some(Before(seen.decisions, numbers, share)))
+    val next   = Before(seen.decisions, numbers, share)
+    (seen.along(observed.ownHeadingRad + turn, seen.cruise.value), Some(next))
 
   private def normal(decision: Long) =
     if explore == 0 then 0.0

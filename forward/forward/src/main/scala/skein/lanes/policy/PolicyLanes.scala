@@ -6,7 +6,8 @@ import skein.policy.{ObservingPolicy, PlanarObservation, HeadingPolicy}
 import skein.simd.{Forms, LaneCompiler, LaneFunction}
 
 /** What policies of one form have in common: how they decide in many worlds at once, compiled from the method
-  * [[HeadingPolicy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers alone.
+  * [[HeadingPolicy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers
+  * alone.
   */
 private[skein] final class PolicyLanes private (formula: Formula):
   import PolicyLanes.*

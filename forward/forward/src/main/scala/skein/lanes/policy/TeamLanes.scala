@@ -4,18 +4,18 @@ import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
 import skein.forward.{Engagement, RolloutAgent}
-import skein.policy.{Action, Policy, Assignment, PolicyInput}
+import skein.policy.{Action, Assignment, Policy, PolicyFormula, PolicyInput}
 import skein.policy.PolicyFormula.Motion
 import skein.simd.{BoundFunction, Forms}
-import skein.units.Expect
+import skein.units.{Expect, Metres}
 
 /** How the policies of a team decide in many worlds at once, compiled from their own methods
-  * ([[MemberFormula]]). Teams of one form differ in numbers alone.
+  * ([[PolicyFormula]]). Teams of one form differ in numbers alone.
   *
   * What several vehicles compute of one view is computed once for all of them: of the bearings that each
   * pursuer wants to know, say.
   */
-private[lanes] final class TeamLanes private (formulas: Vector[MemberFormula]):
+private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], assignment: Assignment):
   import TeamLanes.*
 
   /** How many vehicles fly. */
@@ -32,18 +32,18 @@ private[lanes] final class TeamLanes private (formulas: Vector[MemberFormula]):
       case Motion.With(north, east)     => Vector(north, east))
     Trace
       .needed(nodes)
-      .collect { case node if node.op == Op.Input => formula.input(node.index) }
+      .collect { case node if node.op == Op.Input => formula.inputs(node.index) }
       .collect { case PolicyInput.Heading(vehicle) => vehicle }
       .toSet
 
   private val angles: Vector[Angles] = Vector.tabulate(count): self =>
-    val input                                 = formulas(self).input
+    val input                                 = formulas(self).inputs
     def own(number: Int)                      = trace.input(ownInput(self, number))
     def direction(vehicle: Int): (Node, Node) =
       if vehicle == self then (own(Own.Cos), own(Own.Sin))
       else (own(Own.KnownCos + vehicle), own(Own.KnownSin + vehicle))
     Angles(
-      formulas(self).trace,
+      formulas(self).formula.trace,
       trace,
       input(_) match
         case PolicyInput.Position(vehicle, 2)    => own(Own.Altitude + vehicle)
@@ -137,7 +137,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[MemberFormula]):
   /** Whether somebody may ask its vehicle to turn. */
   val turns: Boolean = formulas.exists(_.turns)
 
-  /** Whether all decide by positions, velocities, time and the own heading alone, as [[TeamPolicy]] does. */
+  /** Whether all decide by positions, velocities, time and the own heading alone. */
   val isPlain: Boolean = formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
@@ -157,13 +157,12 @@ private[lanes] final class TeamLanes private (formulas: Vector[MemberFormula]):
   /** Why one of a team does not keep the altitude of its start. */
   def leaves(agents: Vector[RolloutAgent]): Option[String] =
     agents.indices.iterator
-      .flatMap(self => formulas(self).leaves(agents(self).policy, agents(self).altitudeDownM))
+      .flatMap(self => formulas(self).leaves(agents(self).policy, Metres(agents(self).altitudeDownM)))
       .nextOption()
 
   private def fits(team: Team): Boolean =
-    team.policies.size == count && team.policies.indices.forall(self =>
-      formulas(self).fits(team.policies(self))
-    )
+    team.policies.size == count &&
+      team.policies.indices.forall(self => formulas(self).fits(team.policies(self), assignment))
 
   private def ownInput(self: Int, number: Int) = view + self * Stride + number
 
@@ -241,14 +240,14 @@ private[lanes] object TeamLanes:
         Forms[Team, TeamLanes](_.fits(_)): team =>
           Expect
             .each(team.policies.zipWithIndex): (policy, self) =>
-              MemberFormula.of(policy, self, assignment, isPredicted)
+              PolicyFormula.of(policy, self, assignment, isPredicted)
             .flatMap: formulas =>
               val most = formulas.map(_.memory.size).max
               Expect
                 .that(most <= MostMemories)(
                   Untraceable(s"it remembers $most numbers, more than $MostMemories")
                 )
-                .map(_ => TeamLanes(formulas))
+                .map(_ => TeamLanes(formulas, assignment))
     )
     forms(Team(policies, assignment, isPredicted))
 

@@ -42,14 +42,14 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
 
   private final class Worlds(val size: Int, episodes: Int, link: Delays, of: Int => HeadingPolicy)
       extends DuelWorlds:
-    override def shareEpisodes: Boolean = true
-    override def episodesOfEach: Int    = episodes
-    private val pursuers                = Vector.tabulate(size)(world => of(world / episodes))
-    private val evaders                 = Vector(PaperEvader(7), PaperEvader(8))
-    def key(world: Int): Int            = WorldRandom.key(5, 0, world % episodes)
-    def link(world: Int): Delays        = link
-    def pursuer(world: Int): HeadingPolicy     = pursuers(world)
-    def evader(world: Int): HeadingPolicy      = evaders(world / episodes % 2)
+    override def shareEpisodes: Boolean    = true
+    override def episodesOfEach: Int       = episodes
+    private val pursuers                   = Vector.tabulate(size)(world => of(world / episodes))
+    private val evaders                    = Vector(PaperEvader(7), PaperEvader(8))
+    def key(world: Int): Int               = WorldRandom.key(5, 0, world % episodes)
+    def link(world: Int): Delays           = link
+    def pursuer(world: Int): HeadingPolicy = pursuers(world)
+    def evader(world: Int): HeadingPolicy  = evaders(world / episodes % 2)
 
   private def check(
       gpu: Gpu,

@@ -11,7 +11,7 @@ import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
 @main def gpuKernels(folder: String): Unit =
-  val layout                                                        = GpuLayout(2, shows = false)
+  val layout                                                               = GpuLayout(2, shows = false)
   def duels(name: String, model: VelocityResponse, pursuer: HeadingPolicy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
     val forms   = Vector(PaperEvader(), pursuer).map(PolicyLanes.get)

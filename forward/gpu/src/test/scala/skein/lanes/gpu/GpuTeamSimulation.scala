@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.gpu.{Gpu, TestGpus}
 import skein.lanes.*
 import skein.lanes.score.{Judged, OfMoment}
-import skein.policy.TeamPolicy
+import skein.policy.Policy
 import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -39,7 +39,7 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
       of: Int => Scenario,
       model: VelocityResponse,
       timing: LoopTiming,
-      own: Int => Option[TeamPolicy] = _ => None
+      own: Int => Option[Policy] = _ => None
   ): Unit =
     val durationS  = 3.0
     val candidates = Vector.tabulate(3): i =>
