@@ -168,7 +168,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
 
   private def described(file: String, recording: Recording): String =
     val flight = recording.flight
-    s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator}"
+    s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator.label}"
 
   /** Flights in virtual time fly the built-in simulator only: not what a fit to another one should be mixed
     * with.

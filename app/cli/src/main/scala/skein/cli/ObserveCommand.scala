@@ -62,7 +62,15 @@ object ObserveCommand
     try
       val link  = EmulatedLink(profile, options.seed, Clock.system)
       val proxy = Edge.await(
-        ObservingProxy.start(listenAt, simulator, link, TcpTransport(), Clock.system, reader, unreachable = warn)
+        ObservingProxy.start(
+          listenAt,
+          simulator,
+          link,
+          TcpTransport(),
+          Clock.system,
+          reader,
+          unreachable = warn
+        )
       )
       val command = options.command.value
       shown.say(

@@ -182,9 +182,10 @@ object SummaryTables:
 
   /** A line for each scenario that is not known here. */
   private def unknown(set: FlightSet): Vector[String] =
-    set.all.filter(_.scenario.isEmpty).groupBy(_.scenarioName).toVector.sortBy(_._1).map: (name, flights) =>
-      s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
-        "its measures, limits and pictures are left out; the program that flew it has them"
+    set.all.filter(_.scenario.isEmpty).groupBy(_.flight.nameOfScenario).toVector.sortBy(_._1).map:
+      (name, flights) =>
+        s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
+          "its measures, limits and pictures are left out; the program that flew it has them"
 
   /** A line for each flight that somebody paused. */
   private def paused(set: FlightSet): Vector[String] =

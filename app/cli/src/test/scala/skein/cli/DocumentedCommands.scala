@@ -223,19 +223,19 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       val asked = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(found =>
         Option(found.group(1)).getOrElse(found.group(2))
       ).map:
-        case "HOST:PORT"                                                => server.address.toString
-        case "NAME"                                                     => "patrol"
+        case "HOST:PORT" => server.address.toString
+        case "NAME"      => "patrol"
         case "FILE" if command.startsWith("policy") || command.contains("--policy FILE") => learned.toString
-        case "FILE…" if command.startsWith("identify")                  => seeing.toString
-        case "FILE" | "FILE…"                                           => recording.toString
-        case "settings.json"                                            => settings.toString
-        case "searches/…/policy.conf"                                   => policy.toString
-        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf" => learned.toString
-        case "learned/2026-11-22"                                       => learned.getParent.toString
-        case "pursuer.onnx" | "other.onnx"                              => onnx.toString
-        case "sensor.conf"                                              => sensor.toString
-        case "evader.onnx"                                              => s"evader:$onnx"
-        case "searches/…/scenario.conf"                                 => scenario.toString
+        case "FILE…" if command.startsWith("identify")                                   => seeing.toString
+        case "FILE" | "FILE…"                                                            => recording.toString
+        case "settings.json"                                                             => settings.toString
+        case "searches/…/policy.conf"                                                    => policy.toString
+        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf"                  => learned.toString
+        case "learned/2026-11-22"          => learned.getParent.toString
+        case "pursuer.onnx" | "other.onnx" => onnx.toString
+        case "sensor.conf"                 => sensor.toString
+        case "evader.onnx"                 => s"evader:$onnx"
+        case "searches/…/scenario.conf"    => scenario.toString
         // What one command of a guide writes, a later one reads.
         case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
         case model if model.startsWith("mujoco:examples/")                    =>

@@ -114,7 +114,8 @@ private[flight] final class AirSimFleet(
         vehicle.eyes,
         clock,
         log.image,
-        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+        (kind, detail, about) =>
+          recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail, about = about)),
         why => tell(s"${plan.id}: ${vehicle.name}'s camera $why")
       )
 

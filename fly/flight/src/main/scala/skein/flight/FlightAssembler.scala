@@ -79,12 +79,12 @@ final class FlightAssembler(
       settings.period,
       settings.duration,
       clockKind,
-      simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else "") +
-        (if settings.plant.isAirSim then "" else s", ${settings.plant.text}"),
+      simulator.fold(Simulator.BuiltIn)(address => Simulator.Other(address.toString)),
       settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightAssembler.version,
-      clock.now()
+      clock.now(),
+      Some(settings.scenario.name)
     ),
     fleet.agents.map(VehicleRow.of),
     RecordedPlan.parameters(settings, plan) ++ fleet.agents.flatMap(agent =>
@@ -194,8 +194,9 @@ final class FlightAssembler(
               Briefing.of(settings, plan),
               agents.size,
               clock,
-              (kind, vehicle, detail) =>
-                monitor.offer(Event(clock.now(), kind, vehicle.map(agents(_).name), detail))
+              (kind, vehicle, detail, count) =>
+                val (who, what) = (vehicle.map(agents(_).name), Some(EventSubject.Solver))
+                monitor.offer(Event(clock.now(), kind, who, detail, about = what, count = count))
                 if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
             ))(_.close())
             val waits = system.scheduler.scheduleOnce(solvers.toldAfter.toDuration):

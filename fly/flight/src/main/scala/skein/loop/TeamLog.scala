@@ -6,8 +6,10 @@ import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.record.{
   Acknowledgement,
+  CommandOutcome,
   Event,
   EventKind,
+  EventSubject,
   Planned,
   Prediction,
   Recorder,
@@ -61,7 +63,18 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     * @param what was called
     */
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
-    note(TeamLog.kindOf(error), Some(vehicle), s"$what: ${error.message}")
+    failed(vehicle, what, error, None)
+
+  /** A vehicle did not tell where it is.
+    *
+    * @param sequence of the question
+    */
+  def unread(vehicle: Int, sequence: Long, error: VehicleError): Unit =
+    failed(vehicle, s"reading $sequence", error, Some(EventSubject.Reading))
+
+  private def failed(vehicle: Int, what: String, error: VehicleError, about: Option[EventSubject]): Unit =
+    val kind = TeamLog.kindOf(error)
+    recorder.offer(Event(clock.now(), kind, Some(name(vehicle)), s"$what: ${error.message}", about = about))
 
   /** A vehicle told where it is. */
   def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
@@ -126,12 +139,12 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   /** What became of a command. */
   def ended(decision: Decision, at: Instant, result: Try[Either[VehicleError, Boolean]]): Unit =
     val outcome = result match
-      case Success(Right(true))  => "done"
-      case Success(Right(false)) => "superseded"
+      case Success(Right(true))  => CommandOutcome.Done
+      case Success(Right(false)) => CommandOutcome.Superseded
       case Success(Left(error))  =>
         failed(decision.vehicle, s"command ${decision.sequence}", error)
-        error.message
-      case Failure(error) => error.toString
+        CommandOutcome.Failed(error.message)
+      case Failure(error) => CommandOutcome.Failed(error.toString)
     recorder.offer(Acknowledgement(name(decision.vehicle), decision.sequence, at, outcome))
 
   private def name(vehicle: Int): String = rows.name(vehicle)

@@ -4,7 +4,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success, Try}
 import skein.policy.*
 import skein.port.{Sensor, VehicleError}
-import skein.record.{EventKind, MemoryRecorder, Samples}
+import skein.record.{CommandOutcome, EventKind, EventSubject, MemoryRecorder, Samples}
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -28,11 +28,12 @@ class TeamLogSuite extends munit.FunSuite:
       deciders(vehicle).decide(deciders(vehicle).start, view, now)._2
 
   test("a command is done, superseded, or why it failed"):
-    val ends = Seq[(Try[Either[VehicleError, Boolean]], String)](
-      Success(Right(true))                                -> "done",
-      Success(Right(false))                               -> "superseded",
-      Success(Left(VehicleError.Refused("no such move"))) -> "no such move",
-      Failure(IllegalStateException("gone"))              -> "java.lang.IllegalStateException: gone"
+    import CommandOutcome.*
+    val ends = Seq[(Try[Either[VehicleError, Boolean]], CommandOutcome)](
+      Success(Right(true))                                -> Done,
+      Success(Right(false))                               -> Superseded,
+      Success(Left(VehicleError.Refused("no such move"))) -> Failed("no such move"),
+      Failure(IllegalStateException("gone"))              -> Failed("java.lang.IllegalStateException: gone")
     )
     for (result, told) <- ends do
       val books = Books(PaperDuel().fleet)
@@ -52,8 +53,12 @@ class TeamLogSuite extends munit.FunSuite:
     )
     for (error, kind) <- kinds do
       val books = Books(PaperDuel().fleet)
-      books.log.failed(0, "reading 3", error)
-      assertEquals(books.recording.events.map(one => (one.kind, one.detail)), Vector(kind -> "reading 3: x"))
+      books.log.failed(0, "gps 3", error)
+      books.log.unread(1, 4, error)
+      assertEquals(
+        books.recording.events.map(one => (one.kind, one.detail, one.about)),
+        Vector((kind, "gps 3: x", None), (kind, "reading 4: x", Some(EventSubject.Reading)))
+      )
 
   private object Together extends TeamPolicy:
     def course(seen: TeamObservation): Course = Course(seen.northM.sum, 2)

@@ -2,7 +2,7 @@ package skein.torture
 
 import skein.loop.{LoopKind, FlightOutcome}
 import skein.port.Moves
-import skein.record.{DecisionRow, EventKind, Recording}
+import skein.record.{DecisionRow, EventSubject, Recording}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -107,8 +107,7 @@ object Checks:
       val readings                                    = count(recording.readings)(_.vehicle == vehicle)
       val failed                                      =
         count(recording.events)(e =>
-          e.vehicle.contains(vehicle) && e.kind != EventKind.ClockRestarted &&
-            e.detail.matches("reading \\d+: .*")
+          e.vehicle.contains(vehicle) && e.about.contains(EventSubject.Reading)
         )
       val commands  = count(recording.commands)(_.vehicle == vehicle)
       val ended     = count(recording.acknowledgements)(_.vehicle == vehicle)

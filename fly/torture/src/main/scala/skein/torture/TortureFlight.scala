@@ -194,7 +194,7 @@ object TortureFlight:
         LoopSettings().period,
         faultPlan.duration,
         "virtual",
-        "built-in",
+        Simulator.BuiltIn,
         "torture",
         "",
         start
