@@ -50,8 +50,9 @@ final class FlightAssembler(
   import system.dispatcher
 
   /** Whether a record is kept, and not only shown. */
-  private[flight] def keeps(record: Record): Boolean =
-    ImagingSensor.of(record).forall(settings.recordedImaging)
+  private[flight] def keeps(record: Recordable): Boolean = record match
+    case row: Record => ImagingSensor.of(row).forall(settings.recordedImaging)
+    case _           => true
 
   /** Whether others may command the vehicles, too. */
   private val isShared = simulator.isDefined && settings.wire == Wire.AirSim

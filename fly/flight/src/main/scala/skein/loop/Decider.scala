@@ -34,14 +34,16 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
       case planar: PlanarPolicy =>
         val (chosen, held) =
           PolicyAnswer.of(agent)(planar.planar(seen, memory.held.asInstanceOf[planar.Memory]))
-        val (next, decision) = decided(memory, view, now, chosen.heading.value, chosen.speed)
+        val (next, decision) =
+          against(seen.opponent, memory, view, now, chosen.heading.value, chosen.speed)
         (next.copy(held = held), decision)
       case _ =>
         val (action, held) =
           PolicyAnswer.of(agent)(policy.choose(seen, memory.held.asInstanceOf[policy.Memory]))
         PolicyAnswer.expectAction(agent, action)
         val (next, decision) =
-          decided(
+          against(
+            seen.opponent,
             memory,
             view,
             now,
@@ -113,6 +115,15 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
       now: Instant,
       heading: Double,
       speed: Option[MetresPerSecond]
+  ): (Memory, Decision) = against(opponentIn(view), memory, view, now, heading, speed)
+
+  private def against(
+      opponent: Int,
+      memory: Memory,
+      view: TeamView,
+      now: Instant,
+      heading: Double,
+      speed: Option[MetresPerSecond]
   ): (Memory, Decision) =
     for
       (what, number) <- speed.map(mps => ("speed", mps.value)) ++ Some(("heading", heading))
@@ -126,7 +137,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
       sequence = memory.decisions,
       decidedAt = now,
       view = view,
-      opponent = opponentIn(view),
+      opponent = opponent,
       headingBefore = Radians(memory.headingRad),
       elapsed = elapsed(memory, now),
       heading = Radians(heading),

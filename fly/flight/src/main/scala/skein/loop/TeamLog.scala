@@ -10,6 +10,8 @@ import skein.record.{
   Event,
   EventKind,
   EventSubject,
+  LaterDecision,
+  LaterRow,
   Planned,
   Prediction,
   Recorder,
@@ -124,9 +126,16 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** A decision of a vehicle that plans, and what it was made from. */
   def decided(decision: Decision, regardsTeam: Boolean): Unit =
-    recorder.offer(rows.decision(decision))
-    if regardsTeam then rows.sightings(decision).foreach(recorder.offer)
-    rows.sensings(decision).foreach(recorder.offer)
+    val others = if regardsTeam then rows.sighted(decision) else Vector.empty
+    recorder.offer(LaterDecision(
+      name(decision.vehicle),
+      decision.decidedAt,
+      decision.action,
+      seesOthers = others.nonEmpty,
+      rows.decision(decision)
+    ))
+    for other <- others do recorder.offer(LaterRow(rows.sighting(decision, other)))
+    for sensed <- rows.sensed(decision) do recorder.offer(LaterRow(rows.sensing(decision, sensed)))
 
   /** A command was sent, or has ended. */
   def steered(steering: SteeringEvent): Unit = steering.event match

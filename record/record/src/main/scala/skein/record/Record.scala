@@ -13,7 +13,31 @@ import skein.vehicle.VehicleKind
   * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order
   * in which all records of the flight were accepted.
   */
-sealed trait Record
+sealed trait Record extends Recordable:
+  def row: Record = this
+
+/** What a recorder takes: a row, or what one is made from by whoever first asks for it. That is the
+  * recorder's writer, behind its queue, so that no command waits until its decision is spread over columns.
+  */
+sealed trait Recordable:
+  def row: Record
+
+/** A row that is made later. */
+final class LaterRow(make: => Record) extends Recordable:
+  lazy val row: Record = make
+
+/** A decision whose row is made later, with what watches over the flight at once.
+  *
+  * @param seesOthers whether it was made from more than its own and its opponent's reading
+  */
+final class LaterDecision(
+    val vehicle: String,
+    val decidedAt: Instant,
+    val action: Option[Action],
+    val seesOthers: Boolean,
+    make: => DecisionRow
+) extends Recordable:
+  lazy val row: DecisionRow = make
 
 object Record:
   /** The large part of an image or a cloud. */
