@@ -7,6 +7,7 @@ import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{Vehicles, WorldSettings}
+import skein.forward.Asking
 import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
@@ -133,7 +134,7 @@ final class FlightAssembler(
           monitor,
           clock,
           startedAt,
-          SimulatorWatchdog.within(settings.period, LoopTimings.AskTimeout),
+          SimulatorWatchdog.within(settings.period, Asking.Timeout),
           reached.where,
           reached.isOther,
           isShared,

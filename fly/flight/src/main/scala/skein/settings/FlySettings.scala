@@ -40,7 +40,7 @@ final case class FlySettings(
     seed: Long,
     scenario: Scenario = PaperDuel(),
     predictor: PredictionModel = PredictionModel.Quadrotor,
-    movesInFlight: Int = Moves.MostOutstanding,
+    movesInFlight: Int = Moves.InFlight,
     deadline: Option[Span] = None,
     fallback: Fallback = Fallback.Repeat,
     policies: List[PolicyFile] = Nil,
@@ -194,9 +194,6 @@ object FlySettings:
   /** The air of forward simulation and of the built-in simulator is that at the ground. */
   val MostAltitudeM = 1000.0
 
-  /** What a forecast remembers of commands has room for more. */
-  val MostMovesInFlight = 32
-
   /** Reads `skein.fly`.
     *
     * @return or every mistake, with its file, line, and what was expected
@@ -257,9 +254,7 @@ object FlySettings:
       Option.when(settings.onlyPolicies && settings.policies.isEmpty)(
         "only-policies: expected policies beside it, came none"
       ),
-      Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
-        s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
-      ),
+      Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),

@@ -4,6 +4,7 @@ import skein.loop.{AnyLoop, Fallback, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
+import skein.port.Moves
 import skein.record.{Event, EventKind, ParameterRow, Record, Recording}
 import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
@@ -104,7 +105,7 @@ object RecordedPlan:
       older <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
       _     <- Expect.that(loop != LoopKind.Plan || now.orElse(older).isDefined):
         s"the recording has no parameter '$Predictor': by what model was planned is not known"
-      moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
+      moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(Moves.mistake(_).isEmpty))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
       solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)

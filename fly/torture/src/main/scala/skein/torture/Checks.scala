@@ -46,7 +46,7 @@ object Checks:
       found < 0
 
   private def outstanding(seen: FlightTrace): Vector[String] =
-    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.MostOutstanding
+    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.InFlight
     yield s"$vehicle: ${port.commands.most} commands were outstanding at once"
 
   /** While the simulator stands still no time passes between commands. */
@@ -131,7 +131,7 @@ object Checks:
   private def unbounded(seen: FlightTrace): Vector[String] =
     // Each sensor that a policy reads is asked beside the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
-    val most    = seen.vehicles.size.toLong * (seen.window + Moves.MostOutstanding + SignsOfLife) +
+    val most    = seen.vehicles.size.toLong * (seen.window + Moves.InFlight + SignsOfLife) +
       sensors * seen.window + seen.images.size * ImagesOnTheWay
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
