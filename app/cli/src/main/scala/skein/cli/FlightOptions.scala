@@ -2,6 +2,8 @@ package skein.cli
 
 import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueFactory}
 import mainargs.{Flag, ParserForClass, arg}
+import scala.compiletime.constValueTuple
+import scala.deriving.Mirror
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.loop.{AnyLoop, Fallback, LoopKind, OpponentModel, Planning}
@@ -135,27 +137,20 @@ final case class FlightOptions(
     else if asPaper.value then FlightOptions.paperLoops
     else Nil
 
+  /** Each option whose field is a setting of `skein.fly`. */
   private def flags: Config =
-    def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
-    FlightOptions.configured(Seq(
-      ("--loop", "loops", strings(chosenLoops)),
-      ("--mavlink", "wire", Option.when(mavlink.value)(Wire.Mavlink.label)),
-      ("--link", "links", strings(link)),
-      ("--duration", "duration", duration),
-      ("--period", "period", period),
-      ("--seed", "seed", seed),
-      ("--scenario", "scenario", scenario),
-      ("--scene", "scene", scene),
-      ("--policy", "policies", strings(policy)),
-      ("--only-policies", "only-policies", Option.when(onlyPolicies.value)(true)),
-      ("--plant", "plant", plant),
-      ("--predictor", "predictor", predictor),
-      ("--moves-in-flight", "moves-in-flight", movesInFlight),
-      ("--deadline", "deadline", deadline),
-      ("--fallback", "fallback", fallback),
-      ("--solver", "solver", solver),
-      ("--images", "images", strings(images))
-    ).collect { case (flag, key, Some(value)) => (flag, key, value) })
+    val told = copy(loop = chosenLoops)
+    val set  =
+      for
+        (field, option) <- told.productElementNames.zip(told.productIterator).toSeq
+        key             <- FlightOptions.keyOf(field)
+        value           <- option match
+          case Some(one)                           => Some(one)
+          case Flag(isSet)                         => Option.when(isSet)(true)
+          case several: Seq[?] if several.nonEmpty => Some(several.asJava)
+          case _                                   => None
+      yield (FlightOptions.flagOf(field), key, value)
+    FlightOptions.configured(set ++ Option.when(mavlink.value)(("--mavlink", "wire", Wire.Mavlink.label)))
 
   /** Adds the flags for settings of the chosen scenario. */
   private def ofScenario(merged: Config)(using Scenarios): Either[String, Config] =
@@ -186,21 +181,30 @@ object FlightOptions:
   /** Defaults by flag name, from the configuration. */
   lazy val defaults: Map[String, String] =
     val own = ConfigFactory.defaultReference().getConfig("skein.fly")
-    Seq(
-      "loops"           -> "loop",
-      "links"           -> "link",
-      "period"          -> "period",
-      "seed"            -> "seed",
-      "plant"           -> "plant",
-      "predictor"       -> "predictor",
-      "moves-in-flight" -> "moves-in-flight",
-      "fallback"        -> "fallback"
-    )
-      .map: (key, flag) =>
-        flag -> (own.getAnyRef(key) match
-          case several: java.util.List[?] => several.asScala.mkString(", ")
-          case one                        => one.toString.replace(" ", ""))
-      .toMap
+    val of  =
+      for
+        field <- fields
+        key   <- keyOf(field) if own.hasPath(key)
+        value <- own.getAnyRef(key) match
+          case several: java.util.List[?] => Some(several.asScala.mkString(", ")).filter(_.nonEmpty)
+          case _: java.lang.Boolean       => None
+          case one                        => Some(one.toString.replace(" ", ""))
+      yield flagOf(field).stripPrefix("--") -> value
+    of.toMap
+
+  private val mirror = summon[Mirror.ProductOf[FlightOptions]]
+
+  private def fields: List[String] = constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString)
+
+  private def flagOf(field: String): String = "--" + ConfigKeys.ofField(field)
+
+  /** The key below `skein.fly` that a field sets; absent for what is the scenario's, or stands for others. */
+  private def keyOf(field: String): Option[String] = field match
+    case "loop" | "link"                                                      => Some(s"${field}s")
+    case "policy"                                                             => Some("policies")
+    case "set" | "vehicles" | "pairs" | "altitude" | "asPublished" | "config" => None
+    case "asPaper" | "mavlink"                                                => None
+    case _ => Some(ConfigKeys.ofField(field))
 
   /** All values of flags that take no others, by flag name. */
   def known(using Scenarios): Map[String, Seq[String]] = Map("loop" -> AnyLoop.names)

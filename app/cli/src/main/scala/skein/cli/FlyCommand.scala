@@ -6,7 +6,8 @@ import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.{Address, TcpTransport}
-import skein.loop.{AnyLoop, FlightOutcome, LoopTimings}
+import skein.forward.Asking
+import skein.loop.{AnyLoop, FlightOutcome}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections, Typed}
 import skein.scenario.Scenarios
@@ -247,4 +248,4 @@ private[cli] object FlyCommand:
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }
     Expect.that(idle.isEmpty):
       s"nothing was decided in ${idle.mkString(", ")}: are the answers later than " +
-        s"the time-out of ${LoopTimings.AskTimeout.toMillis.round} ms?"
+        s"the time-out of ${Asking.Timeout.toMillis.round} ms?"

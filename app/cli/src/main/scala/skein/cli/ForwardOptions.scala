@@ -57,7 +57,7 @@ final case class ForwardOptions(
       duration.toNanos / 1e9,
       altitude.getOrElse(PaperDuel.AltitudeM),
       eye,
-      movesInFlight.getOrElse(Moves.MostOutstanding)
+      movesInFlight.getOrElse(Moves.InFlight)
     )
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)

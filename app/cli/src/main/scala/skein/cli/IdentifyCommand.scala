@@ -168,7 +168,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
 
   private def described(file: String, recording: Recording): String =
     val flight = recording.flight
-    s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator}"
+    s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator.label}"
 
   /** Notes which flights were virtual: these use only the built-in simulator and should not be mixed with
     * fits to another one.

@@ -7,7 +7,7 @@ import scala.concurrent.{Future, Promise}
 import skein.flight.{FlightAssembler, FlightResult, LiveFlights, OutsideRequests, ProgressBoard}
 import skein.link.{Address, TcpTransport}
 import skein.loop.LoopKind
-import skein.record.Record
+import skein.record.Recordable
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Clock
 
@@ -92,7 +92,7 @@ private[cli] final class LiveCommand(
             assembler,
             plans,
             out,
-            heading => shown.fold((_: Record) => ())(_.observe(heading)),
+            heading => shown.fold((_: Recordable) => ())(_.observe(heading)),
             sinks.open
           ),
           abandoned.future

@@ -5,7 +5,7 @@ import java.util.concurrent.atomic.AtomicReference
 import scala.concurrent.ExecutionContext
 import skein.flight.{LiveFlights, OutsideRequests}
 import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
-import skein.record.{RecordingHeader, Record, ImagingSensor, Topic}
+import skein.record.{ImagingSensor, Recordable, RecordingHeader, Topic}
 import skein.scene.Scene
 import skein.scenario.Scenario
 import skein.units.{Clock, Span}
@@ -22,7 +22,7 @@ private[cli] final class OnShow(
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
 
   /** Starts showing a flight; the result receives its records. */
-  def observe(heading: RecordingHeader): Record => Unit =
+  def observe(heading: RecordingHeader): Recordable => Unit =
     val feed  = Feed()
     val gauge = GraphGauge()
     graphs.put(heading.flight.id, gauge): Unit

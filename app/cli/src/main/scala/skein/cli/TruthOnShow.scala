@@ -3,7 +3,7 @@ package skein.cli
 import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.duration.DurationInt
-import skein.record.{FlightRow, RecordingHeader, ReadingRow, VehicleRow}
+import skein.record.{FlightRow, RecordingHeader, ReadingRow, Simulator, VehicleRow}
 import skein.signal.Stamped
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -39,7 +39,7 @@ private[cli] object TruthOnShow:
       Span.ofNanos(Every.toNanos),
       Span.Zero,
       "real",
-      server.address.toString,
+      Simulator.Other(server.address.toString),
       "where vehicles truly are",
       "",
       now

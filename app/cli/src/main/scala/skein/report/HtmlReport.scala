@@ -4,9 +4,8 @@ import scalatags.Text.TypedTag
 import scalatags.Text.all.*
 import scalatags.Text.tags2.{section, title as pageTitle}
 import skein.figures.Figure
-import skein.measure.FlightSet
+import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.Svg
-import skein.record.FlightRow
 import skein.units.Decimals
 import skein.units.Decimals.brief
 
@@ -39,11 +38,10 @@ object HtmlReport:
       case _                => s"Skein: ${Decimals.counted(set.flights.size, "flight")}"
 
   private def abstractOf(set: FlightSet): String =
-    def named(values: FlightRow => String) =
-      set.flights.map(summary => values(summary.flight)).distinct.mkString(", ")
-    s"Loops ${named(_.loop)}; links ${named(_.link)}; one decision per vehicle every " +
-      s"${named(flight => flight.period.toMillis.brief)} ms; simulator ${named(_.simulator)}; " +
-      s"${named(_.clock)} clock."
+    def named(values: FlightSummary => String) = set.flights.map(values).distinct.mkString(", ")
+    s"Loops ${named(_.flight.loop)}; links ${named(_.flight.link)}; one decision per vehicle every " +
+      s"${named(_.flight.period.toMillis.brief)} ms; simulator ${named(_.simulator)}; " +
+      s"${named(_.flight.clock)} clock."
 
   /** A page on the spread of many flights of each loop over each link. */
   def spread(flights: Int, sections: Seq[Section]): String =
@@ -97,7 +95,8 @@ object HtmlReport:
         "<scenario"
       ) ++
         Vector("<version", "<started (UTC)"),
-      (set.flights ++ set.twins.flatMap(_.virtual)).map(_.flight).distinct.map: flight =>
+      (set.flights ++ set.twins.flatMap(_.virtual)).distinctBy(_.flight).map: summary =>
+        import summary.flight
         Vector(
           flight.id,
           flight.loop,
@@ -106,7 +105,7 @@ object HtmlReport:
           flight.period.toMillis.brief,
           flight.duration.toSeconds.brief,
           flight.clock,
-          flight.simulator,
+          summary.simulator,
           flight.scenario,
           flight.version,
           java.time.Instant.ofEpochSecond(flight.startedAt.toNanos / 1_000_000_000L).toString

@@ -49,7 +49,7 @@ object ReportSections:
       Scenarios
   ): Vector[Section] =
     val results = orFailures(ScenarioReport.eachName(flights)((report, name) =>
-      report.spread(flights.filter(_.scenarioName == name).toVector)
+      report.spread(flights.filter(_.flight.nameOfScenario == name).toVector)
     ))
     shown(results ++ compared(Deviation.of(flights), PredictionGroup.of(flights), figures))
 

@@ -52,7 +52,7 @@ object ScenarioReport:
   private[report] def eachName[A](flights: Seq[FlightSummary])(show: (ScenarioReport, String) => Vector[A])(
       using scenarios: Scenarios
   ): Vector[Either[String, Vector[A]]] =
-    val flown   = flights.map(_.scenarioName).distinct.toVector
+    val flown   = flights.map(_.flight.nameOfScenario).distinct.toVector
     val known   = scenarios.kinds.filter(kind => flown.contains(kind.name)).map(kind => (of(kind), kind.name))
     val unknown = flown.diff(scenarios.names).map((Unknown, _))
     (known ++ unknown).map: (report, name) =>

@@ -180,9 +180,10 @@ object SummaryTables:
 
   /** A line for each unknown scenario. */
   private def unknown(set: FlightSet): Vector[String] =
-    set.all.filter(_.scenario.isEmpty).groupBy(_.scenarioName).toVector.sortBy(_._1).map: (name, flights) =>
-      s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
-        "its measures, limits and pictures are left out; the program that flew it has them"
+    set.all.filter(_.scenario.isEmpty).groupBy(_.flight.nameOfScenario).toVector.sortBy(_._1).map:
+      (name, flights) =>
+        s"the scenario $name of ${flights.map(_.flight.id).mkString(", ")} is not known to this program: " +
+          "its measures, limits and pictures are left out; the program that flew it has them"
 
   /** A line for each flight that was paused by a user. */
   private def paused(set: FlightSet): Vector[String] =

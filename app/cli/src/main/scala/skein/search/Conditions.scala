@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering, VelocityResponse}
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.{Accelerator, DuelBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.port.Moves
@@ -24,11 +24,11 @@ final case class Conditions(
     durationS: Double,
     altitudeM: Double = PaperDuel.AltitudeM,
     eye: Option[String] = None,
-    movesInFlight: Int = Moves.MostOutstanding
+    movesInFlight: Int = Moves.InFlight
 ) derives ReadWriter:
 
   def loopText: String =
-    if movesInFlight == Moves.MostOutstanding || loop == LoopKind.Paused.label then loop
+    if movesInFlight == Moves.InFlight || loop == LoopKind.Paused.label then loop
     else s"$loop with ${Decimals.counted(movesInFlight, "move")} in flight"
 
   /** @return the loop, or Left with what was expected and what was given */
@@ -41,8 +41,7 @@ final case class Conditions(
         s"--period: expected 1 ms to 10 s, came $periodMs ms"
       _ <- Expect.that(durationS >= 10 && durationS <= 3600):
         s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
-      _ <- Expect.that(movesInFlight >= 1 && movesInFlight <= Steering.MostOutstanding):
-        s"--moves-in-flight: expected 1 to ${Steering.MostOutstanding}, came $movesInFlight"
+      _ <- Moves.mistake(movesInFlight).map("--moves-in-flight: " + _).toLeft(())
     yield kind
 
   /** @return Left states what was expected and what was given */

@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.record.{MemoryRecorder, Sighting}
+import skein.record.{DecisionRow, LaterDecision, MemoryRecorder}
 import skein.report.SyntheticFlight
 import skein.units.*
 
@@ -12,9 +12,12 @@ class FlightMonitorSuite extends munit.FunSuite:
     val last    = flown.decisions.last
     def text    = FlightProgress("one", Span.ofSeconds(12), monitor.lastSeen(last.decidedAt)).text
     assertEquals(text, "")
-    (flown.readings ++ flown.decisions).foreach(monitor.offer)
+    def decided(row: DecisionRow, seesOthers: Boolean) =
+      monitor.offer(LaterDecision(row.vehicle, row.decidedAt, row.action, seesOthers, row))
+    flown.readings.foreach(monitor.offer)
+    flown.decisions.foreach(decided(_, seesOthers = false))
     assert(clue(text).matches(" *[0-9.]+ m apart, +[0-9]+ ms old"))
-    monitor.offer(Sighting(last.vehicle, last.sequence, "Third", 1, None))
+    decided(last, seesOthers = true)
     assert(clue(text).matches(" *[0-9]+ ms old"))
 
   test("for a flight that has ended while others run, progress shows that, and no growing age"):

@@ -6,7 +6,7 @@ import javax.xml.parsers.DocumentBuilderFactory
 import skein.figures.{Figure, TrajectoryFigure}
 import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.Mark
-import skein.record.{MemoryRecorder, RecordError, Recording}
+import skein.record.{MemoryRecorder, RecordError, Recording, Simulator}
 import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Decimals.fixed
@@ -107,7 +107,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   test("text from a recording cannot become markup"):
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
-    val named  = flight.heading.flight.copy(simulator = "<b onload=\"x\">&", link = "<i>")
+    val named  = flight.heading.flight.copy(simulator = Simulator.Other("<b onload=\"x\">&"), link = "<i>")
     val page   =
       HtmlReport.render(Report.of(Seq(flight.copy(heading = flight.heading.copy(flight = named)))), Nil)
     assert(!page.contains("<b onload"), "the simulator's name was not escaped")

@@ -34,7 +34,7 @@ class SummarySuite extends munit.FunSuite:
       Span.ofMillis(100),
       Span.ofSeconds(60),
       "virtual",
-      "",
+      Simulator.Other(""),
       "",
       "",
       second(0)

@@ -155,7 +155,7 @@ object SyntheticFlight:
         Span.ofMillis(100),
         Span.ofSeconds(seconds),
         "virtual",
-        "synthetic",
+        Simulator.Other("synthetic"),
         "duel",
         "0.1.0",
         start

@@ -28,7 +28,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
       Span.ofMillis(100),
       Span.ofSeconds(seconds),
       "virtual",
-      "built-in",
+      Simulator.BuiltIn,
       scenario.name,
       "test",
       Instant.Epoch

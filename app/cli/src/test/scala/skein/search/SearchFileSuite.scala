@@ -233,8 +233,8 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       ),
       (
         "number of moves in flight",
-        question("cma-es").copy(conditions = Conditions("stream", "reduced", 100, 12, movesInFlight = 17)),
-        Seq("--moves-in-flight", "1 to 16", "17")
+        question("cma-es").copy(conditions = Conditions("stream", "reduced", 100, 12, movesInFlight = 33)),
+        Seq("--moves-in-flight", "1 to 32", "33")
       ),
       ("population", question("cma-es").copy(population = 2), Seq("--population", "4")),
       ("episodes", question("grid").copy(episodes = 0), Seq("--episodes", "0")),

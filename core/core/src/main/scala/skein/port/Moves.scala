@@ -4,10 +4,17 @@ import skein.units.Span
 
 /** How AirSim takes moves of a vehicle, and how loops keep to it. */
 object Moves:
-  /** Unanswered moves of one vehicle: the one that flies and the one that replaces it. A third that comes
-    * while one replaces the other waits for its end, not its begin.
+  /** Unanswered moves of one vehicle, unless told otherwise: the one that flies and the one that replaces it.
+    * A third that comes while one replaces the other waits for its end, not its begin.
     */
-  final val MostOutstanding = 2
+  final val InFlight = 2
+
+  /** As many may be set, for flights and for forward simulation: half of what a forecast remembers. */
+  final val MostInFlight = 32
+
+  /** Why a vehicle cannot have so many moves in flight, if it cannot. */
+  def mistake(inFlight: Int): Option[String] =
+    Option.when(inFlight < 1 || inFlight > MostInFlight)(s"expected 1 to $MostInFlight, came $inFlight")
 
   /** From a move's cancellation to its successor's begin, measured at AirSim's server: below 0.3 ms. */
   val Handover: Span = Span.ofMillis(0.3)

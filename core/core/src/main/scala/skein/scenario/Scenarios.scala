@@ -78,12 +78,11 @@ final case class Scenarios(
 
   /** The scenario that a recording is of.
     *
-    * @param title [[Scenario.title]], and what else stands behind a comma
+    * @param name [[Scenario.name]]
     * @param parameters of the recording, by name
     * @return or why it is not known here
     */
-  def ofRecording(title: String, parameters: Map[String, String]): Either[String, Scenario] =
-    val name = title.takeWhile(_ != ',')
+  def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =
     kind(name).left
       .map("scenario: " + _)
       .flatMap(_.ofRecording(parameters).left.map(mistakes => s"scenario $name: ${mistakes.mkString("; ")}"))

@@ -42,7 +42,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       )
     do
       val recorded = scenario.settings.map((name, value) => scenario.recordedAs(name) -> value).toMap
-      assertEquals(Scenarios.ours.ofRecording(scenario.title, recorded), Right(scenario))
+      assertEquals(Scenarios.ours.ofRecording(scenario.name, recorded), Right(scenario))
       assertEquals(scenario.mistakes, Nil)
 
   test("recordings of duels name their settings as ever; a setting that came later takes its default"):

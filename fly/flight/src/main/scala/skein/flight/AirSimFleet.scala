@@ -4,7 +4,8 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.airsim.*
 import skein.link.*
-import skein.loop.{AnyLoop, LoopKind, LoopTimings}
+import skein.forward.Asking
+import skein.loop.{AnyLoop, LoopKind}
 import skein.policy.Fleet
 import skein.record.*
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
@@ -67,7 +68,7 @@ private[flight] final class AirSimFleet(
       beside = opened.closing(
         AirSimClient(
           RpcClient(transport, address, clock, RpcSettings(controlConnections = 1)),
-          LoopTimings.AskTimeout
+          Asking.Timeout
         )
       )(_.close())
       custody = Custody(vehicles.map(_.over(beside)), address, monitor.isLanding)
@@ -114,7 +115,8 @@ private[flight] final class AirSimFleet(
         vehicle.eyes,
         clock,
         log.image,
-        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+        (kind, detail, about) =>
+          recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail, about = about)),
         why => tell(s"${plan.id}: ${vehicle.name}'s camera $why")
       )
 
@@ -126,7 +128,7 @@ private[flight] final class AirSimFleet(
   ): Future[Unit] =
     ContactWatch
       .start(
-        AirSimClient(RpcClient(transport, address, clock), LoopTimings.AskTimeout),
+        AirSimClient(RpcClient(transport, address, clock), Asking.Timeout),
         vehicles,
         settings.period,
         clock,
@@ -169,7 +171,7 @@ private[flight] final class AirSimFleet(
 object AirSimFleet:
   /** Of every question of a loop. While the simulator stands still nothing ages, so `paused` waits. */
   private def timeout(loop: AnyLoop): Span =
-    if loop == LoopKind.Paused then Span.ofSeconds(3) else LoopTimings.AskTimeout
+    if loop == LoopKind.Paused then Span.ofSeconds(3) else Asking.Timeout
 
   /** Asks a simulator for its vehicles, over a connection of its own.
     *

@@ -22,11 +22,11 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
   /** Completes when the scenario is over. */
   def isOver: Future[Unit] = over.future
 
-  def offer(record: Record): Unit =
+  def offer(record: Recordable): Unit =
     recorder.offer(record)
     record match
-      case reading: ReadingRow   => val _ = heard.updateAndGet(_.read(reading.vehicle, reading.state))
-      case decision: DecisionRow =>
+      case reading: ReadingRow     => val _ = heard.updateAndGet(_.read(reading.vehicle, reading.state))
+      case decision: LaterDecision =>
         val now = heard.updateAndGet(_.begun(decision.decidedAt))
         for
           known <- now.known(names, decision.decidedAt, isPaused)

@@ -8,8 +8,7 @@ import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
 import scala.concurrent.Future
 import skein.airsim.{Eyes, Image}
 import skein.flow.{Frames, Metronome}
-import skein.measure.FlightSummary
-import skein.record.EventKind
+import skein.record.{EventKind, EventSubject}
 import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
@@ -26,7 +25,7 @@ private[skein] final class FilmedCamera(
     eyes: Eyes,
     clock: Clock,
     seen: Stamped[Image] => Unit,
-    note: (EventKind, String) => Unit,
+    note: (EventKind, String, Option[EventSubject]) => Unit,
     imageless: String => Unit = _ => ()
 )(using system: ActorSystem):
   import system.dispatcher
@@ -49,15 +48,15 @@ private[skein] final class FilmedCamera(
         seen(image)
       })(Keep.right)
       .run()
-    end.failed.foreach(error => note(EventKind.Aborted, s"$camera: $error"))
+    end.failed.foreach(error => note(EventKind.Aborted, s"$camera: $error", None))
     ended.set(end.recover { case _ => Done })
 
   def close(): Future[Done] =
     stop.shutdown()
     tell(missed.getAndUpdate(_.copy(images = 0)))
     if !hasSeen && lastWhy.nonEmpty then
-      val said = s"$camera${FlightSummary.NoImage}$lastWhy"
-      note(EventKind.Refused, said)
+      val said = s"$camera: no image came: $lastWhy"
+      note(EventKind.Refused, said, Some(EventSubject.Camera))
       imageless(said)
     ended.get
 
@@ -81,7 +80,7 @@ private[skein] final class FilmedCamera(
 
   private def tell(missed: FilmedCamera.Missed): Unit =
     if missed.images > 0 then
-      note(EventKind.Skipped, s"$camera: ${missed.images} images missed; the last, since ${missed.why}")
+      note(EventKind.Skipped, s"$camera: ${missed.images} images missed; the last, since ${missed.why}", None)
 
 private object FilmedCamera:
   private final case class Missed(images: Int, why: String, since: Instant)

@@ -7,6 +7,7 @@ import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{Vehicles, WorldSettings}
+import skein.forward.Asking
 import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
@@ -50,8 +51,9 @@ final class FlightAssembler(
   import system.dispatcher
 
   /** Whether a record is kept, and not only shown. */
-  private[flight] def keeps(record: Record): Boolean =
-    ImagingSensor.of(record).forall(settings.recordedImaging)
+  private[flight] def keeps(record: Recordable): Boolean = record match
+    case row: Record => ImagingSensor.of(row).forall(settings.recordedImaging)
+    case _           => true
 
   /** Whether others may command the vehicles, too. */
   private val isShared = simulator.isDefined && settings.wire == Wire.AirSim
@@ -79,12 +81,12 @@ final class FlightAssembler(
       settings.period,
       settings.duration,
       clockKind,
-      simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else "") +
-        (if settings.plant.isAirSim then "" else s", ${settings.plant.text}"),
+      simulator.fold(Simulator.BuiltIn)(address => Simulator.Other(address.toString)),
       settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightAssembler.version,
-      clock.now()
+      clock.now(),
+      Some(settings.scenario.name)
     ),
     fleet.agents.map(VehicleRow.of),
     RecordedPlan.parameters(settings, plan) ++ fleet.agents.flatMap(agent =>
@@ -132,7 +134,7 @@ final class FlightAssembler(
           monitor,
           clock,
           startedAt,
-          SimulatorWatchdog.within(settings.period, LoopTimings.AskTimeout),
+          SimulatorWatchdog.within(settings.period, Asking.Timeout),
           reached.where,
           reached.isOther,
           isShared,
@@ -194,8 +196,9 @@ final class FlightAssembler(
               Briefing.of(settings, plan),
               agents.size,
               clock,
-              (kind, vehicle, detail) =>
-                monitor.offer(Event(clock.now(), kind, vehicle.map(agents(_).name), detail))
+              (kind, vehicle, detail, count) =>
+                val (who, what) = (vehicle.map(agents(_).name), Some(EventSubject.Solver))
+                monitor.offer(Event(clock.now(), kind, who, detail, about = what, count = count))
                 if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
             ))(_.close())
             val waits = system.scheduler.scheduleOnce(solvers.toldAfter.toDuration):

@@ -16,31 +16,31 @@ import skein.units.*
   */
 final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShared: Boolean = false)
     extends Recorder:
-  @volatile private var newest: Option[DecisionRow] = None
-  private val heard                                 = AtomicLong(Long.MinValue)
-  @volatile private var lastBroken                  = Option.empty[Event]
-  @volatile private var isOfTeams                   = false
-  private val clocks                                = AtomicReference(TimeAxis.begun)
-  private val places                                = AtomicReference(Map.empty[String, Stamped[Kinematics]])
-  private val landing                               = AtomicReference(Set.empty[String])
-  private val firstAt                               = AtomicLong(Long.MaxValue)
-  private val lastAt                                = AtomicLong(Long.MinValue)
-  private val displaced                             = AtomicReference(Option.empty[String])
+  @volatile private var newest     = Option.empty[LaterDecision]
+  private val heard                = AtomicLong(Long.MinValue)
+  @volatile private var lastBroken = Option.empty[Event]
+  @volatile private var isOfTeams  = false
+  private val clocks               = AtomicReference(TimeAxis.begun)
+  private val places               = AtomicReference(Map.empty[String, Stamped[Kinematics]])
+  private val landing              = AtomicReference(Set.empty[String])
+  private val firstAt              = AtomicLong(Long.MaxValue)
+  private val lastAt               = AtomicLong(Long.MinValue)
+  private val displaced            = AtomicReference(Option.empty[String])
 
-  def offer(record: Record): Unit =
+  def offer(record: Recordable): Unit =
     record match
-      case decision: DecisionRow                                => decided(decision)
+      case decision: LaterDecision                              => decided(decision)
       case reading: ReadingRow                                  => read(reading)
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
-      case _: Sighting                                          => isOfTeams = true
       case _                                                    => ()
     recorder.offer(record)
 
   def failure: Future[RecordError]                  = recorder.failure
   def close(): Future[Either[RecordError, Written]] = recorder.close()
 
-  private def decided(decision: DecisionRow): Unit =
+  private def decided(decision: LaterDecision): Unit =
     newest = Some(decision)
+    if decision.seesOthers then isOfTeams = true
     val lands = decision.action.contains(Action.Land)
     if lands != isLanding(decision.vehicle) then
       landing.updateAndGet(all => if lands then all + decision.vehicle else all - decision.vehicle): Unit
@@ -87,7 +87,7 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShar
     */
   def lastSeen(now: Instant): Option[LastSeen] =
     for
-      decision <- newest
+      decision <- newest.map(_.row)
       heard    <- heardAt
     yield
       // From when physics was sampled until the reading came.

@@ -8,7 +8,7 @@ import scala.util.Try
 import scala.util.control.NonFatal
 import skein.link.FavouredThread
 import skein.loop.RunningGraph
-import skein.record.{DuckDbRecorder, RecordingHeader, ObservedRecorder, Record, RowSink}
+import skein.record.{DuckDbRecorder, ObservedRecorder, Recordable, RecordingHeader, RowSink}
 import skein.settings.FlightPlan
 
 /** Flights in real time, side by side, each with a recording of its own in `folder`. */
@@ -62,7 +62,7 @@ object LiveFlights:
       assembler: FlightAssembler,
       plans: Vector[FlightPlan],
       folder: Path,
-      observe: RecordingHeader => Record => Unit = _ => _ => (),
+      observe: RecordingHeader => Recordable => Unit = _ => _ => (),
       beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]] = (_, _) => Right(Vector.empty)
   )(using system: ActorSystem): Future[Either[String, LiveFlights]] =
     import system.dispatcher
@@ -84,7 +84,7 @@ object LiveFlights:
       assembler: FlightAssembler,
       plan: FlightPlan,
       folder: Path,
-      observe: RecordingHeader => Record => Unit,
+      observe: RecordingHeader => Recordable => Unit,
       beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]]
   )(using system: ActorSystem): Future[Either[String, FlightAssembly]] =
     import system.dispatcher

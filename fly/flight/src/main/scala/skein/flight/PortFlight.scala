@@ -59,10 +59,11 @@ final case class PortFlight(
       settings.period,
       duration,
       clockKind.label,
-      simulator,
+      Simulator.Other(simulator),
       scenario.title,
       FlightAssembler.version,
-      clock.now()
+      clock.now(),
+      Some(scenario.name)
     ),
     scenario.agents.map(VehicleRow.of),
     ScenarioSettings.recorded(scenario) ++

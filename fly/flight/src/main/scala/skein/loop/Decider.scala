@@ -28,10 +28,11 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
     * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
-    val (action, held)   = answered(memory, view, now)
+    val seen             = observation(memory, view, now)
+    val (action, held)   = answered(memory, seen)
     val heading          = action.headingRad(memory.headingRad)
     val speed            = Option.unless(policy.isInstanceOf[HeadingPolicy])(action.speed)
-    val (next, decision) = decided(memory, view, now, heading, speed)
+    val (next, decision) = against(seen.opponent, memory, view, now, heading, speed)
     val told             = action match
       case Action.Along(_, _, down, Yaw.Still) if down.value == agent.startPositionNed.z => None
       case other => Some(other.byVelocity)
@@ -42,9 +43,12 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
     * @throws skein.units.OwnFailure if it throws, or answers with nothing that a vehicle could be told
     */
   def answered(memory: Memory, view: TeamView, now: Instant): (Action, Any) =
+    answered(memory, observation(memory, view, now))
+
+  private def answered(memory: Memory, seen: Observation): (Action, Any) =
     // A memory comes from this policy alone: from its start, or from its last decision.
     val (action, held) = PolicyAnswer.of(agent):
-      policy.choose(observation(memory, view, now), memory.held.asInstanceOf[policy.Memory])
+      policy.choose(seen, memory.held.asInstanceOf[policy.Memory])
     PolicyAnswer.expectAction(agent, action)
     (action, held)
 
@@ -107,6 +111,15 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       now: Instant,
       heading: Double,
       speed: Option[MetresPerSecond]
+  ): (Memory, Decision) = against(opponentIn(view), memory, view, now, heading, speed)
+
+  private def against(
+      opponent: Int,
+      memory: Memory,
+      view: TeamView,
+      now: Instant,
+      heading: Double,
+      speed: Option[MetresPerSecond]
   ): (Memory, Decision) =
     for
       (what, number) <- speed.map(mps => ("speed", mps.value)) ++ Some(("heading", heading))
@@ -120,7 +133,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       sequence = memory.decisions,
       decidedAt = now,
       view = view,
-      opponent = opponentIn(view),
+      opponent = opponent,
       headingBefore = Radians(memory.headingRad),
       elapsed = elapsed(memory, now),
       heading = Radians(heading),

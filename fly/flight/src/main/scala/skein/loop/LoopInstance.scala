@@ -5,7 +5,7 @@ import org.apache.pekko.stream.Materializer
 import scala.concurrent.{Future, Promise}
 import skein.policy.{Action, Fleet}
 import skein.port.{Sensor, VehicleError, VehiclePort}
-import skein.record.{Record, RecordError, Recorder, Written}
+import skein.record.{Recordable, RecordError, Recorder, Written}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
@@ -45,6 +45,6 @@ object LoopInstance:
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = Future.never
 
   private object Forgetting extends Recorder:
-    def offer(record: Record): Unit                   = ()
+    def offer(record: Recordable): Unit               = ()
     val failure: Future[RecordError]                  = Promise[RecordError]().future
     def close(): Future[Either[RecordError, Written]] = Future.successful(Right(Written.nothing))

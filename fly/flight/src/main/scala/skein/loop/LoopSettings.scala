@@ -32,7 +32,7 @@ final case class LoopSettings(
     moveDuration: Span = Span.ofSeconds(10),
     minCommandInterval: Span = Moves.LeastInterval,
     paceInterval: Span = Span.ofMillis(50),
-    movesInFlight: Int = Moves.MostOutstanding,
+    movesInFlight: Int = Moves.InFlight,
     patience: Span = Span.ofMillis(100),
     spread: Span = Span.Zero,
     early: Sense.Early = Sense.Early.Overtakes,
@@ -44,7 +44,8 @@ final case class LoopSettings(
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")
-  require(movesInFlight > 0, "at least one move must be allowed in flight")
+  for wrong <- Moves.mistake(movesInFlight) do
+    throw IllegalArgumentException(s"moves in flight: $wrong")
 
   /** As the published code does: it asks the vehicles in turn, spread over the period, waits for every answer
     * in order, decides at each, and paces the commands.

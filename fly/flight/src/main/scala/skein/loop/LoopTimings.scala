@@ -7,17 +7,12 @@ import skein.units.*
 
 /** The live loops' timing as forward simulation has it. */
 object LoopTimings:
-
-  /** After this time a question to a simulator has failed; the paper's. */
-  val AskTimeout: Span = Span.ofMillis(500)
-
   /** Absent for `plan`, whose decisions are themselves forward simulations. */
   def of(kind: LoopKind, settings: LoopSettings): Option[LoopTiming] =
     val periodS = settings.period.toSeconds
     val asking  = Asking(
       settings.window,
-      AskTimeout.toSeconds,
-      settings.spread.toSeconds,
+      spreadS = settings.spread.toSeconds,
       inOrder = settings.early == Sense.Early.Waits
     )
     val steering =

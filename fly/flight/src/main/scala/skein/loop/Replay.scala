@@ -38,10 +38,10 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
     .toMap
   private val sensings = recording.sensings.groupBy(sensing => (sensing.vehicle, sensing.decision))
   private val missed   = recording.events.collect {
-    case Event(_, EventKind.DeadlineMissed, Some(vehicle), _, Some(decision)) => (vehicle, decision)
+    case Event(_, EventKind.DeadlineMissed, Some(vehicle), _, Some(decision), _, _) => (vehicle, decision)
   }.toSet
   private val begunAnew = recording.events.collect {
-    case Event(_, EventKind.SolverRestarted, Some(vehicle), _, Some(decision)) => (vehicle, decision)
+    case Event(_, EventKind.SolverRestarted, Some(vehicle), _, Some(decision), _, _) => (vehicle, decision)
   }.toSet
   private val fallback = recording.heading.parameters
     .find(_.name == Replay.Fallback)

@@ -93,19 +93,18 @@ private final class Rows(fleet: Fleet):
   /** The other vehicles that a decision was made from besides its opponent, where the whole team was
     * regarded.
     */
-  def sightings(decision: Decision): Vector[Sighting] =
-    for
-      other <- fleet.agents.indices.toVector
-      if other != decision.vehicle && other != decision.opponent
-    yield Sighting(
-      name(decision.vehicle),
-      decision.sequence,
-      name(other),
-      decision.view.readings(other).get.sequence,
-      decision.view.estimates.map: estimates =>
-        val expected = estimates(other).kinematics
-        PredictedMotion(expected.positionNed, expected.velocityNed)
-    )
+  def sighted(decision: Decision): Vector[Int] =
+    fleet.agents.indices.filter(other => other != decision.vehicle && other != decision.opponent).toVector
+
+  def sighting(decision: Decision, other: Int): Sighting = Sighting(
+    name(decision.vehicle),
+    decision.sequence,
+    name(other),
+    decision.view.readings(other).get.sequence,
+    decision.view.estimates.map: estimates =>
+      val expected = estimates(other).kinematics
+      PredictedMotion(expected.positionNed, expected.velocityNed)
+  )
 
   /** The states of the plants that a decision was planned from, where kinematics do not tell them. */
   def plannedStates(decision: Decision): Option[PlannedStates] =
@@ -113,10 +112,13 @@ private final class Rows(fleet: Fleet):
       .map(estimates => PlannedStates(estimates(decision.vehicle).state, estimates(decision.opponent).state))
       .filter(states => states.own.nonEmpty || states.opponent.nonEmpty)
 
-  /** What a decision was made from of what sensors said. */
-  def sensings(decision: Decision): Vector[Sensing] =
-    decision.view.sensed(decision.vehicle).toVector.sortBy(_._1).map: (sensor, reading) =>
-      Sensing(name(decision.vehicle), decision.sequence, sensor, reading.sequence)
+  /** The sensors that a decision was made from. */
+  def sensed(decision: Decision): Vector[String] =
+    decision.view.sensed(decision.vehicle).keys.toVector.sorted
+
+  def sensing(decision: Decision, sensor: String): Sensing =
+    val reading = decision.view.sensed(decision.vehicle)(sensor)
+    Sensing(name(decision.vehicle), decision.sequence, sensor, reading.sequence)
 
   /** A decision as the command that it went on its way as. */
   def command(decision: Decision, at: Instant): CommandRow =

@@ -6,8 +6,12 @@ import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.record.{
   Acknowledgement,
+  CommandOutcome,
   Event,
   EventKind,
+  EventSubject,
+  LaterDecision,
+  LaterRow,
   Planned,
   Prediction,
   Recorder,
@@ -61,7 +65,18 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     * @param what was called
     */
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
-    note(TeamLog.kindOf(error), Some(vehicle), s"$what: ${error.message}")
+    failed(vehicle, what, error, None)
+
+  /** A vehicle did not tell where it is.
+    *
+    * @param sequence of the question
+    */
+  def unread(vehicle: Int, sequence: Long, error: VehicleError): Unit =
+    failed(vehicle, s"reading $sequence", error, Some(EventSubject.Reading))
+
+  private def failed(vehicle: Int, what: String, error: VehicleError, about: Option[EventSubject]): Unit =
+    val kind = TeamLog.kindOf(error)
+    recorder.offer(Event(clock.now(), kind, Some(name(vehicle)), s"$what: ${error.message}", about = about))
 
   /** A vehicle told where it is. */
   def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
@@ -111,9 +126,16 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** A decision of a vehicle that plans, and what it was made from. */
   def decided(decision: Decision, regardsTeam: Boolean): Unit =
-    recorder.offer(rows.decision(decision))
-    if regardsTeam then rows.sightings(decision).foreach(recorder.offer)
-    rows.sensings(decision).foreach(recorder.offer)
+    val others = if regardsTeam then rows.sighted(decision) else Vector.empty
+    recorder.offer(LaterDecision(
+      name(decision.vehicle),
+      decision.decidedAt,
+      decision.action,
+      seesOthers = others.nonEmpty,
+      rows.decision(decision)
+    ))
+    for other <- others do recorder.offer(LaterRow(rows.sighting(decision, other)))
+    for sensed <- rows.sensed(decision) do recorder.offer(LaterRow(rows.sensing(decision, sensed)))
 
   /** A command was sent, or has ended. */
   def steered(steering: SteeringEvent): Unit = steering.event match
@@ -126,12 +148,12 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   /** What became of a command. */
   def ended(decision: Decision, at: Instant, result: Try[Either[VehicleError, Boolean]]): Unit =
     val outcome = result match
-      case Success(Right(true))  => "done"
-      case Success(Right(false)) => "superseded"
+      case Success(Right(true))  => CommandOutcome.Done
+      case Success(Right(false)) => CommandOutcome.Superseded
       case Success(Left(error))  =>
         failed(decision.vehicle, s"command ${decision.sequence}", error)
-        error.message
-      case Failure(error) => error.toString
+        CommandOutcome.Failed(error.message)
+      case Failure(error) => CommandOutcome.Failed(error.toString)
     recorder.offer(Acknowledgement(name(decision.vehicle), decision.sequence, at, outcome))
 
   private def name(vehicle: Int): String = rows.name(vehicle)

@@ -56,7 +56,7 @@ private final class TeamSensing(
           Right(reading)
         case Left(error) =>
           meter.answered()
-          log.failed(vehicle, s"reading $sequence", error)
+          log.unread(vehicle, sequence, error)
           Left(error)
 
   /** Whether one answer tells of a later moment than another, by all that the team's vehicles have told. */

@@ -19,7 +19,10 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
 
   /** Those of one kind of scenario. */
   def ofKind(name: String): FlightSet =
-    new FlightSet(flights.filter(_.scenarioName == name), twins.filter(_.live.scenarioName == name))
+    new FlightSet(
+      flights.filter(_.flight.nameOfScenario == name),
+      twins.filter(_.live.flight.nameOfScenario == name)
+    )
 
   /** By scenario. */
   val scenarios: Vector[ScenarioFlights] = ScenarioFlights.of(flights)

@@ -8,6 +8,7 @@ import skein.units.Decimals.fixed
 
 /** What one recording comes to.
   *
+  * @param simulator which it was, by what wire if not AirSim's, and of what bodies: for people
   * @param tracks none where the flight has no result: there is no clock, or no vehicle, to measure by
   * @param roles evaders first, as in the paper
   * @param roundTripsMs of the link's own samples where there are any, else of the readings
@@ -29,6 +30,7 @@ import skein.units.Decimals.fixed
   */
 final case class FlightSummary(
     flight: FlightRow,
+    simulator: String,
     tracks: Vector[Track],
     scenario: Option[Scenario],
     roles: Vector[RoleSummary],
@@ -81,9 +83,6 @@ final case class FlightSummary(
   /** Whether it can be held against other flights. */
   def isComparable: Boolean = cutShort.isEmpty && paused.isEmpty && noResult.isEmpty && starved.isEmpty
 
-  /** What the recording calls its scenario, without what it tells of it. */
-  def scenarioName: String = flight.scenario.takeWhile(_ != ',')
-
   /** Time flown on the simulator's clock, s. */
   def flownS: Double =
     distance.map(_.points.last._1).orElse(result.map(_.tracks.lastS)).getOrElse(0.0)
@@ -122,9 +121,6 @@ final case class RoleSummary(
   def hasOpponent: Boolean = observedMs.keys.exists(_.isOfOpponent)
 
 object FlightSummary:
-  /** In an event of a camera of which no image came, between its name and the reason. */
-  val NoImage = ": no image came: "
-
   /** Those that stand in tables; what is of an opponent, where anybody has one. */
   def observations(flights: Seq[FlightSummary]): Vector[TimingObservation] =
     TimingObservation.values.toVector.filter(one =>
@@ -137,6 +133,8 @@ object FlightSummary:
     val scenario = RecordedScenario.of(recording).toOption
     FlightSummary(
       recording.flight,
+      (recording.flight.simulator.label +: Seq("wire", "plant").flatMap(recording.heading.parameter))
+        .mkString(", "),
       tracks,
       scenario,
       roles(recording, scenario, hasAges = noResult.isEmpty),
@@ -146,7 +144,7 @@ object FlightSummary:
       recording.commands.size,
       recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
       cutShort(recording, tracks),
-      recording.heading.parameters.find(_.name == "policy").map(_.value),
+      recording.heading.parameter("policy"),
       PlanningSummary.of(recording),
       PredictionErrors.of(recording, scenario.forall(isOfDuels)),
       paused(recording),
@@ -162,7 +160,7 @@ object FlightSummary:
   private def imageless(recording: Recording): Vector[String] =
     for
       event <- recording.events
-      if event.kind == EventKind.Refused && event.detail.contains(NoImage)
+      if event.kind == EventKind.Refused && event.about.contains(EventSubject.Camera)
     yield s"${event.vehicle.getOrElse("")}'s camera ${event.detail}"
 
   private def commandAgesMs(recording: Recording): Option[Distribution] =
@@ -211,7 +209,7 @@ object FlightSummary:
   /** @param hasAges whether there is a clock that true ages could be of
     */
   private def roles(recording: Recording, scenario: Option[Scenario], hasAges: Boolean): Vector[RoleSummary] =
-    val isOther                 = recording.heading.parameters.exists(_.name == "policy")
+    val isOther                 = recording.heading.parameter("policy").isDefined
     def isAgainst(role: String) = isOther || scenario.forall(
       _.agents.exists(agent => agent.policy.isAgainstOne && agent.role.toString.equalsIgnoreCase(role))
     )

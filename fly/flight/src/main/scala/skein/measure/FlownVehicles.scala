@@ -62,8 +62,8 @@ object FlownVehicles:
           end      = ends.get(command.sequence)
           answered = before
             .flatMap(earlier => ends.get(earlier.sequence))
-            .filter(end => end.outcome == "superseded" && end.endedAt >= command.sentAt)
-          if answered.isDefined || end.forall(end => Set("superseded", "done")(end.outcome))
+            .filter(end => end.outcome == CommandOutcome.Superseded && end.endedAt >= command.sentAt)
+          if answered.isDefined || end.forall(!_.outcome.isInstanceOf[CommandOutcome.Failed])
           known <- delays.at(answered.fold(command.sentAt)(_.endedAt))
         yield (
           command,

@@ -8,6 +8,6 @@ object RecordedScenario:
   /** @return or why it is not known here */
   def of(recording: Recording)(using scenarios: Scenarios): Either[String, Scenario] =
     scenarios.ofRecording(
-      recording.flight.scenario,
+      recording.flight.nameOfScenario,
       recording.heading.parameters.map(parameter => parameter.name -> parameter.value).toMap
     )

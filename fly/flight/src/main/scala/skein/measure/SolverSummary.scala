@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.record.{EventKind, Recording, SolvedRow}
+import skein.record.{EventKind, EventSubject, Recording, SolvedRow}
 
 /** What it came to that a flight's decisions were made in another process.
   *
@@ -32,29 +32,25 @@ object SolverSummary:
 
   /** Absent where the flight's own process decided. */
   def of(recording: Recording): Option[SolverSummary] =
-    for at <- recording.heading.parameters.find(_.name == Parameter).map(_.value)
+    for at <- recording.heading.parameter(Parameter)
     yield
-      val solved                            = recording.solved
-      def ms(of: SolvedRow => Double)       = Distribution.of(solved.map(of))
-      def count(kind: EventKind)            = recording.events.count(_.kind == kind)
-      def said(kind: EventKind, in: String) =
-        recording.events.filter(event => event.kind == kind && event.detail.contains(in))
+      val solved                      = recording.solved
+      def ms(of: SolvedRow => Double) = Distribution.of(solved.map(of))
+      def count(kind: EventKind)      = recording.events.count(_.kind == kind)
+      def ofSolver(kind: EventKind)   =
+        recording.events.filter(event => event.kind == kind && event.about.contains(EventSubject.Solver))
       SolverSummary(
         at,
         solved.size,
         ms(_.roundTrip.toMillis),
         ms(_.thinking.toMillis),
         count(EventKind.DeadlineMissed),
-        said(EventKind.LateReply, OfSolver).size,
+        ofSolver(EventKind.LateReply).size,
         count(EventKind.Repeated),
-        said(EventKind.Dropped, Left).flatMap(_.detail.takeWhile(_.isDigit).toIntOption).sum,
-        said(EventKind.Disconnected, OfSolver).size,
+        ofSolver(EventKind.Dropped).flatMap(_.count).sum.toInt,
+        ofSolver(EventKind.Disconnected).size,
         count(EventKind.SolverRestarted)
       )
 
   /** Under which a recording says where the solver was. */
   val Parameter = "solver"
-
-  // Words of events, which loops note of other things, too.
-  private val OfSolver = "solver"
-  private val Left     = "left at the solver"

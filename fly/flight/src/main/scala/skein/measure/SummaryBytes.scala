@@ -5,7 +5,7 @@ import java.util.zip.{DeflaterOutputStream, InflaterInputStream}
 import scala.collection.immutable.ArraySeq
 import scala.util.Using
 import skein.bytes.Codec
-import skein.record.{EventKind, FlightRow}
+import skein.record.{EventKind, FlightRow, Simulator}
 import skein.scenario.{Scenario, Track}
 import skein.units.*
 
@@ -80,6 +80,7 @@ object SummaryBytes:
     private given events: Codec[Map[EventKind, Int]]                    = byKind
     private given observed: Codec[Map[TimingObservation, Distribution]] = byKind
 
+    private given Codec[Simulator]        = Codec.derived
     private given Codec[FlightRow]        = Codec.derived
     private given Codec[NoResult]         = Codec.derived
     private given Codec[RoleSummary]      = Codec.derived

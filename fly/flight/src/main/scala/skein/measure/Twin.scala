@@ -1,6 +1,5 @@
 package skein.measure
 
-import skein.record.FlightRow
 import skein.units.Decimals.brief
 
 /** A live flight and its virtual twins: flights in virtual time of the same loop over the same link.
@@ -41,15 +40,15 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
 
   /** In what the twins were not flown as the live flight was; empty for true twins. */
   def unlike: Vector[String] =
-    def names[A](what: String, of: FlightRow => A)(show: A => String) =
-      val theirs = virtual.map(twin => of(twin.flight)).distinct
-      Option.when(theirs != Vector(of(live.flight)))(
-        s"$what ${show(of(live.flight))} live, ${theirs.map(show).mkString(", ")} virtual"
+    def names[A](what: String, of: FlightSummary => A)(show: A => String) =
+      val theirs = virtual.map(of).distinct
+      Option.when(theirs != Vector(of(live)))(
+        s"$what ${show(of(live))} live, ${theirs.map(show).mkString(", ")} virtual"
       )
     Vector(
-      names("duration", _.duration)(span => s"${span.toSeconds.brief} s"),
-      names("period", _.period)(span => s"${span.toMillis.brief} ms"),
-      names("scenario", _.scenario)(identity),
+      names("duration", _.flight.duration)(span => s"${span.toSeconds.brief} s"),
+      names("period", _.flight.period)(span => s"${span.toMillis.brief} ms"),
+      names("scenario", _.flight.scenario)(identity),
       names("simulator", _.simulator)(identity)
     ).flatten
 

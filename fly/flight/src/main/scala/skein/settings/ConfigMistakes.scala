@@ -34,8 +34,9 @@ private[skein] object ConfigMistakes:
           case (key, value) if key != chain.last => unknown(value, (parent :+ key).mkString("."), Seq(path))
       .reduceOption(_ + "\n" + _)
 
-  /** What pureconfig could not read. */
+  /** What pureconfig could not read: options first, then a file's lines in turn. */
   def of(failures: ConfigReaderFailures, config: Config): String = failures.toList
+    .sortBy(_.origin.fold(-1)(_.lineNumber))
     .map:
       case ConvertFailure(reason, origin, path) =>
         oneLine(origin.fold(path)(at(path, _)) + ": " + because(reason, path, config))

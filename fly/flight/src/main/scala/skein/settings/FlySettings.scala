@@ -16,20 +16,21 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
+/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network. The
+  * configuration has a key for each field, and a recording a parameter, in this order ([[RecordedSetting]]).
   *
-  * @param policies with which the scenario is flown too, beside its own
+  * @param scene what stands in the built-in simulator's world; without one, what the scenario says
   * @param predictor by which `predictive` predicts multirotors; cars are predicted by their own model
   * @param movesInFlight moves of one vehicle that may be unanswered; more than 2 are for links that never
   *   deliver several at once: see [[skein.flow.Steer]]
-  * @param deadline of every decision; without one, policies are waited for
-  * @param fallback what is done where the deadline is missed
-  * @param scene what stands in the built-in simulator's world; without one, what the scenario says
+  * @param plant what the built-in simulator's multirotors are
   * @param wire what the vehicles are spoken to by
   * @param solver by whom the flights are flown too, beside those that decide in this process; a decision then
   *   has a deadline, the period where none is set
   * @param images whose images and clouds are recorded
-  * @param plant what the built-in simulator's multirotors are
+  * @param deadline of every decision; without one, policies are waited for
+  * @param fallback what is done where the deadline is missed
+  * @param policies with which the scenario is flown too, beside its own
   * @param onlyPolicies whether the scenario is flown with these policies alone, and not with its own beside
   */
 final case class FlySettings(
@@ -39,17 +40,17 @@ final case class FlySettings(
     period: Span,
     seed: Long,
     scenario: Scenario = PaperDuel(),
-    predictor: PredictionModel = PredictionModel.Quadrotor,
-    movesInFlight: Int = Moves.MostOutstanding,
-    deadline: Option[Span] = None,
-    fallback: Fallback = Fallback.Repeat,
-    policies: List[PolicyFile] = Nil,
-    planning: PlanSettings = PlanSettings(),
     scene: Option[NamedScene] = None,
+    planning: PlanSettings = PlanSettings(),
+    predictor: PredictionModel = PredictionModel.Quadrotor,
+    movesInFlight: Int = Moves.InFlight,
+    plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
     images: List[ImageSource] = Nil,
-    plant: SimulatedBody = SimulatedBody.AirSim,
+    deadline: Option[Span] = None,
+    fallback: Fallback = Fallback.Repeat,
+    policies: List[PolicyFile] = Nil,
     onlyPolicies: Boolean = false
 ):
 
@@ -194,9 +195,6 @@ object FlySettings:
   /** The air of forward simulation and of the built-in simulator is that at the ground. */
   val MostAltitudeM = 1000.0
 
-  /** What a forecast remembers of commands has room for more. */
-  val MostMovesInFlight = 32
-
   /** Reads `skein.fly`.
     *
     * @return or every mistake, with its file, line, and what was expected
@@ -257,9 +255,7 @@ object FlySettings:
       Option.when(settings.onlyPolicies && settings.policies.isEmpty)(
         "only-policies: expected policies beside it, came none"
       ),
-      Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
-        s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
-      ),
+      Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),

@@ -1,9 +1,10 @@
 package skein.settings
 
-import skein.loop.{AnyLoop, Fallback, LoopKind, PlanSettings, Replay}
+import skein.loop.{AnyLoop, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
-import skein.measure.{RecordedScenario, SolverSummary}
+import skein.measure.RecordedScenario
 import skein.policy.Fleet
+import skein.port.Moves
 import skein.record.{Event, EventKind, ParameterRow, Record, Recording}
 import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
@@ -20,17 +21,10 @@ final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
       case _ => flown
 
 object RecordedPlan:
+  private val settings = RecordedSetting.fields[FlySettings]
+
   private val Predictor = "predictor"
-
-  /** Under which recordings of older versions keep it. */
-  private val Model    = "model"
-  private val Planning = "planning"
-
-  private val MovesInFlight = "movesInFlight"
-  private val DeadlineNs    = "deadlineNs"
-  private val Images        = "images"
-  private val Plant         = "plant"
-  private val Spoken        = "wire"
+  private val Planning  = "planning"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -52,33 +46,23 @@ object RecordedPlan:
       Event(at, EventKind.Learned, Some(vehicle), news.text, Some(decision))
 
   /** What [[of]] needs besides the columns that every recording has. */
-  def parameters(settings: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
-    val deadline = settings.deadlineOf(plan)
-    val told     = Seq[(String, Option[Any])](
-      MovesInFlight           -> Some(settings.movesInFlight),
-      Plant                   -> Option.when(!settings.plant.isAirSim)(settings.plant.text),
-      Spoken                  -> Option.when(settings.wire != Wire.AirSim)(settings.wire.label),
-      SolverSummary.Parameter -> plan.solver.map(_.text),
-      Images          -> Option.when(settings.images.nonEmpty)(settings.images.map(_.text).mkString(" ")),
-      DeadlineNs      -> deadline.map(_.toNanos),
-      Replay.Fallback -> deadline.map(_ => settings.fallback.label)
-    ) ++ plan.policy.toSeq.flatMap: chosen =>
+  def parameters(flown: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
+    val deadline = flown.deadlineOf(plan)
+    val ofFlight =
+      flown.copy(scene = Some(flown.world), solver = plan.solver, deadline = deadline, onlyPolicies = false)
+    val ofPolicy = plan.policy.toSeq.flatMap: chosen =>
       Seq(
-        PolicyName                                          -> Some(chosen.name),
-        s"$PolicyName.${PolicyFile.name(chosen.file.role)}" -> Some(chosen.file.text),
-        Explore                                             -> chosen.learning.map(_.explore)
-      )
-    ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++
-      parameters(settings.planning, Some(settings.predictor)) ++
-      told.collect { case (name, Some(value)) => ParameterRow(name, value.toString) }
+        ParameterRow(PolicyName, chosen.name),
+        ParameterRow(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
+      ) ++ chosen.learning.map(learning => ParameterRow(Explore, learning.explore.toString))
+    settings.written(ofFlight).filter(_.name != Replay.Fallback || deadline.isDefined) ++ ofPolicy
 
   /** The same of what a flight plans by.
     *
     * @param predictor absent where a recording cannot name it
     */
   def parameters(planning: PlanSettings, predictor: Option[PredictionModel]): Seq[ParameterRow] =
-    ParameterRow(Planning, planning.text) +:
-      predictor.map(model => ParameterRow(Predictor, PredictionModel.text(model))).toSeq
+    RecordedSetting.written(Planning, planning) ++ RecordedSetting.written(Predictor, predictor)
 
   /** Reads it back.
     *
@@ -87,63 +71,25 @@ object RecordedPlan:
   def of(recording: Recording)(using Scenarios): Either[String, RecordedPlan] =
     val flight     = recording.flight
     val parameters = recording.heading.parameters.map(parameter => parameter.name -> parameter.value).toMap
-
-    def parameter[A](name: String, expected: String)(parse: String => Option[A]): Either[String, A] =
-      parameters.get(name) match
-        case None        => Left(s"the recording has no parameter '$name'")
-        case Some(value) => parse(value).toRight(s"its parameter '$name': expected $expected, came '$value'")
-
-    /** Recordings of older versions have not got all. */
-    def optional[A](name: String, expected: String)(parse: String => Option[A]): Either[String, Option[A]] =
-      if parameters.contains(name) then parameter(name, expected)(parse).map(Some(_)) else Right(None)
-
     for
-      loop  <- AnyLoop.parse(flight.loop)
-      link  <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
-      now   <- optional(Predictor, PredictionModel.recordedForms)(PredictionModel.recorded)
-      older <- optional(Model, PredictionModel.recordedForms)(PredictionModel.recordedAsModel)
-      _     <- Expect.that(loop != LoopKind.Plan || now.orElse(older).isDefined):
+      loop <- AnyLoop.parse(flight.loop)
+      link <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      _    <- Expect.that(
+        loop != LoopKind.Plan || Seq(Predictor, RecordedSetting.OlderPredictor).exists(parameters.contains)
+      ):
         s"the recording has no parameter '$Predictor': by what model was planned is not known"
-      moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
-      within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
-      fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
-      solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)
-      plant    <- optional(Plant, SimulatedBody.forms)(SimulatedBody.recorded(_).toOption)
-      wire     <- optional(Spoken, Wire.values.map(_.label).mkString(" or "))(Wire.parse(_).toOption)
-      images   <- optional(Images, "sources of images, with a space between two"): text =>
-        val (wrong, sources) = text.split(' ').toList.partitionMap(ImageSource.parse)
-        Option.when(wrong.isEmpty)(sources)
-      // Recordings from before there was planning have none.
-      planning <-
-        if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
-        else Right(PlanSettings())
       scenario <- RecordedScenario.of(recording)
-      scene    <- NamedScene.ofRecording(parameters)
-      settings = FlySettings(
-        List(loop),
-        List(link),
-        flight.duration,
-        flight.period,
-        flight.seed,
-        scenario,
-        planning = planning
-      )
+      columns = FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, scenario)
+      flown   <- settings.read(parameters, columns)
+      _       <- Moves.mistake(flown.movesInFlight).map("its parameter 'movesInFlight': " + _).toLeft(())
       chosen  <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
-      explore <- optional(Explore, "a number")(_.toDoubleOption)
-      news    <- newsOf(recording)
-      policy = chosen.map(_.copy(learning = explore.map(Learning.Again(_, news))))
+      explore <- Expect.each(parameters.get(Explore)): text =>
+        text.toDoubleOption.toRight(s"its parameter '$Explore': expected a number, came '$text'")
+      news <- newsOf(recording)
+      policy = chosen.map(_.copy(learning = explore.headOption.map(Learning.Again(_, news))))
     yield RecordedPlan(
-      settings.copy(
-        predictor = now.orElse(older).getOrElse(settings.predictor),
-        movesInFlight = moves.getOrElse(settings.movesInFlight),
-        deadline = within.map(Span.ofNanos),
-        fallback = fallback.getOrElse(settings.fallback),
-        scene = Some(scene),
-        images = images.getOrElse(Nil),
-        plant = plant.getOrElse(settings.plant),
-        wire = wire.getOrElse(settings.wire)
-      ),
-      FlightPlan(flight.id, loop, link, flight.seed, policy, solver)
+      flown.copy(solver = None),
+      FlightPlan(flight.id, loop, link, flight.seed, policy, flown.solver)
     )
 
   /** Versions' parameters belong to the last that was new before a decision. */

@@ -14,7 +14,7 @@ import skein.units.*
   * @param flight a number that no other flight has
   * @param vehicles how many fly
   * @param note told of what is to be recorded: what was late, repeated, left or lost, with the vehicle if it
-  *   concerns one
+  *   concerns one, and with how many where it is not one
   */
 final class SolverClient(
     link: MessageLink,
@@ -23,7 +23,7 @@ final class SolverClient(
     briefing: Briefing,
     vehicles: Int,
     clock: Clock,
-    note: (EventKind, Option[Int], String) => Unit
+    note: (EventKind, Option[Int], String, Option[Long]) => Unit
 )(using system: ActorSystem) extends Solver:
   import SolverClient.*
   import system.dispatcher
@@ -113,7 +113,7 @@ final class SolverClient(
     open.close()
 
   private def received(bytes: Array[Byte]): Unit = SolverMessageCodec.message(bytes) match
-    case Left(mistake)  => note(EventKind.Refused, None, s"from the solver came no message: $mistake")
+    case Left(mistake)  => noted(EventKind.Refused, s"from the solver came no message: $mistake")
     case Right(message) =>
       message match
         case SolverMessage.Preparing(`flight`)                     => prepares()
@@ -133,7 +133,7 @@ final class SolverClient(
       val asks = waiting.get(answer.vehicle).filter(_ => verdict.isInstanceOf[Verdict.Counts])
       if asks.isDefined then waiting = waiting.removed(answer.vehicle)
       (verdict, more, asks)
-    def said(kind: EventKind, text: String) = note(kind, Some(answer.vehicle), text)
+    def said(kind: EventKind, text: String) = note(kind, Some(answer.vehicle), text, None)
     verdict match
       case Verdict.Counts(askedAt) => asks.foreach(waits => answered(waits, answer, askedAt, now))
       case Verdict.Late(after)     =>
@@ -144,11 +144,22 @@ final class SolverClient(
       case Verdict.Repeated =>
         said(EventKind.Repeated, s"answer ${answer.number} of the solver came once more")
       case Verdict.Foreign =>
-        note(EventKind.Refused, None, s"the solver answered question ${answer.number}, which nobody asked")
+        noted(EventKind.Refused, s"the solver answered question ${answer.number}, which nobody asked")
     if more.overtaken > 0 then
-      note(EventKind.Dropped, None, s"${more.overtaken} questions were left at the solver for newer ones")
+      noted(
+        EventKind.Dropped,
+        s"${more.overtaken} questions were left at the solver for newer ones",
+        Some(more.overtaken)
+      )
     if more.repeated > 0 then
-      note(EventKind.Repeated, None, s"${more.repeated} questions came to the solver more than once")
+      noted(
+        EventKind.Repeated,
+        s"${more.repeated} questions came to the solver more than once",
+        Some(more.repeated)
+      )
+
+  private def noted(kind: EventKind, text: String, count: Option[Long] = None): Unit =
+    note(kind, None, text, count)
 
   private def answered(waits: Waiting, answer: Answer, askedAt: Instant, now: Instant): Unit =
     val _ = answer.result match
@@ -183,7 +194,7 @@ final class SolverClient(
         standing = Standing.Greeting(reason)
         Option.when(was == Standing.Welcome)(lost)
       lost.foreach: lost =>
-        note(EventKind.Disconnected, None, s"the solver is lost: $reason")
+        noted(EventKind.Disconnected, s"the solver is lost: $reason")
         lost.foreach(_.answer.tryFailure(NoSolver(reason)))
 
   private def again(why: String): Unit =
@@ -213,7 +224,7 @@ final class SolverClient(
       if isNew && !started.trySuccess(how) then
         val again =
           "a solver is there again" +: how.warning.filter(_ => briefing.loop == LoopKind.Plan.label).toSeq
-        note(EventKind.Reconnected, None, again.mkString("; "))
+        noted(EventKind.Reconnected, again.mkString("; "))
 
   /** Whether it greets once more, before the first question. */
   private def rehearses(): Boolean = lock.synchronized:
@@ -227,7 +238,7 @@ final class SolverClient(
   private def refused(why: String): Unit =
     lock.synchronized:
       standing = Standing.Refused(why)
-    if !started.tryFailure(NoSolver(why)) then note(EventKind.Refused, None, why)
+    if !started.tryFailure(NoSolver(why)) then noted(EventKind.Refused, why)
 
 object SolverClient:
   private val GreetEvery = Span.ofMillis(500)

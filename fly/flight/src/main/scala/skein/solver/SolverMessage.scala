@@ -2,7 +2,7 @@ package skein.solver
 
 import skein.loop.{Chosen, Memory, TeamView}
 import skein.policy.Fleet
-import skein.record.{ClockKind, FlightRow, ParameterRow, Recording, RecordingHeader}
+import skein.record.{ClockKind, FlightRow, ParameterRow, Recording, RecordingHeader, Simulator}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
@@ -56,7 +56,7 @@ final case class Briefing(
 
 object Briefing:
   def of(settings: FlySettings, plan: FlightPlan): Briefing = Briefing(
-    settings.scenario.title,
+    settings.scenario.name,
     plan.loop.label,
     plan.seed,
     settings.period,
@@ -78,7 +78,7 @@ object Briefing:
       briefing.period,
       briefing.duration,
       ClockKind.Real.label,
-      "",
+      Simulator.Other(""),
       briefing.scenario,
       "",
       Instant.Epoch

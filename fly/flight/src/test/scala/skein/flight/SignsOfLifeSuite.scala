@@ -1,7 +1,7 @@
 package skein.flight
 
 import skein.flight.SignsOfLife.Sign
-import skein.loop.LoopTimings
+import skein.forward.Asking
 import skein.units.*
 
 class SignsOfLifeSuite extends munit.FunSuite:
@@ -32,8 +32,8 @@ class SignsOfLifeSuite extends munit.FunSuite:
     )
 
   test("a simulator that answers within a flight's period is never silent, however long that is"):
-    assert(SimulatorWatchdog.within(Span.ofMillis(100), LoopTimings.AskTimeout) < Span.ofMillis(850))
+    assert(SimulatorWatchdog.within(Span.ofMillis(100), Asking.Timeout) < Span.ofMillis(850))
     for seconds <- Seq(0.1, 1.0, 10.0) do
       val period = Span.ofSeconds(seconds)
-      val within = SimulatorWatchdog.within(period, LoopTimings.AskTimeout)
-      assert(within > period + LoopTimings.AskTimeout)
+      val within = SimulatorWatchdog.within(period, Asking.Timeout)
+      assert(within > period + Asking.Timeout)

@@ -135,7 +135,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         for
           _ <- SolverServer.start(at, network.host("solver"), desk, clock)
           client =
-            SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _) => ())
+            SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _, _) => ())
           answer <- client.ready(Span.ofSeconds(3)).transform(result => scala.util.Success(result))
           _      <- client.close()
         yield answer.toEither.left.map(_.getMessage)
@@ -169,7 +169,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       network.host("solver"): Unit
       val link     = TcpLink(network.host("here"), Address("solver", 7400))
       val briefing = Briefing.of(settings, settings.plans.last)
-      val client   = SolverClient(link, 5, "ours", briefing, 2, clock, (_, _, _) => ())
+      val client   = SolverClient(link, 5, "ours", briefing, 2, clock, (_, _, _, _) => ())
       client.ready(Span.ofSeconds(3)).failed.flatMap(error => client.close().map(_ => error.getMessage))
     assertEquals(
       run.value,
@@ -215,7 +215,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
           Briefing.of(settings, settings.plans.last),
           2,
           clock,
-          (_, _, _) => ()
+          (_, _, _, _) => ()
         )
         _ <- client.ready(Span.ofSeconds(3))
         _ <- client.close()
@@ -251,7 +251,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         Briefing.of(settings, settings.plans.last),
         2,
         clock,
-        (_, _, _) => ()
+        (_, _, _, _) => ()
       )
       for
         server <- SolverServer.start(at, network.host("solver"), desk, clock)

@@ -4,7 +4,7 @@ import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
-import skein.record.{MemoryRecorder, Record, RecordError, Recorder, Samples, Written}
+import skein.record.{MemoryRecorder, Recordable, RecordError, Recorder, Samples, Written}
 import skein.scenario.PaperDuel
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -28,8 +28,8 @@ class LateFailureSimulation extends munit.FunSuite:
           FarQuadrotors(fleet, VirtualDuel.constant(400), 1, clock)
         val kept     = MemoryRecorder(Samples.heading)
         val recorder = new Recorder:
-          def offer(record: Record): Unit  = kept.offer(record)
-          val failure: Future[RecordError] = failsAt.fold(Future.never): at =>
+          def offer(record: Recordable): Unit = kept.offer(record)
+          val failure: Future[RecordError]    = failsAt.fold(Future.never): at =>
             after(at.toDuration, system.scheduler)(Future.successful(LateFailureSimulation.Full))
           def close(): Future[Either[RecordError, Written]] = kept.close()
         val team = Team(fleet, world.ports, clock, recorder, LoopSettings())

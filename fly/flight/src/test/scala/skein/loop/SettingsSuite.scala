@@ -18,7 +18,8 @@ class SettingsSuite extends munit.FunSuite:
       (make, expected) <- Seq[(() => LoopSettings, String)](
         (() => LoopSettings(period = Span.Zero), "period"),
         (() => LoopSettings(window = 0), "window"),
-        (() => LoopSettings(movesInFlight = 0), "move")
+        (() => LoopSettings(movesInFlight = 0), "moves in flight: expected 1 to 32, came 0"),
+        (() => LoopSettings(movesInFlight = 33), "moves in flight: expected 1 to 32, came 33")
       )
     do assert(intercept[IllegalArgumentException](make()).getMessage.contains(expected))
 

@@ -4,7 +4,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success, Try}
 import skein.policy.*
 import skein.port.{Sensor, VehicleError}
-import skein.record.{EventKind, MemoryRecorder, Samples}
+import skein.record.*
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -28,11 +28,12 @@ class TeamLogSuite extends munit.FunSuite:
       deciders(vehicle).decide(deciders(vehicle).start, view, now)._2
 
   test("a command is done, superseded, or why it failed"):
-    val ends = Seq[(Try[Either[VehicleError, Boolean]], String)](
-      Success(Right(true))                                -> "done",
-      Success(Right(false))                               -> "superseded",
-      Success(Left(VehicleError.Refused("no such move"))) -> "no such move",
-      Failure(IllegalStateException("gone"))              -> "java.lang.IllegalStateException: gone"
+    import CommandOutcome.*
+    val ends = Seq[(Try[Either[VehicleError, Boolean]], CommandOutcome)](
+      Success(Right(true))                                -> Done,
+      Success(Right(false))                               -> Superseded,
+      Success(Left(VehicleError.Refused("no such move"))) -> Failed("no such move"),
+      Failure(IllegalStateException("gone"))              -> Failed("java.lang.IllegalStateException: gone")
     )
     for (result, told) <- ends do
       val books = Books(PaperDuel().fleet)
@@ -52,8 +53,12 @@ class TeamLogSuite extends munit.FunSuite:
     )
     for (error, kind) <- kinds do
       val books = Books(PaperDuel().fleet)
-      books.log.failed(0, "reading 3", error)
-      assertEquals(books.recording.events.map(one => (one.kind, one.detail)), Vector(kind -> "reading 3: x"))
+      books.log.failed(0, "gps 3", error)
+      books.log.unread(1, 4, error)
+      assertEquals(
+        books.recording.events.map(one => (one.kind, one.detail, one.about)),
+        Vector((kind, "gps 3: x", None), (kind, "reading 4: x", Some(EventSubject.Reading)))
+      )
 
   private object Together extends Policy:
     type Memory = Unit
@@ -75,6 +80,26 @@ class TeamLogSuite extends munit.FunSuite:
     val duel = Books(duels)
     duel.log.decided(duel.decision(1))
     assertEquals((duel.recording.decisions.size, duel.recording.sightings), (1, Vector.empty))
+
+  test("a decision is offered without its rows, which who writes them makes"):
+    val team     = Fleet(PaperDuel(pairs = 2).fleet.agents.map(_.copy(policy = Together)))
+    val deciders = team.agents.indices.map(Decider(team, _))
+    val taken    = Vector.newBuilder[Recordable]
+    val recorder = new Recorder:
+      def offer(record: Recordable): Unit               = taken += record
+      val failure: Future[RecordError]                  = Future.never
+      def close(): Future[Either[RecordError, Written]] = Future.never
+    val books = Books(team)
+    val made  = books.decision(1)
+    TeamLog(team, deciders, Clock.ofNanos(() => now.toNanos), recorder).decided(made)
+    books.log.decided(made)
+    taken.result() match
+      case Vector(decision: LaterDecision, _: LaterRow, _: LaterRow) =>
+        assertEquals((decision.vehicle, decision.decidedAt), (team.agents(1).name, made.decidedAt))
+        assert(decision.seesOthers)
+      case other => fail(s"expected a decision and two sightings to be made later, came $other")
+    val rows = books.recording
+    assertEquals(taken.result().map(_.row), (rows.decisions ++ rows.sightings).toVector)
 
   test("a sensor's answer has as many finite numbers as columns, else it is an error on record"):
     given ExecutionContext    = ExecutionContext.parasitic

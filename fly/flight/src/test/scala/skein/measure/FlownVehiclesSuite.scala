@@ -2,6 +2,7 @@ package skein.measure
 
 import skein.identify.ArrivedCommand
 import skein.record.*
+import skein.record.CommandOutcome.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
@@ -14,7 +15,19 @@ class FlownVehiclesSuite extends munit.FunSuite:
   private val start = Instant.Epoch + Span.ofSeconds(2000)
 
   private def heading(loop: String) = RecordingHeader(
-    FlightRow("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
+    FlightRow(
+      "f",
+      loop,
+      "none",
+      1,
+      ms(100),
+      Span.ofSeconds(1),
+      "virtual",
+      Simulator.Other(""),
+      "duel",
+      "",
+      start
+    ),
     Seq(
       VehicleRow("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
       VehicleRow("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
@@ -43,7 +56,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
     start + ms(atMs)
   )
 
-  private def ended(number: Long, atMs: Double, outcome: String) =
+  private def ended(number: Long, atMs: Double, outcome: CommandOutcome) =
     Acknowledgement("Red", number, start + ms(atMs), outcome)
 
   private def flown(loop: String, records: Record*) =
@@ -72,34 +85,39 @@ class FlownVehiclesSuite extends munit.FunSuite:
   ):
     // 60 ms instead of 40: half of it on either way.
     assertEquals(
-      arrivals(command(1, 50), command(2, 250), ended(1, 310, "superseded"), ended(2, 900, "done")),
+      arrivals(command(1, 50), command(2, 250), ended(1, 310, Superseded), ended(2, 900, Done)),
       Seq(50.0 -> 1.0, 260.0 -> 2.0)
     )
     // An answer that came before the next command left is not the answer to it.
     assertEquals(
-      arrivals(command(1, 50), command(2, 250), ended(1, 240, "superseded")),
+      arrivals(command(1, 50), command(2, 250), ended(1, 240, Superseded)),
       Seq(50.0 -> 1.0, 250.0 -> 2.0)
     )
     assertEquals(
-      arrivals(command(1, 50), command(2, 250), ended(1, 310, "done")),
+      arrivals(command(1, 50), command(2, 250), ended(1, 310, Done)),
       Seq(50.0 -> 1.0, 250.0 -> 2.0)
     )
 
   test("a command whose call failed counts only if it superseded the one before"):
     assertEquals(
-      arrivals(command(1, 50), command(2, 250), ended(1, 300, "done"), ended(2, 400, "timed out")),
+      arrivals(command(1, 50), command(2, 250), ended(1, 300, Done), ended(2, 400, Failed("timed out"))),
       Seq(50.0 -> 1.0)
     )
     assertEquals(
-      arrivals(command(1, 50), command(2, 250), ended(1, 290, "superseded"), ended(2, 400, "timed out")),
+      arrivals(
+        command(1, 50),
+        command(2, 250),
+        ended(1, 290, Superseded),
+        ended(2, 400, Failed("timed out"))
+      ),
       Seq(50.0 -> 1.0, 250.0 -> 2.0)
     )
-    assertEquals(flown("stream", command(1, 50), ended(1, 300, "refused")), Vector.empty)
+    assertEquals(flown("stream", command(1, 50), ended(1, 300, Failed("refused"))), Vector.empty)
 
   test("none arrives before one that was sent earlier"):
     // The second was answered late: by its round trip alone it would have come 100 ms after the third.
     assertEquals(
-      arrivals(command(1, 50), command(2, 250), command(3, 280), ended(1, 550, "superseded")),
+      arrivals(command(1, 50), command(2, 250), command(3, 280), ended(1, 550, Superseded)),
       Seq(50.0 -> 1.0, 380.0 -> 2.0, 380.0 -> 3.0)
     )
 

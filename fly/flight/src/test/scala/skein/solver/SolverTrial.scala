@@ -7,7 +7,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.loop.*
 import skein.loop.planning.CountedPlanWorkers
 import skein.policy.Fleet
-import skein.record.{EventKind, MemoryRecorder, Recording, Samples}
+import skein.record.{Event, EventKind, EventSubject, MemoryRecorder, Recording, Samples}
 import skein.scenario.PaperDuel
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -142,8 +142,9 @@ object SolverTrial:
         briefing,
         fleet.agents.size,
         clock,
-        (kind, vehicle, detail) =>
-          recorder.offer(skein.record.Event(clock.now(), kind, vehicle.map(fleet.agents(_).name), detail))
+        (kind, vehicle, detail, count) =>
+          val name = vehicle.map(fleet.agents(_).name)
+          recorder.offer(Event(clock.now(), kind, name, detail, None, Some(EventSubject.Solver), count))
       )
       val settings =
         LoopSettings(deadline = Some(Deadline(within, otherwise)), planning = planning, seed = seed)

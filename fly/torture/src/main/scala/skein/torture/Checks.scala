@@ -2,7 +2,7 @@ package skein.torture
 
 import skein.loop.{LoopKind, FlightOutcome}
 import skein.port.Moves
-import skein.record.{DecisionRow, EventKind, Recording}
+import skein.record.{DecisionRow, EventSubject, Recording}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -46,7 +46,7 @@ object Checks:
       found < 0
 
   private def outstanding(seen: FlightTrace): Vector[String] =
-    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.MostOutstanding
+    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.InFlight
     yield s"$vehicle: ${port.commands.most} commands were outstanding at once"
 
   /** While the simulator stands still no time passes between commands. */
@@ -107,8 +107,7 @@ object Checks:
       val readings                                    = count(recording.readings)(_.vehicle == vehicle)
       val failed                                      =
         count(recording.events)(e =>
-          e.vehicle.contains(vehicle) && e.kind != EventKind.ClockRestarted &&
-            e.detail.matches("reading \\d+: .*")
+          e.vehicle.contains(vehicle) && e.about.contains(EventSubject.Reading)
         )
       val commands  = count(recording.commands)(_.vehicle == vehicle)
       val ended     = count(recording.acknowledgements)(_.vehicle == vehicle)
@@ -132,7 +131,7 @@ object Checks:
   private def unbounded(seen: FlightTrace): Vector[String] =
     // Each sensor that a policy reads is asked beside the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
-    val most    = seen.vehicles.size.toLong * (seen.window + Moves.MostOutstanding + SignsOfLife) +
+    val most    = seen.vehicles.size.toLong * (seen.window + Moves.InFlight + SignsOfLife) +
       sensors * seen.window + seen.images.size * ImagesOnTheWay
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1

@@ -16,12 +16,12 @@ final class FaultyRecorder(recorder: Recorder, disk: Disk, clock: Clock, start: 
   /** What was offered, up to the first that could not be kept: what the recording must hold. */
   def offered: Vector[Record] = taken.toVector
 
-  def offer(record: Record): Unit = record match
+  def offer(record: Recordable): Unit = record.row match
     case last: Ending => recorder.offer(last)
-    case _            =>
+    case row          =>
       if !failed.isCompleted then
-        write(record)
-        if !failed.isCompleted then taken += record
+        write(row)
+        if !failed.isCompleted then taken += row
 
   private def write(record: Record): Unit =
     val now = clock.now().since(start)

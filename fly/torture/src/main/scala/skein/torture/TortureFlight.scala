@@ -9,6 +9,7 @@ import scala.concurrent.duration.*
 import skein.airsim.*
 import skein.flight.{AirSimFleet, CameraSensor, Equipped, VirtualFlights}
 import skein.link.*
+import skein.forward.Asking
 import skein.loop.*
 import skein.record.*
 import skein.rpc.RpcClient
@@ -80,7 +81,7 @@ object TortureFlight:
     )
     private val settings = AirSimFleet.rpcSettings(faultPlan.loop)
     private val rpc      = RpcClient(network.host("controller"), address, clock, settings, faultPlan.seed)
-    private val client   = AirSimClient(rpc, LoopTimings.AskTimeout)
+    private val client   = AirSimClient(rpc, Asking.Timeout)
     private val memory   = MemoryRecorder(heading)
     private val recorder = FaultyRecorder(memory, faultPlan.disk, clock, start)
 
@@ -194,7 +195,7 @@ object TortureFlight:
         LoopSettings().period,
         faultPlan.duration,
         "virtual",
-        "built-in",
+        Simulator.BuiltIn,
         "torture",
         "",
         start

@@ -179,8 +179,8 @@ class FailureTellingSimulation extends munit.FunSuite:
     var startedAt         = Option.empty[Instant]
     private lazy val disk =
       new FaultyRecorder(recorder, fails.fold(Disk.Sound)(Disk.Fails(_)), clock, startedAt.get)
-    private val failed              = scala.concurrent.Promise[RecordError]()
-    def offer(record: Record): Unit =
+    private val failed                  = scala.concurrent.Promise[RecordError]()
+    def offer(record: Recordable): Unit =
       if startedAt.isEmpty then recorder.offer(record)
       else
         disk.offer(record)

@@ -3,7 +3,7 @@ package skein.torture
 import scala.concurrent.ExecutionContext
 import skein.flight.CameraSensor
 import skein.loop.{LoopKind, FlightOutcome}
-import skein.record.{DecisionRow, Event, EventKind, RecordError, TrueAge}
+import skein.record.{DecisionRow, Event, EventKind, EventSubject, RecordError, TrueAge}
 import skein.policy.*
 import skein.scenario.{PaperDuel, Scenario}
 import skein.signal.Stamped
@@ -170,15 +170,15 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(short.contains(s"${mixed.answered} answered, 3 refused and 2 lost of ${stats.sent - 1}"), short)
 
   test("a reading that failed is on record as an event of its vehicle"):
-    val recording                            = clean.recording
-    val lost                                 = recording.readings.head
-    def noted(vehicle: String, what: String) =
-      val event = Event(clean.endedAt, EventKind.TimedOut, Some(vehicle), s"$what 0: no answer")
+    val recording                                           = clean.recording
+    val lost                                                = recording.readings.head
+    def noted(vehicle: String, about: Option[EventSubject]) =
+      val event = Event(clean.endedAt, EventKind.TimedOut, Some(vehicle), "no answer", about = about)
       val less  = recording.copy(readings = recording.readings.tail, events = recording.events :+ event)
       found(clean.copy(recording = less)).contains("readings were asked for")
     val other = clean.vehicles.filterNot(_ == lost.vehicle).head
-    assert(!noted(lost.vehicle, "reading"))
-    assert(noted(other, "reading") && noted(lost.vehicle, "command"))
+    assert(!noted(lost.vehicle, Some(EventSubject.Reading)))
+    assert(noted(other, Some(EventSubject.Reading)) && noted(lost.vehicle, None))
 
   test("more commands on record than decisions, and more rows than a flight of its length has"):
     val recording = clean.recording

@@ -1,6 +1,7 @@
 package skein.forward
 
 import skein.port.Moves
+import skein.units.Span
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
 /** The timing of a control loop as data: when an observation is taken, how old it is at the decision, when
@@ -121,11 +122,15 @@ object LoopTiming:
   */
 final case class Asking(
     window: Int = 4,
-    timeoutS: Double = 0.5,
+    timeoutS: Double = Asking.Timeout.toSeconds,
     spreadS: Double = 0.0,
     inOrder: Boolean = false
 ):
   require(window > 0 && window <= 16, s"the window must be from 1 to 16, got $window")
+
+object Asking:
+  /** After this time a question to a simulator has failed; the paper's. */
+  val Timeout: Span = Span.ofMillis(500)
 
 /** When a vehicle may be commanded, as `skein.flow.Steer` decides: while fewer than `mostOutstanding`
   * commands are unanswered, `minIntervalS` after the last one, and `handoverS` after an answer that leaves
@@ -133,15 +138,8 @@ final case class Asking(
   */
 final case class Steering(
     minIntervalS: Double = Moves.LeastInterval.toSeconds,
-    mostOutstanding: Int = Moves.MostOutstanding,
+    mostOutstanding: Int = Moves.InFlight,
     handoverS: Double = Moves.HandoverAllowed.toSeconds
 ):
-  import Steering.MostOutstanding
-  require(
-    mostOutstanding > 0 && mostOutstanding <= MostOutstanding,
-    s"from 1 to $MostOutstanding outstanding, got $mostOutstanding"
-  )
-
-object Steering:
-  /** What forward simulation has room for. */
-  val MostOutstanding = 16
+  for wrong <- Moves.mistake(mostOutstanding) do
+    throw IllegalArgumentException(s"moves that may be outstanding: $wrong")

@@ -16,7 +16,8 @@ import skein.identify.Tilting
 import skein.lanes.loop.LoopLanes
 import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{HeadingPolicy, PaperEvader, PaperPursuer}
+import skein.port.Moves
 import skein.simd.WorldRandom
 import skein.vehicle.{ConstantVelocity, ReducedModel}
 
@@ -132,6 +133,14 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       s"$vehicles, $timing over $name with $most moves in flight: the scalar reference's decisions and flight"
     ):
       agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
+
+  for
+    (vehicles, model) <- models.filter((name, _) => name == "lag" || name == "drag")
+    (name, link)      <- links.filter((name, _) => name.startsWith("300"))
+  do
+    test(s"$vehicles over $name, with as many moves in flight as may be: the scalar reference's flight"):
+      val most = Steering(mostOutstanding = Moves.MostInFlight)
+      agreement(LoopTiming.Stream(0.02, steering = most), link, 5, model).check(name, 0 until worlds by 3)
 
   private val unseenPursuers = Seq[(String, Int => HeadingPolicy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),

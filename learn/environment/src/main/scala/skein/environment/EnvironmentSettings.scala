@@ -2,7 +2,7 @@ package skein.environment
 
 import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Steering}
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{LearnerDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy, Role}
@@ -42,7 +42,7 @@ final case class EnvironmentSettings(
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
     startWithinM: (Double, Double) = (0, 0),
-    movesInFlight: Int = Moves.MostOutstanding,
+    movesInFlight: Int = Moves.InFlight,
     turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS,
     evaderRateRadPerS: Double = 0,
     scenario: String = PaperDuel.Name,
@@ -103,7 +103,7 @@ final case class EnvironmentSettings(
       _       <- within("capture_radius_m", captureRadiusM, 0, MostM)
       _       <- within("start_within_m", startWithinM._1, 0, MostM)
       _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
-      _       <- within("moves_in_flight", movesInFlight, 1, Steering.MostOutstanding)
+      _       <- Moves.mistake(movesInFlight).map("moves_in_flight: " + _).toLeft(())
       _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
       _       <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
       vehicle <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)

@@ -170,6 +170,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     assert(refused(EnvironmentSettings(plant = "quadrotor", altitudeM = 3)).startsWith(
       "plant: the lanes know no ground"
     ))
+    assert(refused(EnvironmentSettings(movesInFlight = 33)).startsWith("moves_in_flight: expected 1 to 32"))
     assert(refused(EnvironmentSettings(startWithinM = (5, 2))).startsWith("start_within_m: expected 5.0"))
     val learner = Learner(EnvironmentSettings(), 2, Autoreset.Disabled)
     intercept[IllegalStateException](learner.batch.step())

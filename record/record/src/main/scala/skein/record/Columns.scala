@@ -115,7 +115,15 @@ private[record] object FieldColumns:
 
   given FieldColumns[EventKind] = oneOf(_, EventKind.values)
 
+  given FieldColumns[EventSubject] = oneOf(_, EventSubject.values)
+
   given FieldColumns[EndingKind] = oneOf(_, EndingKind.values)
+
+  given FieldColumns[Simulator] = summon[FieldColumns[String]](_).as(Simulator.ofLabel, _.label)
+
+  /** Up to format 6, the text of the error stood in the place of `failed`. */
+  given FieldColumns[CommandOutcome] = name =>
+    columns[OutcomeCells](name, "error").as(_.outcome, OutcomeCells.of)
 
   /** Directions stand in the place of the frame that ends the name. */
   given FieldColumns[Vector3] = name =>
@@ -173,6 +181,10 @@ private[record] object FieldColumns:
       "actionYawMode",
       "actionYaw"
     ).as(_.action, ActionCells.of)
+
+  /** The column came with format 7. */
+  private given error: FieldColumns[Option[String]] =
+    name => added(optional(summon[FieldColumns[String]](name)))
 
   given option[A](using one: FieldColumns[A]): FieldColumns[Option[A]] = name => optional(one(name))
 

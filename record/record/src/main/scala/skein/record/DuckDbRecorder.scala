@@ -24,7 +24,7 @@ final class DuckDbRecorder private (
     closed: Future[Either[RecordError, Written]]
 ) extends Recorder:
 
-  def offer(record: Record): Unit = record match
+  def offer(record: Recordable): Unit = record match
     case last: Ending                 => ending.set(Some(last))
     case large: (CameraImage | Cloud) => offerLarge(large)
     case _                            => enqueue(record)
@@ -43,7 +43,7 @@ final class DuckDbRecorder private (
       val why     = s"$name: not recorded, since $waiting bytes of images and clouds wait to be written"
       enqueue(Event(at, EventKind.Dropped, Some(vehicle), why))
 
-  private def enqueue(record: Record): Unit =
+  private def enqueue(record: Recordable): Unit =
     if !writer.offer(record) then
       failed.trySuccess(RecordError.QueueFull(capacity)): Unit
       // What is queued already is still written; what comes now would leave a gap.

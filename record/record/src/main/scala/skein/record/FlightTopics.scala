@@ -123,10 +123,10 @@ object FlightTopics:
     case command: CommandRow      => command.vehicle
     case answer: Acknowledgement  => answer.vehicle
     case truth: Truth             => truth.vehicle
-    case Event(_, EventKind.Paused | EventKind.Continued, _, _, _) => "paused"
-    case event: Event                                              => event.vehicle.getOrElse("")
-    case _: Latency | _: Ending                                    => ""
-    case _: FlightRow | _: ParameterRow | _: VehicleRow            => number.toString
+    case event: Event if Set(EventKind.Paused, EventKind.Continued)(event.kind) => "paused"
+    case event: Event                                                           => event.vehicle.getOrElse("")
+    case _: Latency | _: Ending                                                 => ""
+    case _: FlightRow | _: ParameterRow | _: VehicleRow                         => number.toString
 
   private def publishedAt(record: Record): Option[Instant] = record match
     case prediction: Prediction => Some(prediction.madeAt)

@@ -175,6 +175,7 @@ object McapRecording:
       val outs = mutable.LinkedHashMap.empty[String, RowsFile]
       // A row whose bytes have not come yet.
       var waiting              = Option.empty[(table: String, row: String)]
+      var format               = RecordingFormat.version
       def refused(why: String) = Some(RecordError.NotAnExport(file, why))
       def lacking(row: String) = refused(s"an image or a cloud has no bytes behind its row: ${row.take(100)}")
       def out(table: String)   = outs.getOrElseUpdate(table, RowsFile(folder.resolve(s"$table.json")))
@@ -203,14 +204,19 @@ object McapRecording:
         val failed = records
           .flatMap:
             case Left(error)                                              => refused(error.message)
-            case Right(Parsed.Found(metadata: McapRecord.Metadata, _, _)) => otherFormat(file, metadata)
-            case Right(Parsed.Found(message: McapRecord.Message, _, _))   =>
+            case Right(Parsed.Found(metadata: McapRecord.Metadata, _, _)) =>
+              formatOf(metadata).flatMap: found =>
+                format = found
+                otherFormat(file, found)
+            case Right(Parsed.Found(message: McapRecord.Message, _, _)) =>
               val topic = records.channel(message.channelId).fold("")(_.topic)
               if topic.startsWith(FlightTopics.Prefix) then row(message, topic) else bytes(message, topic)
             case Right(_) => None
           .nextOption()
           .orElse(waiting.flatMap((_, row) => lacking(row)))
-        failed.toLeft(outs.map((name, lines) => Gathered(tables(name), lines.file, lines.longest)).toVector)
+        failed.toLeft(
+          outs.map((name, lines) => Gathered(tables(name), lines.file, lines.longest, format)).toVector
+        )
       finally outs.values.foreach(_.close())
 
   /** Whether the bytes of a table's row are in a message of this topic. */
@@ -221,8 +227,9 @@ object McapRecording:
   private val BytesField = ImageEncoding.RawImageData.ensuring(_ == ImageEncoding.PointCloudData)
 
   /** @param longest line, in bytes, about
+    * @param format of the recording that was exported
     */
-  private final case class Gathered(table: Table[?], file: Path, longest: Int)
+  private final case class Gathered(table: Table[?], file: Path, longest: Int, format: Int)
 
   private final class RowsFile(val file: Path) extends AutoCloseable:
     private val out = Files.newBufferedWriter(file)
@@ -237,13 +244,12 @@ object McapRecording:
 
   private val tables: Map[String, Table[?]] = Table.all.map(table => table.name -> table).toMap
 
-  private def otherFormat(file: Path, metadata: McapRecord.Metadata): Option[RecordError] =
-    metadata.metadata
-      .get("format")
-      .filter(_ => metadata.name == About)
-      .flatMap(_.toIntOption)
-      .filter(found => found < RecordingFormat.oldest || found > RecordingFormat.version)
-      .map(RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, _))
+  private def formatOf(metadata: McapRecord.Metadata): Option[Int] =
+    metadata.metadata.get("format").filter(_ => metadata.name == About).flatMap(_.toIntOption)
+
+  private def otherFormat(file: Path, found: Int): Option[RecordError] =
+    Option.when(found < RecordingFormat.oldest || found > RecordingFormat.version):
+      RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, found)
 
   private def insert(rows: Gathered, connection: DuckDBConnection): Unit =
     val table   = rows.table
@@ -251,7 +257,11 @@ object McapRecording:
     val types   =
       columns.map(column => s"${column.name}: '${if column.isBlob then "VARCHAR" else column.sqlType}'")
         .mkString("{", ", ", "}")
-    val values  = columns.map(column => if column.isBlob then s"from_base64(${column.name})" else column.name)
+    val values = columns.map: column =>
+      if column.isBlob then s"from_base64(${column.name})"
+      else if column.nullable && rows.format < RecordingFormat.version then
+        column.older.fold(column.name)(older => s"coalesce(${column.name}, $older)")
+      else column.name
     val quoted  = "'" + rows.file.toString.replace("'", "''") + "'"
     val longest = rows.longest.max(JsonLine)
     Using.resource(connection.createStatement()): statement =>

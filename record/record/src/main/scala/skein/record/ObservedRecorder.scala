@@ -8,10 +8,10 @@ import scala.concurrent.Future
   */
 final class ObservedRecorder(
     recorder: Recorder,
-    observer: Record => Unit,
-    keeps: Record => Boolean = _ => true
+    observer: Recordable => Unit,
+    keeps: Recordable => Boolean = _ => true
 ) extends Recorder:
-  def offer(record: Record): Unit =
+  def offer(record: Recordable): Unit =
     if keeps(record) then recorder.offer(record)
     observer(record)
 

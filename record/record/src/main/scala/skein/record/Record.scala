@@ -13,7 +13,31 @@ import skein.vehicle.VehicleKind
   * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order
   * in which all records of the flight were accepted.
   */
-sealed trait Record
+sealed trait Record extends Recordable:
+  def row: Record = this
+
+/** What a recorder takes: a row, or what one is made from by whoever first asks for it. That is the
+  * recorder's writer, behind its queue, so that no command waits until its decision is spread over columns.
+  */
+sealed trait Recordable:
+  def row: Record
+
+/** A row that is made later. */
+final class LaterRow(make: => Record) extends Recordable:
+  lazy val row: Record = make
+
+/** A decision whose row is made later, with what watches over the flight at once.
+  *
+  * @param seesOthers whether it was made from more than its own and its opponent's reading
+  */
+final class LaterDecision(
+    val vehicle: String,
+    val decidedAt: Instant,
+    val action: Option[Action],
+    val seesOthers: Boolean,
+    make: => DecisionRow
+) extends Recordable:
+  lazy val row: DecisionRow = make
 
 object Record:
   /** The large part of an image or a cloud. */
@@ -27,8 +51,9 @@ object Record:
   * @param loop the label of a [[LoopKind]], or the name of a user's own loop
   * @param id names the flight in tables and pictures, for example `stream-vpn`
   * @param clock the label of a [[ClockKind]]
-  * @param simulator `built-in`, or the address of another
+  * @param scenario its title, and whose policy was flown in place of its own: for people
   * @param version of the program that recorded
+  * @param scenarioName by which a program knows the scenario; without one, its title is its name
   */
 final case class FlightRow(
     id: String,
@@ -38,10 +63,11 @@ final case class FlightRow(
     period: Span,
     duration: Span,
     clock: String,
-    simulator: String,
+    simulator: Simulator,
     scenario: String,
     version: String,
-    startedAt: Instant
+    startedAt: Instant,
+    scenarioName: Option[String] = None
 ) extends Record:
 
   /** Absent for a loop that is none of ours. */
@@ -51,7 +77,10 @@ final case class FlightRow(
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
 
   /** Whether its world is that of the recording's parameters. */
-  def isBuiltIn: Boolean = simulator.startsWith("built-in")
+  def isBuiltIn: Boolean = simulator == Simulator.BuiltIn
+
+  /** The name of the scenario. */
+  def nameOfScenario: String = scenarioName.getOrElse(scenario)
 
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
 
@@ -346,10 +375,18 @@ final case class CommandRow(
   *
   * @param command the command's sequence
   * @param endedAt when the answer came, or when it was given up
-  * @param outcome `done`, `superseded`, or the error's text
   */
-final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: String)
+final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: CommandOutcome)
     extends Record
+
+/** How a command ended; recorded by name, the error in a column of its own. */
+enum CommandOutcome:
+  case Done
+
+  /** A newer command replaced it. */
+  case Superseded
+
+  case Failed(error: String)
 
 /** One round trip over a link. */
 final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends Record
@@ -360,13 +397,17 @@ final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends
   * @param decision where a deadline was missed, the sequence of the decision that the fallback made instead;
   *   absent where it made none. Where something was learned, or a solver began anew, the sequence of the
   *   first decision after it
+  * @param about what it is about, where programs count such events
+  * @param count of what it is about, where it is not one
   */
 final case class Event(
     at: Instant,
     kind: EventKind,
     vehicle: Option[String],
     detail: String,
-    decision: Option[Long] = None
+    decision: Option[Long] = None,
+    about: Option[EventSubject] = None,
+    count: Option[Long] = None
 ) extends Record
 
 /** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these
@@ -390,6 +431,17 @@ enum EndingKind:
 
   /** It could not go on. */
   case Failed
+
+/** What an [[Event]] is about; recorded by name. */
+enum EventSubject:
+  /** A question where a vehicle is, which was not answered. */
+  case Reading
+
+  /** A camera of which images were wanted, and none came. */
+  case Camera
+
+  /** The solver in another process, its link, and questions to it. */
+  case Solver
 
 /** What an [[Event]] tells of; recorded by name. */
 enum EventKind:

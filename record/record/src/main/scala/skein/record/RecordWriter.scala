@@ -21,7 +21,7 @@ private[record] final class RecordWriter(
     batchSize: Int,
     threads: ThreadFactory
 )(write: Vector[Record] => Boolean):
-  private val waiting            = ConcurrentLinkedQueue[Record]()
+  private val waiting            = ConcurrentLinkedQueue[Recordable]()
   private val count              = AtomicInteger()
   private val over               = Promise[Unit]()
   @volatile private var isEnding = false
@@ -36,7 +36,7 @@ private[record] final class RecordWriter(
     *
     * @return false where as many wait as may
     */
-  def offer(record: Record): Boolean =
+  def offer(record: Recordable): Boolean =
     if isEnding then true
     else if count.incrementAndGet() > capacity then
       count.decrementAndGet(): Unit
@@ -84,7 +84,7 @@ private[record] final class RecordWriter(
     var next  = waiting.poll()
     while next != null do
       count.decrementAndGet(): Unit
-      batch += next
+      batch += next.row
       size += 1
       next = if size < batchSize then waiting.poll() else null
     batch.result()

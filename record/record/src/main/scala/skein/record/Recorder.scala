@@ -5,11 +5,11 @@ import scala.concurrent.Future
 /** Records what a flight does. */
 trait Recorder:
 
-  /** Takes one record; never blocks, from any thread. A record that cannot be kept makes [[failure]]
-    * complete; after a failure or [[close]], records are ignored, but for the [[Ending]]: it is the last row,
-    * and after a failure it is written as far as that is possible.
+  /** Takes one record; never blocks, and makes no [[LaterRow]], from any thread. A record that cannot be kept
+    * makes [[failure]] complete; after a failure or [[close]], records are ignored, but for the [[Ending]]: it
+    * is the last row, and after a failure it is written as far as that is possible.
     */
-  def offer(record: Record): Unit
+  def offer(record: Recordable): Unit
 
   /** Completes when a record could not be kept, and never otherwise. The flight must end then: vehicles
     * hover, and the reason is shown.

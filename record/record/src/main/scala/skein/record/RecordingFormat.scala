@@ -7,7 +7,7 @@ import scala.util.Using
 object RecordingFormat:
 
   /** Counts changes of the tables; a file of a later version is not read. */
-  val version = 6
+  val version = 7
 
   /** Files since this version are read: what came later reads as absent. */
   val oldest = 2

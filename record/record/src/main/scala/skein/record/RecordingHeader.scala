@@ -8,6 +8,9 @@ final case class RecordingHeader(
 ):
   def records: Seq[Record] = flight +: (vehicles ++ parameters)
 
+  /** The value of a parameter. */
+  def parameter(name: String): Option[String] = parameters.find(_.name == name).map(_.value)
+
   /** The parameters whose names begin with a word and a full stop, by what follows. */
   def parametersOf(word: String): Map[String, String] =
     parameters

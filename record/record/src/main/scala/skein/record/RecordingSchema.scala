@@ -35,7 +35,7 @@ object RecordingSchema:
   private def meaning(table: String): String = table match
     case "flight" =>
       "What was flown: one row. `clock` is real or virtual; `simulator` is `built-in`, or the address of " +
-        "another; `version` is that of the program."
+        "another; `scenario` is a title, and `scenarioName` names the scenario; `version` is that of the program."
     case "parameter" => "Further settings of the flight, such as those of its scenario: name and value."
     case "vehicle"   =>
       "One row for each vehicle, with its role in the scenario and its cruising speed; `start…` is " +
@@ -85,13 +85,14 @@ object RecordingSchema:
     case "command" =>
       "One row for each command as it was sent. `decision` is absent for take-off, hover and the like."
     case "acknowledgement" =>
-      "How each command ended: `outcome` is `done`, `superseded` (a newer command replaced it), or the " +
-        "text of an error."
+      "How each command ended: `outcome` is `done`, `superseded` (a newer command replaced it), or " +
+        "`failed`, with the `error`."
     case "latency" => "Round trips over the link."
     case "event"   =>
       s"Everything unusual. `kind` is ${listed(EventKind.values.toVector.map(_.toString))}: " +
         "[what each means](report.md#events). `decision` is the one that a fallback made, or the first " +
-        "after something was learned or a solver was restarted."
+        "after something was learned or a solver was restarted. `about` is what the event is about, if " +
+        s"that is ${listed(EventSubject.values.toVector.map(_.toString))}; `count` how many, if more than one."
     case "truth"  => "True positions of vehicles, if they are sampled apart from the readings."
     case "ending" =>
       s"How the flight ended: one row, or none if the recording is incomplete. `how` is " +

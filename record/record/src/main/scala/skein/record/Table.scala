@@ -89,7 +89,6 @@ private[record] object Table:
   private given states: FieldColumns[Option[PlannedStates]] =
     name => added(optional(summon[FieldColumns[PlannedStates]](name)))
 
-  val flight: Table[FlightRow]                = table("flight")
   val parameter: Table[ParameterRow]          = table("parameter")
   val vehicle: Table[VehicleRow]              = table("vehicle")
   val reading: Table[ReadingRow]              = table("reading")
@@ -112,10 +111,28 @@ private[record] object Table:
       migrated(FieldColumns.longs(name), s"string_split($name, ',')::BIGINT[]")
     table("plan", since = 3)
 
+  val flight: Table[FlightRow] =
+    given FieldColumns[Option[String]] = name =>
+      added(migrated(optional(summon[FieldColumns[String]](name)), "split_part(scenario, ',', 1)"))
+    table("flight")
+
+  /** Up to format 4, only the text of an event said which decision a fallback had made; up to format 6, also
+    * what it was about, and how many.
+    */
   val event: Table[Event] =
-    // Up to format 4, only the text of the event said which decision a fallback had made.
-    val inDetail = "try_cast(regexp_extract(detail, '^decision ([0-9]+) by the fallback: ', 1) AS BIGINT)"
-    given FieldColumns[Option[Long]] = name => added(migrated(optional(FieldColumns.long(name)), inDetail))
+    val numbers = Map(
+      "decision" -> "^decision ([0-9]+) by the fallback: ",
+      "count"    -> "^([0-9]+) questions were left at the solver"
+    )
+    val about =
+      "CASE WHEN kind = 'Refused' AND contains(detail, ': no image came: ') THEN 'Camera' " +
+        "WHEN kind IN ('LateReply', 'Disconnected', 'Dropped') AND contains(detail, 'solver') THEN 'Solver' " +
+        "WHEN kind <> 'ClockRestarted' AND regexp_matches(detail, '^reading [0-9]+: ') THEN 'Reading' END"
+    given number: FieldColumns[Option[Long]] = name =>
+      val inDetail = s"try_cast(regexp_extract(detail, '${numbers(name)}', 1) AS BIGINT)"
+      added(migrated(optional(FieldColumns.long(name)), inDetail))
+    given subject: FieldColumns[Option[EventSubject]] = name =>
+      added(migrated(optional(summon[FieldColumns[EventSubject]](name)), about))
     table("event")
 
   private inline def table[A <: Record: ClassTag](name: String, since: Int = RecordingFormat.oldest)(using

@@ -3,7 +3,9 @@ package skein.record
 import java.nio.file.{Files, Path}
 import skein.mcap.{Bytes, McapWriter, TopicMessage, Record as McapRecord}
 import skein.mcap.file.McapFile
+import scala.collection.immutable.VectorMap
 import skein.testing.TemporaryFolders
+import skein.units.Instant
 
 class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
 
@@ -35,6 +37,29 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertEquals(Digest.ofFile(again), Digest.ofFile(folder.resolve("flight.duckdb")))
     assertEquals(Files.list(folder).count(), 3L)
+
+  folder.test("an export of format 6 is imported with what its words told"): folder =>
+    val today = exported(folder)
+    val older = folder.resolve("older.mcap")
+    McapFile.write(older, McapRecording.options): mcap =>
+      mcap.metadata("skein", VectorMap("format" -> "6"))
+      for table <- Seq("flight", "event", "acknowledgement") do
+        val channel = mcap.channel(s"/skein/$table", "json", 0)
+        for one <- messages(today, s"/skein/$table") do
+          val row = ujson.read(one.message.data.utf8).obj
+          for error <- row.remove("error") if !error.isNull do row("outcome") = error
+          for added <- Seq("about", "count", "scenarioName") do row.remove(added): Unit
+          mcap.message(channel, 0, one.message.logTime, one.message.publishTime, Bytes.utf8(ujson.write(row)))
+    assertEquals(McapRecording.read(older, folder.resolve("again.duckdb")), Right(()))
+    val again = RecordingReader.read(folder.resolve("again.duckdb"))
+    val known = Recording(Samples.heading, Samples.oneOfEach)
+    // Not their times, which `ujson` reads as doubles.
+    def told(recording: Recording) = (
+      recording.events.map(_.copy(at = Instant.Epoch)),
+      recording.acknowledgements.map(_.copy(endedAt = Instant.Epoch)),
+      recording.flight.copy(startedAt = Instant.Epoch)
+    )
+    assertEquals(again.map(told), Right(told(known)))
 
   folder.test("every table is a topic, with a schema that names its columns"): folder =>
     val mcap   = exported(folder)

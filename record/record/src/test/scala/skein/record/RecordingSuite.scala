@@ -45,6 +45,23 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
       assertEquals(Digest.ofFile(file), today)
 
+  folder.test("up to format 6, words told how commands ended, and what events and flights were about"):
+    folder =>
+      val file = folder.resolve("flight.duckdb")
+      record(file, Samples.oneOfEach*)
+      val today = Digest.ofFile(file)
+      execute(file, "UPDATE acknowledgement SET outcome = error WHERE error IS NOT NULL")
+      execute(file, "ALTER TABLE acknowledgement DROP COLUMN error")
+      execute(file, "ALTER TABLE event DROP COLUMN about")
+      execute(file, "ALTER TABLE event DROP COLUMN count")
+      execute(file, "ALTER TABLE flight DROP COLUMN scenarioName")
+      execute(file, "UPDATE flight SET simulator = 'built-in, MAVLink, mujoco:quadrotor.xml'")
+      execute(file, "UPDATE format SET version = 6")
+      assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
+      assertEquals(Digest.ofFile(file), today)
+      execute(file, "UPDATE flight SET scenario = 'duel, as published, pursuer pure-pursuit'")
+      assertEquals(RecordingReader.read(file).map(_.flight.nameOfScenario), Right("duel"))
+
   folder.test("a table that came with a later format may be missing, one of the file's own format may not"):
     folder =>
       val file = folder.resolve("flight.duckdb")

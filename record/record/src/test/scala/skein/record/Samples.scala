@@ -15,10 +15,11 @@ object Samples:
       period = Span.ofMillis(100),
       duration = Span.ofSeconds(60),
       clock = "virtual",
-      simulator = "built-in",
+      simulator = Simulator.BuiltIn,
       scenario = "duel",
       version = "0.1.0",
-      startedAt = Instant.ofNanos(1_790_000_000_123_456_789L)
+      startedAt = Instant.ofNanos(1_790_000_000_123_456_789L),
+      scenarioName = Some("duel")
     ),
     Seq(
       VehicleRow("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
@@ -180,11 +181,35 @@ object Samples:
       at(41_000_000)
     ),
     CommandRow(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
-    Acknowledgement("Pursuer", 1, at(80_000_000), "superseded"),
+    Acknowledgement("Pursuer", 1, at(80_000_000), CommandOutcome.Superseded),
+    Acknowledgement("Pursuer", 2, at(81_000_000), CommandOutcome.Done),
+    Acknowledgement("Pursuer", 3, at(82_000_000), CommandOutcome.Failed("done too late")),
     Latency("vpn", at(5), Span.ofNanos(102_800_001)),
     Event(at(6), EventKind.Skipped, Some("Evader"), "an answer was outstanding, it's late"),
     Event(at(6), EventKind.DeadlineMissed, Some("Evader"), "decision 5 by the fallback: Late", Some(5)),
     Event(at(7), EventKind.Disconnected, None, ""),
+    Event(
+      at(8),
+      EventKind.Dropped,
+      None,
+      "3 questions were left at the solver for newer ones",
+      about = Some(EventSubject.Solver),
+      count = Some(3)
+    ),
+    Event(
+      at(9),
+      EventKind.Refused,
+      Some("Evader"),
+      "front: no image came: unknown",
+      about = Some(EventSubject.Camera)
+    ),
+    Event(
+      at(10),
+      EventKind.TimedOut,
+      Some("Evader"),
+      "reading 7: no answer",
+      about = Some(EventSubject.Reading)
+    ),
     Truth("Evader", Instant.ofNanos(3_000_000), Vector3(21.5, 0.25, -20.125)),
     Ending(at(4_000_000_000L), EndingKind.Failed, Some("the disk is full"))
   )

@@ -2,7 +2,7 @@ package skein.view
 
 import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
-import skein.record.{Record, ImagingSensor}
+import skein.record.{ImagingSensor, Record, Recordable}
 
 /** Takes a flight's records to viewers. Bounded, and the newest wins; of the images of a camera, and of the
   * clouds of a lidar, the newest alone waits. `offer` takes no lock: a viewer's thread that the system has
@@ -11,24 +11,26 @@ import skein.record.{Record, ImagingSensor}
   * @param capacity records that wait; as many more as threads offer at one moment may for that moment
   */
 final class Feed(capacity: Int = Feed.DefaultCapacity):
-  private val queue   = ConcurrentLinkedQueue[Record]()
+  private val queue   = ConcurrentLinkedQueue[Recordable]()
   private val waiting = AtomicInteger()
   private val dropped = AtomicLong()
 
   private val seen = ConcurrentHashMap[ImagingSensor, Record]()
 
-  def offer(record: Record): Unit = ImagingSensor.of(record) match
-    case Some(sensor) => seen.put(sensor, record): Unit
-    case None         => enqueue(record)
+  def offer(record: Recordable): Unit = record match
+    case image: Record => ImagingSensor.of(image).fold(enqueue(image))(seen.put(_, image): Unit)
+    case later         => enqueue(later)
 
   /** The newest record of a camera or a lidar, if there is one since the last call. */
   def poll(sensor: ImagingSensor): Option[Record] = Option(seen.remove(sensor))
 
-  private def enqueue(record: Record): Unit =
+  private def enqueue(record: Recordable): Unit =
     queue.offer(record): Unit
-    if waiting.incrementAndGet() > capacity && poll().isDefined then dropped.incrementAndGet(): Unit
+    if waiting.incrementAndGet() > capacity && next().isDefined then dropped.incrementAndGet(): Unit
 
-  def poll(): Option[Record] =
+  def poll(): Option[Record] = next().map(_.row)
+
+  private def next(): Option[Recordable] =
     val first = Option(queue.poll())
     if first.isDefined then waiting.decrementAndGet(): Unit
     first

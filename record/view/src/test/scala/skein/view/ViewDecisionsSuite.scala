@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.Event
+import skein.record.{Event, LaterRow}
 import skein.record.EventKind
 import skein.units.Instant
 
@@ -23,3 +23,7 @@ class ViewDecisionsSuite extends munit.FunSuite:
     (1 to 5).foreach(at => feed.offer(event(at)))
     assertEquals(Vector.unfold(())(_ => feed.poll().map((_, ()))), Vector(3, 4, 5).map(event))
     assertEquals(feed.lost, 2L)
+    var made = 0
+    feed.offer(LaterRow { made += 1; event(6) })
+    assertEquals(made, 0)
+    assertEquals((feed.poll(), made), (Some(event(6)), 1))

@@ -39,7 +39,7 @@ enum Steered[+C, +R]:
   *   - '''Cancels when''' downstream cancels.
   *
   * @param minInterval between two commands sent: the rate cap
-  * @param mostOutstanding commands that may be unanswered. More than [[Moves.MostOutstanding]] let a link of
+  * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of
   *   a long round trip carry more commands than one a round trip; only for links that never deliver several
   *   in a burst
   * @param send one command; the future ends when the move ends
@@ -51,7 +51,7 @@ enum Steered[+C, +R]:
   *   arrived while it was held
   * @param hold parks the vehicle for as long as it is held
   */
-final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Moves.MostOutstanding)(
+final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Moves.InFlight)(
     send: C => Future[R],
     park: () => Future[R],
     isCertain: R => Boolean = (_: R) => true,

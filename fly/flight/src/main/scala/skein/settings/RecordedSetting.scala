@@ -1,0 +1,159 @@
+package skein.settings
+
+import scala.compiletime.{constValueTuple, summonAll}
+import scala.deriving.Mirror
+import skein.loop.{AnyLoop, Fallback, PlanSettings}
+import skein.record.ParameterRow
+import skein.scenario.{Scenario, Scenarios}
+import skein.signal.LatencyProfile
+import skein.units.{Expect, Span}
+
+/** How a recording keeps a setting: as parameters, under the name of its field. */
+private[settings] trait RecordedSetting[A]:
+  def written(name: String, value: A): Seq[ParameterRow]
+
+  /** What is on record; nothing in a recording of a version that did not keep it.
+    *
+    * @return or what was expected and came
+    */
+  def read(name: String, parameters: Map[String, String])(using Scenarios): Either[String, Option[A]]
+
+private[settings] object RecordedSetting:
+
+  /** All fields of a case class. */
+  final class Fields[A <: Product](
+      mirror: Mirror.ProductOf[A],
+      fields: Vector[(String, RecordedSetting[Any])]
+  ):
+    /** In the order of the fields. */
+    def written(settings: A): Seq[ParameterRow] =
+      fields.zip(settings.productIterator).flatMap { case ((name, field), value) =>
+        field.written(name, value)
+      }
+
+    /** A field that is not on record is as in `otherwise`. */
+    def read(parameters: Map[String, String], otherwise: A)(using Scenarios): Either[String, A] =
+      Expect
+        .each(fields.zip(otherwise.productIterator)) { case ((name, field), value) =>
+          field.read(name, parameters).map(_.getOrElse(value))
+        }
+        .map(values => mirror.fromProduct(Tuple.fromArray(values.toArray)))
+
+  inline def fields[A <: Product](using mirror: Mirror.ProductOf[A]): Fields[A] = Fields(
+    mirror,
+    constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
+      summonAll[
+        Tuple.Map[mirror.MirroredElemTypes, RecordedSetting]
+      ].toList.asInstanceOf[List[RecordedSetting[Any]]]
+    )
+  )
+
+  def written[A](name: String, value: A)(using setting: RecordedSetting[A]): Seq[ParameterRow] =
+    setting.written(name, value)
+
+  given int: RecordedSetting[Int] = Text[Int]("a whole number", _.toString)(_.toIntOption)
+
+  given boolean: RecordedSetting[Boolean] =
+    Text[Boolean]("true or false", _.toString, isUsual = !_)(_.toBooleanOption)
+
+  given RecordedSetting[PlanSettings] = Text[PlanSettings]("settings of plans", _.text)(PlanSettings.parse)
+
+  given RecordedSetting[SimulatedBody] =
+    Text[SimulatedBody](SimulatedBody.forms, _.text, isUsual = _.isAirSim)(SimulatedBody.recorded(_).toOption)
+
+  given RecordedSetting[Wire] =
+    Text[Wire](
+      Wire.values.map(_.label).mkString(" or "),
+      _.label,
+      isUsual = _ == Wire.AirSim
+    )(Wire.parse(_).toOption)
+
+  given RecordedSetting[SolverChoice] =
+    Text[SolverChoice]("where a solver is", _.text)(SolverChoice.parse(_).toOption)
+
+  given RecordedSetting[Fallback] =
+    Text[Fallback]("hold, repeat, hover or a policy", _.label)(Fallback.parse(_).toOption)
+
+  given RecordedSetting[List[ImageSource]] =
+    Text[List[ImageSource]](
+      "sources of images, with a space between two",
+      _.map(_.text).mkString(" "),
+      isUsual = _.isEmpty
+    ): text =>
+      val (wrong, sources) = text.split(' ').toList.partitionMap(ImageSource.parse)
+      Option.when(wrong.isEmpty)(sources)
+
+  given RecordedSetting[PredictionModel] with
+    private val text =
+      Text[PredictionModel](PredictionModel.recordedForms, PredictionModel.text)(PredictionModel.recorded)
+
+    /** In recordings of older versions. */
+    private val model =
+      Text[PredictionModel](
+        PredictionModel.recordedForms,
+        PredictionModel.text
+      )(PredictionModel.recordedAsModel)
+
+    def written(name: String, value: PredictionModel): Seq[ParameterRow] = text.written(name, value)
+
+    def read(name: String, parameters: Map[String, String])(using Scenarios) =
+      if parameters.contains(name) then text.read(name, parameters)
+      else model.read(OlderPredictor, parameters)
+
+  /** Under which recordings of older versions keep the predictor. */
+  val OlderPredictor = "model"
+
+  given RecordedSetting[NamedScene] with
+    def written(name: String, value: NamedScene): Seq[ParameterRow]          = NamedScene.recorded(value)
+    def read(name: String, parameters: Map[String, String])(using Scenarios) =
+      NamedScene.ofRecording(parameters).map(Some(_))
+
+  given option[A](using one: RecordedSetting[A]): RecordedSetting[Option[A]] with
+    def written(name: String, value: Option[A]): Seq[ParameterRow] = value.toSeq.flatMap(one.written(name, _))
+    def read(name: String, parameters: Map[String, String])(using Scenarios) =
+      one.read(name, parameters).map(_.map(Some(_)))
+
+  given time: RecordedSetting[Option[Span]] with
+    private val nanos = Text[Span]("nanoseconds", _.toNanos.toString)(
+      _.toLongOption.filter(_ > 0).map(Span.ofNanos)
+    )
+    def written(name: String, value: Option[Span]): Seq[ParameterRow] =
+      value.toSeq.flatMap(nanos.written(s"${name}Ns", _))
+    def read(name: String, parameters: Map[String, String])(using Scenarios) =
+      nanos.read(s"${name}Ns", parameters).map(_.map(Some(_)))
+
+  given RecordedSetting[Scenario] with
+    def written(name: String, value: Scenario): Seq[ParameterRow] = ScenarioSettings.recorded(value)
+
+    /** The flight's columns say which it is. */
+    def read(name: String, parameters: Map[String, String])(using Scenarios) = Right(None)
+
+  // These are in columns, or one of them is in a flight's plan.
+  given loops: RecordedSetting[List[AnyLoop]]        = Elsewhere()
+  given links: RecordedSetting[List[LatencyProfile]] = Elsewhere()
+  given times: RecordedSetting[Span]                 = Elsewhere()
+  given seeds: RecordedSetting[Long]                 = Elsewhere()
+  given policies: RecordedSetting[List[PolicyFile]]  = Elsewhere()
+
+  /** One parameter.
+    *
+    * @param isUsual of what is not written
+    */
+  private final class Text[A](
+      expected: Scenarios ?=> String,
+      text: A => String,
+      isUsual: A => Boolean = (_: A) => false
+  )(parse: Scenarios ?=> String => Option[A])
+      extends RecordedSetting[A]:
+    def written(name: String, value: A): Seq[ParameterRow] =
+      if isUsual(value) then Nil else Seq(ParameterRow(name, text(value)))
+
+    def read(name: String, parameters: Map[String, String])(using Scenarios) =
+      Expect
+        .each(parameters.get(name)): value =>
+          parse(value).toRight(s"its parameter '$name': expected $expected, came '$value'")
+        .map(_.headOption)
+
+  private final class Elsewhere[A] extends RecordedSetting[A]:
+    def written(name: String, value: A): Seq[ParameterRow]                   = Nil
+    def read(name: String, parameters: Map[String, String])(using Scenarios) = Right(None)

@@ -1,0 +1,21 @@
+package skein.record
+
+/** Who simulates the vehicles of a flight. */
+enum Simulator:
+  /** Skein's own, with the world of the recording's parameters. */
+  case BuiltIn
+
+  /** Another, by its address or its name. */
+  case Other(name: String)
+
+  /** As a recording has it. */
+  def label: String = this match
+    case BuiltIn     => Simulator.BuiltInLabel
+    case Other(name) => name
+
+object Simulator:
+  private val BuiltInLabel = "built-in"
+
+  /** Up to format 6, words for people stood behind `built-in` and a comma. */
+  private[record] def ofLabel(label: String): Simulator =
+    if label == BuiltInLabel || label.startsWith(s"$BuiltInLabel,") then BuiltIn else Other(label)
