@@ -6,7 +6,7 @@ import java.util.Locale
 
 /** Why a file could not be read or written, for a person. */
 private[skein] object FileReason:
-  /** Without the names of Java's classes. */
+  /** The reason without names of Java's classes. */
   def of(failed: IOException): String = failed match
     case failed: FileSystemException =>
       val what = Option(failed.getReason).getOrElse:

@@ -2,12 +2,12 @@ package skein.record
 
 import scala.concurrent.Future
 
-/** Records what a flight does. */
+/** Takes the records of a flight. */
 trait Recorder:
 
-  /** Takes one record; never blocks, from any thread. A record that cannot be kept makes [[failure]]
-    * complete; after a failure or [[close]], records are ignored, but for the [[Ending]]: it is the last row,
-    * and after a failure it is written as far as that is possible.
+  /** Takes one record; never blocks, from any thread. A record that cannot be kept completes [[failure]];
+    * after a failure or [[close]], records are ignored, except for the [[Ending]]: it is the last row, and
+    * after a failure it is written if possible.
     */
   def offer(record: Record): Unit
 
@@ -16,7 +16,7 @@ trait Recorder:
     */
   def failure: Future[RecordError]
 
-  /** Writes what is still queued and closes. Completes with the number of rows written, or with the failure.
-    * Every call has the same result.
+  /** Writes all waiting records and closes. Completes with the number of rows written, or with the failure.
+    * Every call has one result.
     */
   def close(): Future[Either[RecordError, Written]]

@@ -3,18 +3,20 @@ package skein.view
 import java.net.InetAddress
 import scala.util.Try
 
-/** Who may ask an HTTP server of ours: programs, and the pages that it serves itself. A browser's page of
-  * another site may not, not even under a name that it has led to this machine (DNS rebinding).
+/** Decides which HTTP requests are accepted: those of programs, and of pages that the server itself serves. A
+  * browser's page of another site is refused, even under a name that it has directed to this machine (DNS
+  * rebinding).
   *
-  * Headers are compared as texts. So a header that says something unheard of is as foreign as one that names
-  * another site, and is never taken for none.
+  * Headers are compared as texts. So an invalid header counts as foreign, like one that names another site,
+  * and never as absent.
   *
   * @param port that it listens on
   * @param host that it listens on, an address of IPv6 in brackets
-  * @param isLoopback whether this machine alone reaches it. Others may ask by any address and by names
-  *   without a dot, which nobody can register, besides `host` and `names`
+  * @param isLoopback whether only this machine can reach it. Otherwise requests may use any address and
+  *   names without a dot, which cannot be registered, besides `host` and `names`
   * @param names of this machine
-  * @param origins pages of other sites that may look all the same, for example `https://app.foxglove.dev`
+  * @param origins pages of other sites that are accepted nevertheless, for example
+  *   `https://app.foxglove.dev`
   */
 final case class Access(
     port: Int,
@@ -29,7 +31,7 @@ final case class Access(
 
   /** Why a request is refused, if it is.
     *
-    * @param headers all names in lower case, and values, as they came
+    * @param headers all names in lower case, and values, as received
     */
   def refusal(headers: Iterable[(String, String)]): Option[String] =
     def said(name: String) = headers.collect { case (`name`, value) => value }.toVector
@@ -58,7 +60,7 @@ object Access:
   private val Loopback = Set("127.0.0.1", "localhost", "[::1]")
   private val Scheme   = "http://"
 
-  /** Which browsers leave out. */
+  /** The port that browsers leave out. */
   private val DefaultPort = 80
 
   private def isPlain(name: String) =
