@@ -130,8 +130,8 @@ private[mcap] object Lz4Frame:
     private def expand(length: Int, room: Int, before: Int): Int =
       if before == 0 then blocks.decompress(source, at, length, target, out, room)
       else
-        // lz4-java takes no earlier bytes, so they are put before the block: as literals, but the last four
-        // first, and a match that copies these to the end. So the earlier bytes lie right before the block's.
+        // lz4-java accepts no earlier bytes, so they precede the block: as literals, but the last four first,
+        // and a match that copies these to the end. So the earlier bytes lie directly before the block's.
         val history  = before.max(MinMatch).min(MaxDistance)
         val known    = before.min(history)
         val literals = new Array[Byte](history)

@@ -12,7 +12,7 @@ import java.util.zip.CRC32
   */
 final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
 
-  // Who opens a frame looks whether it is whole, and mostly wants its bytes at once.
+  // Opening a frame checks that it is complete, and its bytes are usually read immediately afterwards.
   private var open = WeakReference[Array[Byte]](null)
 
   /** The bytes; decompressed if they are kept compressed, and again once they were garbage-collected. They

@@ -45,7 +45,7 @@ final class DuckDbRecorder private (
   private def enqueue(record: Record): Unit =
     if !writer.offer(record) then
       failed.trySuccess(RecordError.QueueFull(capacity)): Unit
-      // What is queued already is still written; what comes now would leave a gap.
+      // Queued records are still written; later ones would leave a gap.
       writer.end()
 
   def failure: Future[RecordError] = failed.future

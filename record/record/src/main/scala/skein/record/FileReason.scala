@@ -14,7 +14,7 @@ private[skein] object FileReason:
           .stripSuffix("Exception")
           .replaceAll("(?<=.)([A-Z])", " $1")
           .toLowerCase(Locale.ROOT)
-      // Files that only try whether one can write are named by nobody.
+      // Files made only to test for write access are not named.
       Option(failed.getFile).filterNot(file => Path.of(file).getFileName.toString.startsWith(".skein"))
         .fold(what)(file => s"$what ($file)")
     case other => other.getMessage

@@ -19,7 +19,7 @@ private[record] object FoxgloveSchemas:
   private val number              = typed("number")
   private val integer             = typed("integer")
   private val text                = typed("string")
-  // Viewers look into every object's properties, also where there never is one.
+  // Viewers read every object's properties, even if there are none.
   private val nobody                         = Json.obj("type" -> "\"object\"", "properties" -> "{}")
   private def many(items: String)            = Json.obj("type" -> "\"array\"", "items" -> items)
   private def fields(all: (String, String)*) =

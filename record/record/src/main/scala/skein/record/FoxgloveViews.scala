@@ -39,7 +39,7 @@ private[record] final class FoxgloveViews(
 
   def of(record: Record): Vector[View] = record match
     case reading: ReadingRow =>
-      // As long as nothing better is known, as if the first reading had taken no time.
+      // Without a better estimate, as if the first reading had no latency.
       val ahead = aheadOf(reading.state.validAt, reading.state.receivedAt)
       offset = Some(ahead)
       val at    = reading.state.validAt + ahead

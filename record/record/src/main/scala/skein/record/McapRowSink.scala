@@ -46,7 +46,7 @@ final class McapRowSink private (channel: FileChannel, file: Path, heading: Reco
 
   private def attempt(write: => Unit): Unit = if failed.isEmpty then
     try write
-    // Whatever it is, the recording goes on.
+    // Whatever the error, the recording continues.
     catch case NonFatal(error) => failed = Some(why(error))
 
   private def why(error: Throwable) = s"cannot write $file: $error"

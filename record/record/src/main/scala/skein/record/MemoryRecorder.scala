@@ -15,7 +15,7 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
   private val failed = Promise[RecordError]()
 
   def offer(record: Record): Unit = keep(record match
-    // Many would not fit otherwise.
+    // Many would not fit into memory otherwise.
     case image: CameraImage => image.copy(pixels = image.pixels.compressed)
     case cloud: Cloud       => cloud.copy(xyz = cloud.xyz.compressed)
     case other              => other)

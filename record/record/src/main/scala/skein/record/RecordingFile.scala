@@ -15,7 +15,7 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 
   /** Appends records in order and commits them: they survive a kill of the process from here on. */
   def write(records: Seq[Record]): Either[RecordError, Unit] =
-    // What is written to a file that has no name any more is lost when it is closed, and nothing else tells.
+    // Data written to a deleted file are lost when it is closed, without any other sign.
     if !Files.exists(path) then
       failed(RecordError.WriteFailed(path, "it was taken away while it was written"))
     else append(records)
@@ -27,7 +27,7 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       for (table, rows) <- numbered.groupBy((_, record) => Table.of(record)) do
         // groupBy has sorted every record to the table of its own type.
         table.asInstanceOf[Table[Record]].append(rows, connection)
-      // As SQL: the driver's own commit() returns as if all were well when the log cannot be written.
+      // As SQL: the driver's own commit() reports success when the log cannot be written.
       execute("COMMIT")
       written = written ++ records.map(Table.of(_).name)
       nextRow += records.size

@@ -66,7 +66,7 @@ final class LiveShow(
         if now.since(last) < LiveShow.LookEvery then last
         else feed.poll(sensor).fold(last)(record => { show(record); now })
       asked = gauges.zip(asked).map: (gauge, last) =>
-        // At its end, too, so that it does not stand at what was before.
+        // At its end, too, so that it does not stop at an earlier state.
         if now.since(last) < gauge.every && ended.isEmpty then last
         else
           gauge.json().foreach(json => publish(FlightMessage.json(gauge.topic.name, "", now, now)(json)))

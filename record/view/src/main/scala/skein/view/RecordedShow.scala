@@ -50,7 +50,7 @@ final class RecordedShow(
     playback = playback.controlled(wanted.playing, wanted.speed, wanted.seek, now)
     val position = playback.position(now)
     val seeked   = position != before
-    // Whoever shows it has to know of the jump before the rows that follow.
+    // Viewers must learn of the seek before the rows that follow.
     if position < before then forget()
     tell(now, seeked, wanted.request)
     if position < before then begin()
@@ -85,7 +85,7 @@ final class RecordedShow(
 
   private def tell(now: Instant, seeked: Boolean, request: String): Unit =
     told = Some(statusAt(now))
-    // What comes after a jump must not take its place: the jump is told once.
+    // Messages after a seek must not replace its notice: the seek is reported once.
     val key = if seeked then "jump" else "playback"
     notice(key, ServerBytes(Protocol.playbackState(state(now, seeked, request))))
 
