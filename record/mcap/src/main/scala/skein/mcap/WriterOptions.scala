@@ -5,8 +5,8 @@ package skein.mcap
   *
   * @param profile of the header: a convention for the file's fields, such as `ros2`; empty for none
   * @param library of the header: the writing program
-  * @param chunked whether messages are gathered in chunks; without, nothing is compressed, and nothing can
-  *   be found by index
+  * @param chunked whether messages are gathered in chunks; without, nothing is compressed, and nothing can be
+  *   found by index
   * @param chunkBytes a chunk ends with the message that makes it this long, uncompressed
   * @param messageIndex after each chunk, the positions of each channel's messages in it
   * @param chunkIndex in the summary, the positions of the chunks

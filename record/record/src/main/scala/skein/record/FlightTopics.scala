@@ -22,8 +22,8 @@ final case class Topic(
   *
   * @param key older messages of the topic with this key are replaced: those about one vehicle
   * @param known when the controller knew the fact, on its own clock
-  * @param published equals `known`, except for a prediction, when it was made, and for a round trip, when
-  *   it began
+  * @param published equals `known`, except for a prediction, when it was made, and for a round trip, when it
+  *   began
   */
 final class FlightMessage(
     val topic: String,

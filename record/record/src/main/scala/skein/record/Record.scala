@@ -101,8 +101,8 @@ final case class MeasurementRow(
   *
   * @param sequence counts the received images of this camera
   * @param kind kind of image, by AirSim's name, for example `Scene`
-  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits,
-  *   little-endian, m
+  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, little-endian,
+  *   m
   * @param fov horizontal; absent if unknown
   * @param positionNed of the camera, world, when it was exposed
   * @param orientation from the camera's frame (front, right, down) to the world's
@@ -160,16 +160,16 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
   * @param sequence counts the decisions for this vehicle
   * @param own the vehicle's own reading that was used; its columns begin with `own`
   * @param opponent the opponent's reading that was used; its columns begin with `opponent`
-  * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles
-  *   of other roles, the opponent seen from the vehicle
+  * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
+  *   other roles, the opponent seen from the vehicle
   * @param relativeY likewise, to the right of that heading
   * @param headingBefore commanded last to this vehicle
   * @param opponentHeading commanded last to the opponent, as far as known
   * @param heading the one chosen
   * @param elapsed since this vehicle's last decision; zero at the first
   * @param trueAge absent until the clocks' offset is known
-  * @param predicted the predicted states of both vehicles, if the decision was made from them instead of
-  *   the readings
+  * @param predicted the predicted states of both vehicles, if the decision was made from them instead of the
+  *   readings
   * @param speed the one chosen; absent where the vehicle always commands its own
   * @param action the action decided; absent where heading and speed determine it, at the altitude of the
   *   start
@@ -213,8 +213,8 @@ final case class Sighting(
   *
   * @param decision the sequence of the decision of `vehicle`
   * @param candidates simulated by all searches together
-  * @param slices that each of the searches finished before the deadline; all 0 if nothing was ready: then
-  *   the last plan continued, or the policy decided
+  * @param slices that each of the searches finished before the deadline; all 0 if nothing was ready: then the
+  *   last plan continued, or the policy decided
   * @param cost of the chosen plan; absent if none was tried
   * @param took from the request to the decision
   * @param breaches of hard limits within the plan's horizon
@@ -240,8 +240,7 @@ final case class Planned(
   * @param question counts the requests for `vehicle`; missing ones were not answered in time
   * @param askedAt when the request was sent
   * @param receivedAt when the answer was received
-  * @param thinking from the arrival of the request at the solver to sending the answer, by the solver's
-  *   clock
+  * @param thinking from the arrival of the request at the solver to sending the answer, by the solver's clock
   * @param clock absent before the first answer of a solver
   */
 final case class SolvedRow(
