@@ -43,7 +43,6 @@ object Blob:
   /** Most bytes of one, more than any image of 8192 × 8192 pixels has. */
   val MostBytes: Int = 256 * 1024 * 1024
 
-  /** The fastest level of Zstandard. */
   private val Level = 1
 
   private[record] def crc(blob: Blob): Long =

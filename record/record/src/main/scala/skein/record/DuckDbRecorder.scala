@@ -70,7 +70,6 @@ object DuckDbRecorder:
     */
   val commitInterval: FiniteDuration = 25.millis
 
-  /** Most rows of one commit. */
   val batchSize = 4096
 
   /** Whether a recording can be created at this path, judged by its name; Left states why not. */

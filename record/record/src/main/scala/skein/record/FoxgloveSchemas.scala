@@ -33,7 +33,6 @@ private[record] object FoxgloveSchemas:
   private val pose       = fields("position" -> vector, "orientation" -> quaternion)
   private val colour     = fields("r" -> number, "g" -> number, "b" -> number, "a" -> number)
 
-  /** Foxglove's JSON schemas by name. */
   val all: Map[String, String] = Map(
     "foxglove.PoseInFrame" ->
       titled("foxglove.PoseInFrame", "timestamp" -> time, "frame_id" -> text, "pose" -> pose),

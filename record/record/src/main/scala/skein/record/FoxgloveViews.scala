@@ -138,7 +138,6 @@ private[record] final class FoxgloveViews(
       "P"                -> numbers(focal, 0, cx, 0, 0, focal, cy, 0, 0, 0, 1, 0)
     )
 
-  /** The scene's objects, as one entity. */
   private def obstacles(at: Instant): String =
     val parts = stands.objects.flatMap(thing => thing.parts.map(part => (part, thing.place.outside(part.at))))
     entity(

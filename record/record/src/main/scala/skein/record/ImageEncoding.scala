@@ -11,7 +11,6 @@ import skein.units.*
 final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 
 object ImagingSensor:
-  /** The sensor of an image or a cloud. */
   def of(record: Record): Option[ImagingSensor] = record match
     case image: CameraImage => Some(camera(image.vehicle, image.camera, image.kind))
     case cloud: Cloud       => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
@@ -30,7 +29,6 @@ trait ImageEncoding:
     */
   def image(image: CameraImage, at: Instant, frame: String): Array[Byte]
 
-  /** Most points of an encoded cloud. */
   def mostPoints: Int
 
 object ImageEncoding:

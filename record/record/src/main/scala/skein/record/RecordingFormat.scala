@@ -12,7 +12,6 @@ object RecordingFormat:
   /** The oldest version that can be read; later additions read as absent. */
   val oldest = 2
 
-  /** The format version of a file. */
   private[record] def of(connection: Connection): Int =
     Using.resource(connection.createStatement()): statement =>
       Using.resource(statement.executeQuery("SELECT max(version) FROM format")): rows =>

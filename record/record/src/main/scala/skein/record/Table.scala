@@ -150,7 +150,6 @@ private[record] object Table:
 
   private val byRows: Map[Class[?], Table[? <: Record]] = all.map(table => table.rows -> table).toMap
 
-  /** The columns of a record's own table. */
   def columnsOf(record: Record): Columns[Record] =
     // The table that `of` gives is that of the record's own type.
     of(record).columns.asInstanceOf[Columns[Record]]

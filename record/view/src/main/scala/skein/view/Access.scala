@@ -12,11 +12,10 @@ import scala.util.Try
   *
   * @param port that it listens on
   * @param host that it listens on, an address of IPv6 in brackets
-  * @param isLoopback whether only this machine can reach it. Otherwise requests may use any address and
-  *   names without a dot, which cannot be registered, besides `host` and `names`
+  * @param isLoopback whether only this machine can reach it. Otherwise requests may use any address and names
+  *   without a dot, which cannot be registered, besides `host` and `names`
   * @param names of this machine
-  * @param origins pages of other sites that are accepted nevertheless, for example
-  *   `https://app.foxglove.dev`
+  * @param origins pages of other sites that are accepted nevertheless, for example `https://app.foxglove.dev`
   */
 final case class Access(
     port: Int,
