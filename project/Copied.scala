@@ -3,8 +3,8 @@ import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
 /** A built checkout that was copied or moved. sbt's caches name files by whole paths: the packager would take
-  * the original's stage for what it made here itself, and empty it. So where the checkout stands elsewhere than
-  * at its last build, the caches go; what is compiled stays, since the compiler's own notes have no such paths.
+  * the original's stage for what it made here itself, and empty it. So if the checkout's path differs from that of
+  * its last build, the caches are deleted; compiled classes stay, since the compiler's analysis has no such paths.
   */
 object Copied extends AutoPlugin {
   override def trigger  = allRequirements

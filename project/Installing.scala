@@ -3,10 +3,10 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.IvyPlugin
 
-/** `./sbtw installLocal`: every part on this machine, for projects of a user's own.
+/** `./sbtw installLocal`: installs every part on this machine, for users' projects.
   *
   * Parts are published into a folder beside the local repository, and moved into it when all of them are
-  * there. So an installation that fails, or is broken off, leaves what was installed before.
+  * complete. So an installation that fails, or is interrupted, leaves the previous one.
   */
 object Installing extends AutoPlugin {
 
@@ -23,7 +23,7 @@ object Installing extends AutoPlugin {
   private val ivyHome = Def.setting(ivyPaths.value.ivyHome.getOrElse(sys.error("expected a home of Ivy, came none")))
   private val beside  = Def.setting(ivyHome.value / "local-installing")
 
-  /** For the project that `./sbtw` begins with. */
+  /** Settings of the root project. */
   val settings: Seq[Setting[?]] = Seq(
     installLocal / aggregate := false,
     installLocal             := Def.sequential(

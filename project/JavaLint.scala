@@ -2,8 +2,8 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Every warning of javac is an error. That the vector module is incubating is known, and said at every
-  * start.
+/** Every warning of javac is an error. Except that the vector module is incubating, which the JVM states at
+  * every start.
   */
 object JavaLint extends AutoPlugin {
   override def requires: Plugins      = JvmPlugin

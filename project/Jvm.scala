@@ -1,7 +1,7 @@
 import sbt.*
 import sbt.Keys.*
 
-/** What the JVM is told where Skein runs. */
+/** Options of the JVM that runs Skein. */
 object Jvm {
   private val vector = Seq("--add-modules", "jdk.incubator.vector")
 
@@ -10,18 +10,17 @@ object Jvm {
 
   val options: Seq[String] = vector ++ nativeAccess
 
-  /** For control: room for what minutes of flight allocate, so that no collection falls into a decision; and
-    * the collector whose collections of so much are the shortest (with plans made meanwhile 0.9 ms, G1's 1.5
-    * to 5 ms). What lives on is copied twice, not up to 15 times: 2 to 3 ms in the place of 9 in
-    * `serve --hil`.
+  /** For control: memory for the allocations of minutes of flight, so that no collection delays a decision; and
+    * the collector with the shortest collections of that much (with planning 0.9 ms, G1's 1.5 to 5 ms).
+    * Surviving objects are copied twice, not up to 15 times: 2 to 3 ms in place of 9 in `serve --hil`.
     */
   val control: Seq[String] =
     Seq("-XX:+UseParallelGC", "-Xms384m", "-Xmn256m", "-XX:MaxTenuringThreshold=1", "-XX:MetaspaceSize=128m")
 
-  /** Collecting costs no threads of its own. */
+  /** A garbage collector without threads of its own. */
   val oneCollector: Seq[String] = Seq("-XX:+UseSerialGC")
 
-  /** For tests, most of which have ended before optimising them pays: a third to a half less of the
+  /** For tests, most of which end before optimising compilation pays: a third to a half less of the
     * processor's time.
     */
   val brief: Seq[String] = oneCollector :+ "-XX:TieredStopAtLevel=1"

@@ -31,13 +31,13 @@ object Packaging {
     "-XX:+EnableVectorAggressiveReboxing"
   )
 
-  /** The first day that a ZIP archive can tell, ms, UTC: the time of all files, so that equal sources give equal bytes. */
+  /** The first day that a ZIP archive can represent, ms, UTC: the time of all files, so that equal sources give equal bytes. */
   val firstDay = 315532800000L
 
   private val isMac = sys.props("os.name").startsWith("Mac")
   private val isArm = sys.props("os.arch") == "aarch64"
 
-  /** As archives name it, and as wheels do. */
+  /** The platform's name in archives, and in wheels. */
   val (platform, wheelPlatform): (String, String) = (isMac, isArm) match {
     case (false, false) => ("linux-x64", "linux_x86_64")
     case (false, true)  => ("linux-arm64", "linux_aarch64")
@@ -130,7 +130,7 @@ object Packaging {
     home
   }
 
-  /** The archive of that folder. */
+  /** Packs the folder into an archive. */
   def archive(home: File, log: Logger): File = {
     val file   = home.getParentFile / s"${home.getName}.tar.gz"
     val status = Process(Seq("tar", "-czf", file.getPath, home.getName), home.getParentFile).!(log)

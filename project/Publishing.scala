@@ -11,7 +11,7 @@ object Publishing {
   /** A part, as it would be released. */
   private final case class Part(name: String, pom: Elem, classifiers: Set[String]) {
 
-    /** What a repository, or who looks for it there, would miss. */
+    /** What a repository or its users require and the part lacks. */
     def misses: Seq[String] = {
       val told = Seq(
         "description"         -> pom \ "description",

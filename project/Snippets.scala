@@ -1,9 +1,9 @@
 import sbt.*
 
-/** What pages show as Scala becomes sources, so that whatever a page shows compiles.
+/** Turns the Scala code of documentation pages into sources, so that everything a page shows compiles.
   *
-  * Each block is an object of its own, which sees what earlier blocks of its page define and import. What a
-  * block takes for granted stands in a comment before it, which readers of the page do not see:
+  * Each block is an object of its own, with access to the definitions and imports of the page's earlier
+  * blocks. A block's assumptions are in a comment before it, which readers of the page do not see:
   *
   * {{{
   * <!-- scala
@@ -21,7 +21,7 @@ object Snippets {
 
   private val Quoted = """(?s)<!-- (?:file|lines of) \S+ -->\n+```scala\n.*?\n```""".r
 
-  /** One source for each of `pages` that shows Scala. */
+  /** Writes one source for each of `pages` with Scala code. */
   def sources(root: File, pages: Seq[File], to: File): Seq[File] = {
     val written =
       for {

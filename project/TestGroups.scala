@@ -2,8 +2,8 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Which suites share a JVM, how that compiles, what runs beside it, and which of them `test` leaves to
-  * `testAll`: as `skein.testing.Groups` marks them, or a module.
+/** Groups suites: which share a JVM, its compiler options, what runs in parallel, and which ones `test` leaves
+  * to `testAll`: by the marks in `skein.testing.Groups`, or by module.
   */
 object TestGroups extends AutoPlugin {
 
@@ -28,7 +28,7 @@ object TestGroups extends AutoPlugin {
     Tags.exclusive(Timing)
   )
 
-  /** A class file names the traits of its class. */
+  /** Whether a suite has a mark: a class file contains the names of its traits. */
   private def isMarked(classes: File, suite: String, mark: String): Boolean =
     IO.read(classes / s"${suite.replace('.', '/')}.class").contains(s"skein/testing/$mark")
 

@@ -7,7 +7,7 @@ object Wheel {
   val testedWheel: TaskKey[Unit] =
     taskKey[Unit]("Builds what tests install: the wheel of now where one can be built, else why there is none")
 
-  /** Why no wheel can be built here, if none can: tests go without it then. */
+  /** Why no wheel can be built here, if so: its tests are skipped then. */
   def obstacle(scratch: File): Option[String] = {
     val said   = new StringBuilder
     val fetch  =

@@ -22,29 +22,28 @@ class CommandsSimulation extends munit.FunSuite:
     val status = Console.withOut(stream)(Console.withErr(stream)(Main.run(words)))
     (status, said.toString)
 
-  folder.test("the scenario is flown, and its recordings are reported, replayed and fitted"):
-    out =>
-      val flown = run(
-        "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --duration 20s --out".split(
-          ' '
-        ) :+
-          out.toString*
-      )
-      assertEquals(flown._1, 0, flown._2)
-      assert(clue(flown._2).contains("Results: over-the-ridge"))
-      assert(flown._2.contains("off the truth by: "))
-      val page = Files.readString(out.resolve("report.html"))
-      assert(page.contains("From the side") && page.contains("Over-the-ridge: altitudes"))
-      val recordings = Seq("stream-vpn", "predictive-vpn").map(name => out.resolve(s"$name.duckdb").toString)
-      val again      = Files.createDirectory(out.resolve("again"))
-      val reported   = run("report" +: recordings :+ "--out" :+ again.toString*)
-      assertEquals(reported._1, 0, reported._2)
-      assert(clue(reported._2).contains("Results: over-the-ridge"))
-      val replayed = run("replay" +: recordings.take(1)*)
-      assertEquals(replayed._1, 0, replayed._2)
-      assert(clue(replayed._2).contains("all the same"))
-      val fitted = run("identify" +: recordings :+ "--out" :+ again.toString*)
-      assertEquals(fitted._1, 0, fitted._2)
+  folder.test("the scenario is flown, and its recordings are reported, replayed and fitted"): out =>
+    val flown = run(
+      "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --duration 20s --out".split(
+        ' '
+      ) :+
+        out.toString*
+    )
+    assertEquals(flown._1, 0, flown._2)
+    assert(clue(flown._2).contains("Results: over-the-ridge"))
+    assert(flown._2.contains("off the truth by: "))
+    val page = Files.readString(out.resolve("report.html"))
+    assert(page.contains("From the side") && page.contains("Over-the-ridge: altitudes"))
+    val recordings = Seq("stream-vpn", "predictive-vpn").map(name => out.resolve(s"$name.duckdb").toString)
+    val again      = Files.createDirectory(out.resolve("again"))
+    val reported   = run("report" +: recordings :+ "--out" :+ again.toString*)
+    assertEquals(reported._1, 0, reported._2)
+    assert(clue(reported._2).contains("Results: over-the-ridge"))
+    val replayed = run("replay" +: recordings.take(1)*)
+    assertEquals(replayed._1, 0, replayed._2)
+    assert(clue(replayed._2).contains("all the same"))
+    val fitted = run("identify" +: recordings :+ "--out" :+ again.toString*)
+    assertEquals(fitted._1, 0, fitted._2)
 
   test("many seeds are summarised, and flights with faults keep the rules"):
     val spread = run("spread --seeds 2 --loop paused --loop stream --link vpn --duration 12s".split(' ')*)

@@ -33,7 +33,7 @@ private[cli] object ServerNews:
     ).collect { case (count, what) if count > 0 => s"$count $what" }
     val moves = Option.when(hasHeldUp):
       "moves have held all workers for too long: from now on no call waits behind them, and the newest move of a " +
-        "vehicle wins at once"
+        "vehicle wins immediately"
     Option.when(counts.nonEmpty || dropped.nonEmpty || ofPeers.nonEmpty || hasHeldUp):
       val clients = Option.when(counts.nonEmpty)(s"clients: ${counts.mkString(", ")}")
       val others  = Option.when(ofPeers.nonEmpty)(s"$called: ${ofPeers.mkString(", ")}")

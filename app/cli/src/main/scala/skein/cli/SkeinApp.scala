@@ -144,7 +144,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   /** Explains names that Java cannot decode because the locale is ASCII. */
   private def wrongName(mistake: InvalidPathException): String =
     if mistake.getReason.contains("unmappable") then
-      s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot tell a file's name, " +
+      s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot encode a file's name, " +
         s"came '${mistake.getInput}'; a locale with UTF-8, such as LC_ALL=C.UTF-8, can"
     else s"expected the name of a file or folder, came '${mistake.getInput}': ${mistake.getReason}"
 

@@ -29,7 +29,7 @@ object ScenarioTables:
       flown.withoutResult.map(one => Vector(one.name, one.flight.link).padTo(header.size, ""))
     TextTable(header, flights ++ without)
 
-  /** The contacts column's title, if the scenario has objects or vehicles to touch. */
+  /** The contacts column's title, if the scene has objects or a contact happened. */
   private def contactsTitle(flown: ScenarioFlights): Option[String] =
     Option.when(
       NamedScene.shipped(flown.scenario.scene).exists(!_.isEmpty) || flown.flights.exists(contacts(_) > 0)

@@ -12,5 +12,5 @@ final case class Found(state: SearchState, best: Vector[Double], fresh: RunningS
   /** A warning if the 95 % intervals of the best and the baseline do not separate them. */
   def doubt(against: String): Option[String] =
     Option.when((fresh.mean - baseline.mean).abs <= fresh.halfWidth95 + baseline.halfWidth95)(
-      s"the intervals of the best and of $against overlap: ${fresh.count} episodes do not tell which is better"
+      s"the intervals of the best and of $against overlap: ${fresh.count} episodes do not show which is better"
     )

@@ -45,77 +45,76 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     ) ++ text("") ++
       Array[Byte](0x94.toByte, 0, 2) ++ text("simPause") ++ Array[Byte](0x91.toByte, 0xc3.toByte)
 
-  folder.test("a page of another site reads nothing from any port, and none of its data are obeyed"):
-    out =>
-      val (packages, browser) = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
-      val transport           = TcpTransport()
-      def simulator(mavlink: Option[MavlinkSettings], hil: Option[HilSettings]) =
-        Edge.await(SimulatorServer.start(
-          SimulatorSettings(WorldSettings.Default, free, mavlink = mavlink, hil = hil),
-          transport,
-          Clock.system
-        ))
-      val plain = simulator(Some(MavlinkSettings(listen = Some(free))), None)
-      val flown = simulator(None, Some(HilSettings(AutopilotKind.Px4, Vector(free))))
-      val acted = ConcurrentLinkedQueue[FlightControl]()
-      val show  = LiveShow(
-        Samples.heading,
-        Feed(),
-        controls = FlightControl.values.map(control => control -> (() => acted.add(control): Unit)).toMap
-      )
-      val shows = Shows()
-      shows.add(show)
-      val view = Edge.await(ViewServer.start(
-        shows,
-        Clock.system,
-        ExecutionContext.global,
-        port = 0,
-        token = Token("right")
+  folder.test("a page of another site reads nothing from any port, and none of its data are obeyed"): out =>
+    val (packages, browser) = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
+    val transport           = TcpTransport()
+    def simulator(mavlink: Option[MavlinkSettings], hil: Option[HilSettings]) =
+      Edge.await(SimulatorServer.start(
+        SimulatorSettings(WorldSettings.Default, free, mavlink = mavlink, hil = hil),
+        transport,
+        Clock.system
       ))
-      val desk   = SolvedFlight.desk()
-      val solver = Edge.await(SolverServer.start(free, transport, desk, Clock.system))
-      val link   = EmulatedLink(LinkProfile.symmetric(LatencyProfile.direct), 1, Clock.system)
-      val proxy  = Edge.await(LinkProxy.start(free, plain.address, link, transport))
-      Using.resource(Ledger.open(
-        out.resolve(Ledger.Name),
-        ArraySeq.fill[Byte](32)(0)
-      ).fold(fail(_), identity)): ledger =>
-        val coordinator = CoordinatorNode
-          .start(Endpoint("127.0.0.1", 0), None, ArraySeq.empty[Byte], ledger)(_ => ())
-          .fold(fail(_), identity)
-        val word    = SolverMessageCodec.bytes(SolverMessage.Goodbye(5))
-        val goodbye = Array[Byte](0, 0, 0, word.length.toByte) ++ word
-        val ports   = Seq(
-          ("rpc", plain.address.port, calls),
-          ("mavlink", plain.peerAddresses.head.port, calls),
-          ("hil", flown.peerAddresses.head.port, calls),
-          ("rpc beside hil", flown.address.port, calls),
-          ("link", proxy.address.port, calls),
-          ("view", view.port, calls),
-          ("solver", solver.address.port, goodbye),
-          ("coordinator", coordinator.address.port, calls)
-        )
-        val targets = ports.map((name, port, body) =>
-          ujson.Obj("name" -> name, "port" -> port, "body" -> Base64.getEncoder.encodeToString(body))
-        )
-        val attacked = JavaScriptTools.run(
-          280,
-          "node",
-          JavaScriptTools.script("attack.mjs"),
-          packages.toString,
-          browser,
-          ujson.Arr.from(targets).render()
-        )
-        val told = ujson.read(attacked.fold(fail(_), identity))
-        assertEquals(told("got"), ujson.Arr())
-        assert(told("tried").num >= ports.size * 13, told("tried").toString)
-        assertEquals((acted.size, show.watching), (0, 0))
-        assertEquals((desk.stats.flights, desk.stats.answered), (0, 0L))
-        for server <- Seq(plain, flown) do
-          val client = AirSimClient(RpcClient(transport, server.address, Clock.system))
-          assertEquals(Edge.await(client.isPaused()), Right(false))
-        Edge.await(coordinator.close())
-      Edge.await(proxy.close()): Unit
-      Edge.await(solver.close()): Unit
-      Edge.await(view.close()): Unit
-      for server <- Seq(plain, flown) do Edge.await(server.close()): Unit
+    val plain = simulator(Some(MavlinkSettings(listen = Some(free))), None)
+    val flown = simulator(None, Some(HilSettings(AutopilotKind.Px4, Vector(free))))
+    val acted = ConcurrentLinkedQueue[FlightControl]()
+    val show  = LiveShow(
+      Samples.heading,
+      Feed(),
+      controls = FlightControl.values.map(control => control -> (() => acted.add(control): Unit)).toMap
+    )
+    val shows = Shows()
+    shows.add(show)
+    val view = Edge.await(ViewServer.start(
+      shows,
+      Clock.system,
+      ExecutionContext.global,
+      port = 0,
+      token = Token("right")
+    ))
+    val desk   = SolvedFlight.desk()
+    val solver = Edge.await(SolverServer.start(free, transport, desk, Clock.system))
+    val link   = EmulatedLink(LinkProfile.symmetric(LatencyProfile.direct), 1, Clock.system)
+    val proxy  = Edge.await(LinkProxy.start(free, plain.address, link, transport))
+    Using.resource(Ledger.open(
+      out.resolve(Ledger.Name),
+      ArraySeq.fill[Byte](32)(0)
+    ).fold(fail(_), identity)): ledger =>
+      val coordinator = CoordinatorNode
+        .start(Endpoint("127.0.0.1", 0), None, ArraySeq.empty[Byte], ledger)(_ => ())
+        .fold(fail(_), identity)
+      val word    = SolverMessageCodec.bytes(SolverMessage.Goodbye(5))
+      val goodbye = Array[Byte](0, 0, 0, word.length.toByte) ++ word
+      val ports   = Seq(
+        ("rpc", plain.address.port, calls),
+        ("mavlink", plain.peerAddresses.head.port, calls),
+        ("hil", flown.peerAddresses.head.port, calls),
+        ("rpc beside hil", flown.address.port, calls),
+        ("link", proxy.address.port, calls),
+        ("view", view.port, calls),
+        ("solver", solver.address.port, goodbye),
+        ("coordinator", coordinator.address.port, calls)
+      )
+      val targets = ports.map((name, port, body) =>
+        ujson.Obj("name" -> name, "port" -> port, "body" -> Base64.getEncoder.encodeToString(body))
+      )
+      val attacked = JavaScriptTools.run(
+        280,
+        "node",
+        JavaScriptTools.script("attack.mjs"),
+        packages.toString,
+        browser,
+        ujson.Arr.from(targets).render()
+      )
+      val told = ujson.read(attacked.fold(fail(_), identity))
+      assertEquals(told("got"), ujson.Arr())
+      assert(told("tried").num >= ports.size * 13, told("tried").toString)
+      assertEquals((acted.size, show.watching), (0, 0))
+      assertEquals((desk.stats.flights, desk.stats.answered), (0, 0L))
+      for server <- Seq(plain, flown) do
+        val client = AirSimClient(RpcClient(transport, server.address, Clock.system))
+        assertEquals(Edge.await(client.isPaused()), Right(false))
+      Edge.await(coordinator.close())
+    Edge.await(proxy.close()): Unit
+    Edge.await(solver.close()): Unit
+    Edge.await(view.close()): Unit
+    for server <- Seq(plain, flown) do Edge.await(server.close()): Unit

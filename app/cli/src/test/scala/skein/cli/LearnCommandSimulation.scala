@@ -209,29 +209,28 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
-  folder.test("on a full disk the learner's previous numbers are kept, and no part of new ones"):
-    path =>
-      final class Numbers(isFull: Boolean) extends Learner:
-        def actor: Network                                                     = ???
-        def begin(round: Long): Unit                                           = ()
-        def explore(seen: Array[Float], actions: Array[Float]): Unit           = ()
-        def learn(seen: Array[Float], actions: Array[Float], task: Task): Unit = ()
-        def isFinite: Boolean                                                  = true
-        def load(in: DataInput): Unit                                          = ()
-        def save(out: DataOutput): Unit                                        =
-          out.write(new Array[Byte](4_000_000))
-          if isFull then throw IOException("No space left on device")
-      val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
-      def written(rounds: Int, isFull: Boolean) =
-        LearnFile.write(path, question, LearnState(rounds), Map.empty, Numbers(isFull))
-      assertEquals(written(1, isFull = false), Right(()))
-      assert(clue(written(
-        2,
-        isFull = true
-      )).left.exists(_.endsWith("learner-2.bin: No space left on device")))
-      assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-1.bin"))
-      assertEquals(written(3, isFull = false), Right(()))
-      assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-3.bin"))
+  folder.test("on a full disk the learner's previous numbers are kept, and no part of new ones"): path =>
+    final class Numbers(isFull: Boolean) extends Learner:
+      def actor: Network                                                     = ???
+      def begin(round: Long): Unit                                           = ()
+      def explore(seen: Array[Float], actions: Array[Float]): Unit           = ()
+      def learn(seen: Array[Float], actions: Array[Float], task: Task): Unit = ()
+      def isFinite: Boolean                                                  = true
+      def load(in: DataInput): Unit                                          = ()
+      def save(out: DataOutput): Unit                                        =
+        out.write(new Array[Byte](4_000_000))
+        if isFull then throw IOException("No space left on device")
+    val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
+    def written(rounds: Int, isFull: Boolean) =
+      LearnFile.write(path, question, LearnState(rounds), Map.empty, Numbers(isFull))
+    assertEquals(written(1, isFull = false), Right(()))
+    assert(clue(written(
+      2,
+      isFull = true
+    )).left.exists(_.endsWith("learner-2.bin: No space left on device")))
+    assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-1.bin"))
+    assertEquals(written(3, isFull = false), Right(()))
+    assertEquals(path.toFile.list.toSet, Set("learn.json", "learner-3.bin"))
 
   test("a folder with other content, or with a damaged state, is not continued"):
     val folder = temporaryFolder()

@@ -9,9 +9,8 @@ class MutatedFilesSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   for kind <- MutatedFiles.values do
-    folder.test(s"$kind: a mutated file is read, or its mistakes are reported, a line each"):
-      folder =>
-        assert(kind.unchanged(folder).isRight, kind.unchanged(folder))
-        val count = if kind == MutatedFiles.Mcap then 10 else 100
-        val wrong = (1 to count).flatMap(seed => kind.attempt(seed, folder).wrong)
-        assertEquals(wrong, Vector.empty)
+    folder.test(s"$kind: a mutated file is read, or its mistakes are reported, a line each"): folder =>
+      assert(kind.unchanged(folder).isRight, kind.unchanged(folder))
+      val count = if kind == MutatedFiles.Mcap then 10 else 100
+      val wrong = (1 to count).flatMap(seed => kind.attempt(seed, folder).wrong)
+      assertEquals(wrong, Vector.empty)

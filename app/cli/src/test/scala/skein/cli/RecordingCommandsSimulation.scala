@@ -171,13 +171,12 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(unfit, 1)
     assert(reason.contains("expected"), reason)
 
-  recordings.test("a flight that is named twice, or copied, is fitted only once"):
-    folder =>
-      val flight               = folder.resolve("stream-vpn.duckdb")
-      val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
-      val (status, _, mistake) = run(IdentifyCommand(), flight.toString, copy.toString)
-      assertEquals(status, 1)
-      assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
+  recordings.test("a flight that is named twice, or copied, is fitted only once"): folder =>
+    val flight               = folder.resolve("stream-vpn.duckdb")
+    val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
+    val (status, _, mistake) = run(IdentifyCommand(), flight.toString, copy.toString)
+    assertEquals(status, 1)
+    assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
 
   recordings.test("report without --out writes beside the first recording"): folder =>
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
@@ -192,17 +191,16 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
 
   recordings.test(
     "equal contents in different files have equal digests, and different contents different ones"
-  ):
-    folder =>
-      val again = folder.resolve("again.duckdb")
-      write(SyntheticFlight("stream", "vpn", seed = 1, seconds = 12), again)
-      val files = Seq(folder.resolve("stream-vpn.duckdb"), again, folder.resolve("paused-none.duckdb"))
-      val (status, text, err) = run(DigestCommand, files.map(_.toString)*)
-      assertEquals((status, err), (0, ""))
-      val lines = text.linesIterator.map(_.split("  ", 2).toSeq).toSeq
-      assertEquals(lines.map(_(1)), files.map(_.toString))
-      assertEquals(lines(0)(0), lines(1)(0))
-      assertNotEquals(lines(0)(0), lines(2)(0))
+  ): folder =>
+    val again = folder.resolve("again.duckdb")
+    write(SyntheticFlight("stream", "vpn", seed = 1, seconds = 12), again)
+    val files = Seq(folder.resolve("stream-vpn.duckdb"), again, folder.resolve("paused-none.duckdb"))
+    val (status, text, err) = run(DigestCommand, files.map(_.toString)*)
+    assertEquals((status, err), (0, ""))
+    val lines = text.linesIterator.map(_.split("  ", 2).toSeq).toSeq
+    assertEquals(lines.map(_(1)), files.map(_.toString))
+    assertEquals(lines(0)(0), lines(1)(0))
+    assertNotEquals(lines(0)(0), lines(2)(0))
 
   recordings.test("export writes Parquet files of one recording"): folder =>
     val parquet = folder.resolve("parquet")

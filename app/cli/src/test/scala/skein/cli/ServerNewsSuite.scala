@@ -39,6 +39,6 @@ class ServerNewsSuite extends munit.FunSuite:
       Some(
         "px4: 2 connections closed that spoke another protocol, 1 times lockstep lost for want of an answer " +
           "within a second; time goes on without it; moves have held all workers for too long: from now on no " +
-          "call waits behind them, and the newest move of a vehicle wins at once"
+          "call waits behind them, and the newest move of a vehicle wins immediately"
       )
     )

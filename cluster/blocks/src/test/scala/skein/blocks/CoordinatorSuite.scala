@@ -98,11 +98,10 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
   folder.test(
     "a thousand workers of heavy-tailed speeds, some of which die and many of which are cut off " +
       "simultaneously"
-  ):
-    folder =>
-      val flown = CoordinatorSimulation(1, workers = 1000, blocks = 8_000, folder)
-      flown.fly(deathsAnHour = 5, cutsAnHour = 5, restarts = Seq(30), splits = Seq(15, 45))()
-      assertRight(flown, 8_000, "a thousand")
-      assert(clue(flown.deaths) > 50 && clue(flown.cuts) > 400)
-      // No message costs more with more workers and blocks.
-      assert(clue(flown.messages) < 40 * 8_000)
+  ): folder =>
+    val flown = CoordinatorSimulation(1, workers = 1000, blocks = 8_000, folder)
+    flown.fly(deathsAnHour = 5, cutsAnHour = 5, restarts = Seq(30), splits = Seq(15, 45))()
+    assertRight(flown, 8_000, "a thousand")
+    assert(clue(flown.deaths) > 50 && clue(flown.cuts) > 400)
+    // No message costs more with more workers and blocks.
+    assert(clue(flown.messages) < 40 * 8_000)

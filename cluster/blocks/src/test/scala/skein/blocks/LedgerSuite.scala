@@ -46,32 +46,31 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       ledger.close()
       assertEquals(Ledger.audit(path).broken, 0L)
 
-  file.test("a damaged record is skipped, its block is computed again, and later records are kept"):
-    path =>
-      written(path, 3)
-      val bytes  = Files.readAllBytes(path)
-      val second = 48 + 24 + answer(0).length
-      val record = 24 + answer(1).length
-      // The checksum, and the bytes it covers.
-      for at <- second + 4 until second + record do
-        val damaged = bytes.clone()
-        damaged(at) = (damaged(at) ^ 0x10).toByte
-        Files.write(path, damaged)
-        val ledger = open(path)
-        assertEquals(ledger.broken, record.toLong, s"byte $at")
-        assertEquals(
-          (0 until 3).map(number => ledger.answer(key(number))),
-          Seq(Some(answer(0)), None, Some(answer(2)))
-        )
-        assert(ledger.accept(key(1), answer(1)))
-        ledger.close()
-        val again = open(path)
-        assertEquals(
-          (0 until 3).map(number => again.answer(key(number))),
-          (0 until 3).map(number => Some(answer(number)))
-        )
-        again.close()
-        assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, record))
+  file.test("a damaged record is skipped, its block is computed again, and later records are kept"): path =>
+    written(path, 3)
+    val bytes  = Files.readAllBytes(path)
+    val second = 48 + 24 + answer(0).length
+    val record = 24 + answer(1).length
+    // The checksum, and the bytes it covers.
+    for at <- second + 4 until second + record do
+      val damaged = bytes.clone()
+      damaged(at) = (damaged(at) ^ 0x10).toByte
+      Files.write(path, damaged)
+      val ledger = open(path)
+      assertEquals(ledger.broken, record.toLong, s"byte $at")
+      assertEquals(
+        (0 until 3).map(number => ledger.answer(key(number))),
+        Seq(Some(answer(0)), None, Some(answer(2)))
+      )
+      assert(ledger.accept(key(1), answer(1)))
+      ledger.close()
+      val again = open(path)
+      assertEquals(
+        (0 until 3).map(number => again.answer(key(number))),
+        (0 until 3).map(number => Some(answer(number)))
+      )
+      again.close()
+      assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, record))
 
   file.test("a damaged byte anywhere never changes an answer, and is reported"): path =>
     written(path, 3)

@@ -55,7 +55,7 @@ private[cluster] final class CoordinatorBehavior private (
       case ask: Message.Ask                                    => asked(ask)
       case Message.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
       case Message.Failed(job.run, worker, number, reason)     =>
-        ended(Left(s"a block cannot be computed, told by $worker: $reason"))
+        ended(Left(s"a block cannot be computed, as $worker reports: $reason"))
       case Message.Unable(job.run, worker, reason) => once(WorkerEvent.Refused(worker, reason))
       case _: ToCoordinator                        => () // A message of an earlier run.
       case asked: Compute                          => compute(asked)

@@ -50,7 +50,7 @@ private[cluster] final class WorkerBehavior private (
         run = welcome
         solvers = None
         held = Set.empty
-        tell("the coordinator told its question")
+        tell("received the question from the coordinator")
         inPool(Prepared(welcome, prepared(question)))
       this
     case Prepared(of, made) if of == run =>

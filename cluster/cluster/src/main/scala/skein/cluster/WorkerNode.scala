@@ -68,10 +68,10 @@ final class WorkerNode(
           val waited = System.nanoTime() - contactAt
           outcome = how match
             case _ if stopped =>
-              tell("told to end")
+              tell("dismissed by the coordinator")
               Some(Right(()))
             case End.Finished =>
-              tell("the work is done: the coordinator has all that it asked")
+              tell("the work is done: the coordinator has all answers")
               Some(Right(()))
             case End.Refused(reason)            => Some(Left(reason))
             case _ if waited > patience.toNanos =>

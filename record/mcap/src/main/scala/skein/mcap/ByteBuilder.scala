@@ -4,7 +4,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.Arrays
 
-/** Bytes that are being written, lowest byte of a number first. Grows as needed and is used again. */
+/** A growing buffer for encoding, little-endian; reused after taking its bytes. */
 private[mcap] final class ByteBuilder(initial: Int):
   private var bytes = new Array[Byte](initial.max(64))
   private var view  = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
@@ -53,7 +53,7 @@ private[mcap] final class ByteBuilder(initial: Int):
     u32(encoded.length)
     raw(encoded, 0, encoded.length)
 
-  /** What `body` writes, behind its length in bytes, of 4 bytes. */
+  /** Writes `body`'s output after its length in bytes, a number of 4 bytes. */
   inline def counted(inline body: Unit): Unit =
     val at = size
     u32(0)
@@ -72,5 +72,5 @@ private[mcap] final class ByteBuilder(initial: Int):
   def patchU64(at: Int, value: Long): Unit = view.putLong(at, value): Unit
 
 private[mcap] object ByteBuilder:
-  /** Beyond it, virtual machines differ in what they allocate. */
+  /** The largest array; beyond it, virtual machines differ in what they allocate. */
   private val Largest = Int.MaxValue - 8L

@@ -1,7 +1,7 @@
 package skein.mcap
 
-/** Takes what a writer writes, in order. */
+/** Receives a writer's output, in order. */
 trait ByteSink:
 
-  /** `array[from, until)`, which it must have used up when it returns. */
+  /** Consumes `array[from, until)` before it returns. */
   def write(array: Array[Byte], from: Int, until: Int): Unit

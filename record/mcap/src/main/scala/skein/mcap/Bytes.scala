@@ -17,7 +17,7 @@ final class Bytes private (private[mcap] val array: Array[Byte], private[mcap] v
 
   def toArray: Array[Byte] = Arrays.copyOfRange(array, from, from + size)
 
-  /** To read from, in MCAP's byte order: the lowest first. */
+  /** A read-only buffer of the bytes in MCAP's byte order, little-endian. */
   def buffer: ByteBuffer =
     ByteBuffer.wrap(array, from, size).slice.asReadOnlyBuffer.order(ByteOrder.LITTLE_ENDIAN)
 
@@ -34,7 +34,7 @@ final class Bytes private (private[mcap] val array: Array[Byte], private[mcap] v
 object Bytes:
   val empty: Bytes = new Bytes(Array.emptyByteArray, 0, 0)
 
-  /** A view: the array must not change any more. */
+  /** A view of an array, which must not change any more. */
   def of(array: Array[Byte]): Bytes = new Bytes(array, 0, array.length)
 
   def of(array: Array[Byte], from: Int, until: Int): Bytes =

@@ -2,7 +2,7 @@ package skein.mcap
 
 import scala.collection.mutable
 
-/** The schemas and channels that a file has named so far, and whether it keeps to them. */
+/** The schemas and channels that a file has defined so far, and checks of references to them. */
 private[mcap] final class Catalogue:
   private val schemas  = mutable.LongMap.empty[Record.Schema]
   private val channels = mutable.LongMap.empty[Record.Channel]
@@ -10,8 +10,8 @@ private[mcap] final class Catalogue:
   def schema(id: Int): Option[Record.Schema]   = schemas.get(id)
   def channel(id: Int): Option[Record.Channel] = channels.get(id)
 
-  /** Takes what names a schema or a channel; refuses what refers to one that nobody named. Gives whether the
-    * record counts: readers are to step over a schema with the identifier 0.
+  /** Records a schema's or a channel's definition; refuses a reference to an undefined one. Returns whether
+    * the record counts: readers must skip a schema with the identifier 0.
     */
   def takes(record: Record, at: Place): Boolean = record match
     case message: Record.Message =>

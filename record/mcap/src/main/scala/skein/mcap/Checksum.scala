@@ -2,7 +2,7 @@ package skein.mcap
 
 import java.util.zip.CRC32
 
-/** CRC32 as the specification has it, where 0 means that there is none. */
+/** CRC32 in the form of the specification, where 0 means that there is none. */
 private[mcap] object Checksum:
 
   def of(array: Array[Byte], from: Int, until: Int): Int =

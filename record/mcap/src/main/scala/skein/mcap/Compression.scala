@@ -4,17 +4,17 @@ import com.github.luben.zstd.{Zstd as Zstandard, ZstdException, ZstdInputStream}
 import java.io.{ByteArrayInputStream, IOException}
 import java.util.Arrays
 
-/** How the records of a chunk are compressed.
+/** The compression of a chunk's records.
   *
-  * @param name as a chunk says it
+  * @param name in a chunk's header
   */
 enum Compression(val name: String):
   case Uncompressed extends Compression("")
 
-  /** Frames of LZ4: quick, and a third to a half larger than `Zstd`. */
+  /** LZ4 frames: fast, and a third to a half larger than `Zstd`. */
   case Lz4 extends Compression("lz4")
 
-  /** Zstandard; from level 1, the quickest, to 22. */
+  /** Zstandard; levels from 1, the fastest, to 22. */
   case Zstd(level: Int = 1) extends Compression("zstd")
 
   private[mcap] def compress(array: Array[Byte], from: Int, until: Int): Bytes = this match
@@ -26,14 +26,14 @@ enum Compression(val name: String):
       Bytes.of(target, 0, size.toInt)
 
 object Compression:
-  /** A byte of LZ4 stands for no more than 255. */
+  /** Greatest expansion of LZ4: a byte represents no more than 255. */
   private val Lz4Ratio = 255L
 
-  /** Four bytes of Zstandard, a block of one value, stand for no more than 128 KiB. */
+  /** Greatest expansion of Zstandard: four bytes, a block of one value, represent no more than 128 KiB. */
   private val ZstdRatio = 32768L
 
-  /** The records of a chunk, which claims their size; or, of a chunk that is cut off, as many as there are of
-    * them.
+  /** Decompresses the records of a chunk, which states their size; of a truncated chunk, as many as are
+    * complete.
     */
   private[mcap] def decompress(
       chunk: Record.Chunk,
@@ -65,7 +65,7 @@ object Compression:
         Checksum.hold(chunk.uncompressedCrc, computed, "the chunk's records, uncompressed,", at)
     out
 
-  /** Refuses, before room is made, a size that no such bytes can have. */
+  /** Refuses, before allocating, a size that these bytes cannot expand to. */
   private def possible(chunk: Record.Chunk, ratio: Long, cut: Boolean): Unit =
     if !cut && chunk.uncompressedSize > chunk.records.size * ratio then
       throw Damaged(s"${chunk.records.size} bytes, which cannot be ${chunk.uncompressedSize}")

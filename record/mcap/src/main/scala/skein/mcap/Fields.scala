@@ -6,8 +6,8 @@ import java.nio.{ByteBuffer, ByteOrder}
 import java.util.zip.CRC32
 import scala.collection.immutable.{SeqMap, VectorMap}
 
-/** Reads the fields of one record, in order. Whatever is behind the last that it is asked for is of a later
-  * version of the specification, or padding.
+/** Reads the fields of one record, in order. Bytes after the last field read belong to a later version of the
+  * specification, or are padding.
   */
 private[mcap] final class Fields(array: Array[Byte], from: Int, until: Int, record: String, place: Place):
   private val view = ByteBuffer.wrap(array).order(ByteOrder.LITTLE_ENDIAN)

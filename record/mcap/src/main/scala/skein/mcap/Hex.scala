@@ -1,8 +1,6 @@
 package skein.mcap
 
-/** Numbers as hexadecimal digits, the same on every machine: a format string would write them by the
-  * machine's locale.
-  */
+/** Hexadecimal digits of numbers, independent of the locale: a format string would use the machine's. */
 private[mcap] object Hex:
   def of(number: Int): String = "0x" + digits(number, 8)
 

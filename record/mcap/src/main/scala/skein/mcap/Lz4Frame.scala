@@ -28,7 +28,8 @@ private[mcap] object Lz4Frame:
   private val blocks = LZ4Factory.fastestInstance.safeDecompressor
   private val sums   = XXHashFactory.fastestInstance.hash32
 
-  /** One frame of independent blocks of 64 KiB: of a frame that is cut off, all blocks but the last are read.
+  /** Compresses to one frame of independent blocks of 64 KiB: of a truncated frame, all blocks but the last
+    * can be read.
     */
   def compress(source: Array[Byte], from: Int, until: Int): Bytes =
     val out   = ByteArrayOutputStream((until - from) / 2 + 64)
@@ -44,7 +45,7 @@ private[mcap] object Lz4Frame:
     frame.close()
     Bytes.of(out.toByteArray)
 
-  /** What the frames hold, at most `size` bytes. Throws `Damaged`; where they are cut off (`cut`), gives the
+  /** The frames' content, at most `size` bytes. Throws `Damaged`; of truncated frames (`cut`), returns the
     * blocks before the cut.
     */
   def decompress(source: Bytes, size: Int, cut: Boolean): Bytes =
@@ -61,7 +62,8 @@ private[mcap] object Lz4Frame:
       while !ended && at < until do frame()
       Bytes.of(if cut then Arrays.copyOf(target, out) else target, 0, out)
 
-    /** Whether `count` bytes are left. If not, reading ends where a cut is allowed, and fails elsewhere. */
+    /** Whether `count` bytes are left. If not, reading ends where truncation is allowed, and fails elsewhere.
+      */
     private def has(count: Long): Boolean =
       val there = count <= until - at
       if !there then
@@ -101,7 +103,7 @@ private[mcap] object Lz4Frame:
             throw Damaged("a frame whose content's checksum differs")
           at += 4
 
-    /** Reads a block of at most `most` bytes, uncompressed. Gives whether another follows. */
+    /** Reads a block of at most `most` bytes, uncompressed. Returns whether another follows. */
     private def block(flags: Int, most: Int, start: Int): Boolean =
       has(4) && {
         val word   = view.getInt(at)
@@ -124,12 +126,12 @@ private[mcap] object Lz4Frame:
         }
       }
 
-    /** Expands a block that may refer to the last `before` bytes. Gives its length. */
+    /** Expands a block that may refer to the last `before` bytes. Returns its length. */
     private def expand(length: Int, room: Int, before: Int): Int =
       if before == 0 then blocks.decompress(source, at, length, target, out, room)
       else
-        // lz4-java takes no earlier bytes, so they are put before the block: as literals, but the last four
-        // first, and a match that copies these to the end. So the earlier bytes lie right before the block's.
+        // lz4-java accepts no earlier bytes, so they precede the block: as literals, but the last four first,
+        // and a match that copies these to the end. So the earlier bytes lie directly before the block's.
         val history  = before.max(MinMatch).min(MaxDistance)
         val known    = before.min(history)
         val literals = new Array[Byte](history)
@@ -147,6 +149,6 @@ private[mcap] object Lz4Frame:
         System.arraycopy(expanded, MinMatch + history, target, out, own)
         own
 
-/** What a compressed chunk holds instead of what it should. */
+/** Thrown when a compressed chunk is invalid, with the reason. */
 private[mcap] final class Damaged(why: String) extends RuntimeException(why)
     with scala.util.control.NoStackTrace

@@ -2,7 +2,7 @@ package skein.mcap
 
 import scala.util.control.NoStackTrace
 
-/** Where in a file something lies.
+/** A position in a file.
   *
   * @param offset bytes from the start of the file
   * @param inChunk in a chunk that starts at `offset`: bytes from the start of its records, uncompressed; -1
@@ -12,25 +12,25 @@ final case class Place(offset: Long, inChunk: Int = -1):
   override def toString: String =
     if inChunk < 0 then s"byte $offset" else s"byte $inChunk of the records of the chunk at byte $offset"
 
-/** Why a file, or its end, cannot be read: the place, what was expected and what was found. */
+/** Why a file, or its end, cannot be read: the position, what was expected and what was found. */
 enum McapError:
 
-  /** It begins with other bytes than MCAP's, or with those of a version that is not known. */
+  /** It does not begin with MCAP's magic bytes, or with those of an unknown version. */
   case NotMcap(came: Bytes)
 
-  /** It ends too early: as a file does whose writer was killed. All that lies before has been read. */
+  /** It ends too early, like the file of a killed writer. Everything before has been read. */
   case CutOff(at: Place, expected: String, came: Long)
 
-  /** It claims a size that is beyond what the reader allows. */
+  /** It states a size beyond the reader's limit. */
   case TooLarge(at: Place, what: String, claimed: Long, limit: Long)
 
   /** It does not have the structure of an MCAP file. */
   case Malformed(at: Place, expected: String, came: String)
 
-  /** Bytes have changed since they were written. */
+  /** A CRC does not match: bytes have changed since they were written. */
   case WrongCrc(at: Place, what: String, expected: Int, came: Int)
 
-  /** The bytes of a chunk are not what its compression makes. */
+  /** The bytes of a chunk are no valid output of its compression. */
   case NotDecompressed(at: Place, compression: String, why: String)
 
   /** A compression other than `zstd`, `lz4` and none. */
@@ -56,11 +56,11 @@ enum McapError:
 object McapError:
   private def hex(bytes: Bytes) = bytes.toArray.map(Hex.ofByte(_)).mkString(" ")
 
-/** The bytes at both ends of a file. */
+/** The magic bytes at both ends of a file. */
 private[mcap] object Magic:
   val bytes: Bytes = Bytes.of(Array[Byte](0x89.toByte, 'M', 'C', 'A', 'P', '0', '\r', '\n'))
 
-/** Leaves the decoder, whose public ways all give an `Either`. */
+/** Carries an error out of the decoder, whose public methods all return an `Either`. */
 private[mcap] final class Refused(val error: McapError) extends RuntimeException(error.message)
     with NoStackTrace
 

@@ -1,8 +1,8 @@
 package skein.mcap
 
-/** What a reader takes at most, whatever a file claims. Nothing is allocated for a claim beyond.
+/** A reader's limits, whatever a file states. Nothing is allocated for a size beyond them.
   *
-  * @param recordBytes one record, thus one message, one attachment, or one chunk as it is in the file
+  * @param recordBytes one record, thus one message, one attachment, or one chunk as stored
   * @param chunkBytes the records of one chunk, uncompressed
   */
 final case class McapLimits(

@@ -4,12 +4,12 @@ import java.util.zip.CRC32
 import scala.collection.immutable.{SeqMap, VectorMap}
 import scala.collection.mutable
 
-/** Writes a file, record by record, into a sink; no input or output of its own. Every part carries its CRC.
-  * What was given to it is in the sink after `flush` or `finish`; should the process end before, the file can
+/** Writes a file, record by record, into a sink; does no I/O of its own. Every part carries its CRC.
+  * Everything written is in the sink after `flush` or `finish`; if the process ends before, the file can
   * still be read up to the last chunk. Memory: one chunk, compressed and not, and 16 bytes for each message
   * in it; for the summary, 100 bytes for each chunk, attachment and metadata record.
   *
-  * Not for several threads at once.
+  * For one thread at a time.
   */
 final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions()):
   private val out           = ByteBuilder(McapWriter.Gathered)
@@ -31,7 +31,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
   out.raw(Magic.bytes)
   RecordCodec.append(Record.Header(options.profile, options.library), out)
 
-  /** Names a schema; gives its identifier.
+  /** Defines a schema; returns its identifier.
     *
     * @param encoding such as `protobuf` or `jsonschema`
     */
@@ -43,7 +43,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
     put(schema)
     schema.id
 
-  /** Names a channel; gives its identifier.
+  /** Defines a channel; returns its identifier.
     *
     * @param schemaId of its messages; 0 for none
     */
@@ -61,15 +61,15 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
     put(channel)
     channel.id
 
-  /** A message of a channel named before.
+  /** Writes a message of a defined channel.
     *
     * @param logTime when it was recorded, ns
-    * @param publishTime when it was sent, ns; the log time where that is not known
+    * @param publishTime when it was sent, ns; the log time if unknown
     */
   def message(channelId: Int, sequence: Int, logTime: Long, publishTime: Long, data: Bytes): Unit =
     message(channelId, sequence, logTime, publishTime, data.array, data.from, data.from + data.size)
 
-  /** A message whose data is `data[from, until)`. */
+  /** Writes a message whose data is `data[from, until)`. */
   def message(
       channelId: Int,
       sequence: Int,
@@ -97,8 +97,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
     target.raw(data, from, until)
     room()
 
-  /** @param createTime ns; 0 where it is not known
-    */
+  /** @param createTime ns; 0 if unknown */
   def attachment(logTime: Long, createTime: Long, name: String, mediaType: String, data: Bytes): Unit =
     open()
     val start = offset + out.size
@@ -118,7 +117,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
       metadatas += Record.MetadataIndex(start, offset + out.size - start, name)
     room()
 
-  /** Ends the chunk; all that was given is in the sink then. */
+  /** Ends the chunk, and passes everything to the sink. */
   def flush(): Unit =
     open()
     endChunk()
@@ -247,7 +246,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
       entries.u64(offset)
 
 private object McapWriter:
-  /** So much is gathered before it goes to the sink. */
+  /** Bytes gathered before they are passed to the sink. */
   private val Gathered = 64 << 10
 
   private val MostIds = 0xffff

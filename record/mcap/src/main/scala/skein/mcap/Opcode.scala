@@ -1,6 +1,6 @@
 package skein.mcap
 
-/** The byte that says what a record is. */
+/** The byte that states a record's kind. */
 object Opcode:
   val Header          = 0x01
   val Footer          = 0x02
@@ -38,7 +38,7 @@ object Opcode:
 
   def name(opcode: Int): String = names.lift(opcode - 1).getOrElse(s"record of kind 0x${Hex.ofByte(opcode)}")
 
-  /** Of the specification as it stands; readers step over all others but 0x00, which there is not. */
+  /** Whether the specification defines it; readers skip all others except 0x00, which is invalid. */
   def isKnown(opcode: Int): Boolean = opcode >= Header && opcode <= DataEnd
 
   def isOfData(opcode: Int): Boolean    = dataSection(opcode) || !isKnown(opcode)

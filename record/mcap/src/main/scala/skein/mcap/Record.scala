@@ -2,28 +2,26 @@ package skein.mcap
 
 import scala.collection.immutable.SeqMap
 
-/** A record of an MCAP file, as the specification has it (https://mcap.dev/spec). Times are nanoseconds since
-  * an epoch that reader and writer agree on, unsigned; so are sizes and offsets, which count bytes from the
-  * start of the file. Identifiers are unsigned 16 bit, a sequence number unsigned 32 bit. A CRC of 0 means
-  * that there is none.
+/** A record of an MCAP file, as the specification defines it (https://mcap.dev/spec). Times are nanoseconds
+  * since an epoch that reader and writer agree on, unsigned; so are sizes and offsets, which count bytes from
+  * the start of the file. Identifiers are unsigned 16 bit, a sequence number unsigned 32 bit. A CRC of 0
+  * means that there is none.
   */
 sealed abstract class Record(val opcode: Int) extends Product
 
 object Record:
   final case class Header(profile: String, library: String) extends Record(Opcode.Header)
 
-  /** @param summaryStart 0 where there is no summary
-    * @param summaryOffsetStart 0 where there are no summary offsets
+  /** @param summaryStart 0 without a summary
+    * @param summaryOffsetStart 0 without summary offsets
     */
   final case class Footer(summaryStart: Long, summaryOffsetStart: Long, summaryCrc: Int)
       extends Record(Opcode.Footer)
 
-  /** @param encoding of the schema itself, such as `protobuf` or `jsonschema`; empty where there is none
-    */
+  /** @param encoding of the schema itself, such as `protobuf` or `jsonschema`; empty without one */
   final case class Schema(id: Int, name: String, encoding: String, data: Bytes) extends Record(Opcode.Schema)
 
-  /** @param schemaId 0 where there is none
-    */
+  /** @param schemaId of its messages; 0 without a schema */
   final case class Channel(
       id: Int,
       schemaId: Int,
@@ -33,13 +31,13 @@ object Record:
   ) extends Record(Opcode.Channel)
 
   /** @param logTime when it was recorded
-    * @param publishTime when it was sent; the log time where that is not known
+    * @param publishTime when it was sent; the log time if unknown
     */
   final case class Message(channelId: Int, sequence: Int, logTime: Long, publishTime: Long, data: Bytes)
       extends Record(Opcode.Message)
 
-  /** @param startTime earliest log time of its messages; 0 where it has none
-    * @param endTime latest log time of its messages; 0 where it has none
+  /** @param startTime earliest log time of its messages; 0 without messages
+    * @param endTime latest log time of its messages; 0 without messages
     * @param records schemas, channels and messages, compressed
     */
   final case class Chunk(
@@ -51,13 +49,12 @@ object Record:
       records: Bytes
   ) extends Record(Opcode.Chunk)
 
-  /** @param entries of each message of the channel in the chunk before: log time, and where it starts in the
+  /** @param entries for each message of the channel in the preceding chunk: log time, and its start in the
     *   chunk's records; 8 bytes each
     */
   final case class MessageIndex(channelId: Int, entries: Bytes) extends Record(Opcode.MessageIndex)
 
-  /** @param messageIndexOffsets by channel, where its message index lies; empty where there are none
-    */
+  /** @param messageIndexOffsets offsets of the message indices by channel; empty without any */
   final case class ChunkIndex(
       startTime: Long,
       endTime: Long,
@@ -70,8 +67,7 @@ object Record:
       uncompressedSize: Long
   ) extends Record(Opcode.ChunkIndex)
 
-  /** @param crc of all fields before it; computed by whoever writes
-    */
+  /** @param crc of all fields before it; computed by the writer */
   final case class Attachment(
       logTime: Long,
       createTime: Long,
@@ -91,8 +87,7 @@ object Record:
       mediaType: String
   ) extends Record(Opcode.AttachmentIndex)
 
-  /** @param channelMessageCounts messages by channel; empty where nobody counted
-    */
+  /** @param channelMessageCounts messages by channel; empty if not counted */
   final case class Statistics(
       messageCount: Long,
       schemaCount: Int,
@@ -117,5 +112,5 @@ object Record:
     */
   final case class DataEnd(dataCrc: Int) extends Record(Opcode.DataEnd)
 
-  /** Of a kind that the specification does not know, or not yet. */
+  /** A record of a kind that the specification does not define. */
   final case class Other(kind: Int, content: Bytes) extends Record(kind)

@@ -2,7 +2,7 @@ package skein.mcap
 
 import java.util.zip.CRC32
 
-/** Records to bytes, and bytes to records. */
+/** Encodes records as bytes, and decodes them. */
 private[mcap] object RecordCodec:
 
   def append(record: Record, out: ByteBuilder): Unit = record match
@@ -22,7 +22,7 @@ private[mcap] object RecordCodec:
     case Record.Other(_, bytes) => out.raw(bytes)
     case other                  => RecordLayout.plain(other.opcode).write(other, out)
 
-  /** A chunk up to its records, which then follow as they are. */
+  /** Writes a chunk up to its records, which then follow unchanged. */
   def chunkHead(chunk: Record.Chunk, out: ByteBuilder): Unit =
     val at = out.size
     out.record(Opcode.Chunk):
@@ -47,8 +47,8 @@ private[mcap] object RecordCodec:
       crc.update(out.array, at, out.size - at)
       out.u32(crc.getValue.toInt)
 
-  /** The record whose content is `array[from, until)`; it keeps a view of the array. `place` is where the
-    * record starts.
+  /** Decodes the record whose content is `array[from, until)`; it keeps a view of the array. `place` is the
+    * record's start.
     */
   def decode(opcode: Int, array: Array[Byte], from: Int, until: Int, place: Place): Record =
     val fields = Fields(array, from, until, Opcode.name(opcode), place)
@@ -65,7 +65,7 @@ private[mcap] object RecordCodec:
             hold(record, fields, place)
             record
 
-  /** What a kind of record has to keep besides. */
+  /** Checks further constraints of a kind of record. */
   private def hold(record: Record, fields: Fields, place: Place): Unit = record match
     case _: Record.Footer => fields.expectEnd()
     case Record.MessageIndex(_, entries) if entries.size % 16 != 0 =>
@@ -85,7 +85,7 @@ private[mcap] object RecordCodec:
       fields.rest()
     )
 
-  /** Of a chunk that is cut off: what there is of its records, once all fields before are there. */
+  /** The complete records of a truncated chunk, if all fields before them are complete. */
   def beginningOfChunk(array: Array[Byte], until: Int, place: Place): Option[Record.Chunk] =
     val fields = Fields(array, 0, until, Opcode.name(Opcode.Chunk), place)
     Refused.either(chunk(fields, whole = false)).toOption

@@ -3,7 +3,7 @@ package skein.mcap
 import scala.collection.immutable.SeqMap
 import scala.deriving.Mirror
 
-/** How one field of a record lies, and what the specification calls it. */
+/** The layout of one field of a record, with its name in the specification. */
 private[mcap] final class RecordField[A] private (val write: (A, ByteBuilder) => Unit, val read: Fields => A)
 
 private[mcap] object RecordField:
@@ -42,7 +42,7 @@ private[mcap] object RecordField:
     _.numbers(name)
   )
 
-/** How a kind of record lies: its fields in their order. */
+/** The layout of a kind of record: its fields in order. */
 private[mcap] final class RecordLayout[A <: Record](fields: Vector[RecordField[Any]], make: Product => A):
   def write(record: Product, out: ByteBuilder): Unit =
     for index <- fields.indices do fields(index).write(record.productElement(index), out)
@@ -52,7 +52,7 @@ private[mcap] final class RecordLayout[A <: Record](fields: Vector[RecordField[A
 private[mcap] object RecordLayout:
   import RecordField.*
 
-  /** By opcode, where the kind has no more to it than its fields. */
+  /** Layouts by opcode, for kinds that consist only of their fields. */
   val plain: Map[Int, RecordLayout[?]] = Map(
     Opcode.Header -> of[Record.Header]((string("profile"), string("library"))),
     Opcode.Footer -> of[Record.Footer]((

@@ -2,10 +2,10 @@ package skein.mcap
 
 import java.nio.{ByteBuffer, ByteOrder}
 
-/** Steps over records that lie one behind another.
+/** Iterates over consecutive records.
   *
-  * @param offset where they start in the file
-  * @param inChunk whether that is the chunk whose records they are
+  * @param offset of their start in the file
+  * @param inChunk whether that is the start of the chunk that contains them
   * @param cut whether they may end within a record, which then does not count
   */
 private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Boolean, cut: Boolean = false):
@@ -15,7 +15,7 @@ private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Bool
   private var at    = records.from
   private var next  = records.from
 
-  /** Goes to the next record, if there is one. */
+  /** Advances to the next record; false if there is none. */
   def step(): Boolean =
     at = next
     if at == end then false

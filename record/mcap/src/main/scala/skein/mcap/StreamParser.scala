@@ -3,14 +3,13 @@ package skein.mcap
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** The answer of [[StreamParser.next]]. */
+/** The result of [[StreamParser.next]]. */
 enum Parsed:
 
-  /** @param length of the whole record, with its kind and length, at its place
-    */
+  /** @param length of the whole record, including its kind and length, at its position */
   case Found(record: Record, at: Place, length: Long)
 
-  /** All that was offered is used up: offer more, or say that there is no more. */
+  /** All offered bytes are used: offer more, or declare the end. */
   case NeedsBytes
 
   /** The file is complete, and all its CRCs are right. */
@@ -19,17 +18,15 @@ enum Parsed:
   /** Nothing more can be read; after `CutOff`, everything before the cut has been. */
   case Failed(error: McapError)
 
-/** Reads a file from its start to its end, in pieces as they come: bytes in, records out, no input or output
-  * of its own.
+/** Reads a file from its start to its end, in pieces of any size: bytes in, records out, no I/O of its own.
   *
-  * A chunk is given as a record and then, record by record, as what it holds. Every CRC that is there is
-  * held: of chunks, attachments, the data section and the summary. A file that is cut off gives all that lies
-  * before the cut, of a chunk that is cut through as well, where no CRC can speak for it; then `CutOff`. What
-  * is out of place, refers to what nobody named, or names it again otherwise, is refused. Memory: one record,
-  * and one chunk's records uncompressed, both within the limits; room for a record is made as its bytes come,
-  * at most 4 MiB ahead of them.
+  * A chunk is returned as a record and then as its records, one by one. Every CRC is verified: of chunks,
+  * attachments, the data section and the summary. A truncated file yields everything before the cut, also of
+  * a truncated chunk, whose CRC cannot be verified; then `CutOff`. Misplaced records, undefined references
+  * and conflicting definitions are refused. Memory: one record, and one chunk's records uncompressed, both
+  * within the limits; memory for a record grows with its bytes, at most 4 MiB ahead of them.
   *
-  * Whoever uses it from several threads takes care that they take turns.
+  * For one thread at a time.
   */
 final class StreamParser(limits: McapLimits = McapLimits()):
   import StreamParser.*
@@ -56,7 +53,7 @@ final class StreamParser(limits: McapLimits = McapLimits()):
 
   def channel(id: Int): Option[Record.Channel] = known.channel(id)
 
-  /** More of the file: only once it needs bytes. It keeps the array until it needs bytes again. */
+  /** Offers more of the file, once it needs bytes. It keeps the array until it needs bytes again. */
   def offer(bytes: Array[Byte], start: Int, end: Int): Unit =
     require(from == until && !noMore, "offered before it was needed")
     require(0 <= start && start <= end && end <= bytes.length, s"bytes $start until $end of ${bytes.length}")
@@ -212,7 +209,7 @@ final class StreamParser(limits: McapLimits = McapLimits()):
       None
 
 private object StreamParser:
-  /** How much room a record gets before its bytes have come. */
+  /** Greatest allocation for a record ahead of its bytes. */
   private val Ahead = 4 << 20
 
   private enum Phase:

@@ -1,6 +1,6 @@
 package skein.mcap
 
-/** The earliest and latest of unsigned times; 0 and 0 where there are none, as the specification has it. */
+/** The earliest and latest of unsigned times; 0 and 0 without any, as the specification requires. */
 private[mcap] final class Times:
   private var any   = false
   private var least = 0L

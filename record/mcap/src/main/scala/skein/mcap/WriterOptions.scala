@@ -1,19 +1,19 @@
 package skein.mcap
 
-/** What a writer writes beside the records that it is given. What is on by default is what readers need to
-  * find messages by time and topic without reading the whole file.
+/** Parts that a writer adds to the given records. The defaults are what readers need to find messages by time
+  * and topic without reading the whole file.
   *
-  * @param profile of the header: what the file's fields keep to, such as `ros2`; empty for none
-  * @param library of the header: who wrote it
+  * @param profile of the header: a convention for the file's fields, such as `ros2`; empty for none
+  * @param library of the header: the writing program
   * @param chunked whether messages are gathered in chunks; without, nothing is compressed, and nothing can be
   *   found by index
-  * @param chunkBytes a chunk ends with the message that makes it so long, uncompressed
-  * @param messageIndex behind each chunk, where each channel's messages are in it
-  * @param chunkIndex in the summary, where the chunks are
-  * @param statistics in the summary, how many there are of everything, and between which times
-  * @param repeatSchemas in the summary; as `repeatChannels`, what an index is worth little without
-  * @param attachmentIndex in the summary, where attachments are; as `metadataIndex` for metadata
-  * @param summaryOffsets behind the summary, where its parts are
+  * @param chunkBytes a chunk ends with the message that makes it this long, uncompressed
+  * @param messageIndex after each chunk, the positions of each channel's messages in it
+  * @param chunkIndex in the summary, the positions of the chunks
+  * @param statistics in the summary, the numbers of everything, and the range of times
+  * @param repeatSchemas in the summary; as `repeatChannels`, without which an index is of little use
+  * @param attachmentIndex in the summary, the positions of attachments; as `metadataIndex` for metadata
+  * @param summaryOffsets after the summary, the positions of its parts
   */
 final case class WriterOptions(
     profile: String = "",

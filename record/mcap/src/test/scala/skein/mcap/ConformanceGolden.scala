@@ -4,9 +4,9 @@ import java.util.HexFormat
 import scala.collection.immutable.VectorMap
 import scala.io.Source
 
-/** The pairs of the specification's own conformance suite, 312 of its 416: what a file holds, as JSON, and
-  * its bytes. A line of `conformance.jsonl` is a pair: its name, the features that it shows, its records, and
-  * the file in hexadecimal digits.
+/** The pairs of the specification's own conformance suite, 312 of its 416: a file's content, as JSON, and its
+  * bytes. A line of `conformance.jsonl` is a pair: its name, the features it uses, its records, and the file
+  * in hexadecimal digits.
   */
 class ConformanceGolden extends munit.FunSuite:
   import ConformanceGolden.*
@@ -16,17 +16,17 @@ class ConformanceGolden extends munit.FunSuite:
     try source.getLines().map(line => Pair(ujson.read(line))).toVector
     finally source.close()
 
-  test("there are as many pairs as were given"):
+  test("all pairs of the suite are present"):
     assertEquals(pairs.size, 312)
     assertEquals(pairs.map(_.name).distinct.size, 312)
 
-  test("every file is read as the records that it is said to hold"):
+  test("every file is read as the records in its description"):
     pairs.foreach: pair =>
       val read = Parsing.all(pair.file)
       assertEquals(read.end, Parsed.Ended, pair.name)
       assertEquals(read.records.filterNot(isHidden), pair.records, pair.name)
 
-  test("every file is read so when its bytes come one by one"):
+  test("every file is read equally when its bytes arrive one by one"):
     pairs.foreach: pair =>
       val read = Parsing.all(pair.file, piece = 1)
       assertEquals(read.end, Parsed.Ended, pair.name)
@@ -37,7 +37,7 @@ class ConformanceGolden extends munit.FunSuite:
     written.foreach(pair => assertEquals(hex(write(pair)), hex(pair.file), pair.name))
     assertEquals(written.size, 153)
 
-  test("of a padded file, what is written differs from it by the padding alone"):
+  test("a padded file is written without its padding, and otherwise byte for byte"):
     pairs.filter(_.features("pad")).foreach: pair =>
       val plain = pair.name.replace("-pad", "")
       pairs.find(_.name == plain).foreach(other => assertEquals(hex(write(pair)), hex(other.file), pair.name))
@@ -51,7 +51,7 @@ class ConformanceGolden extends munit.FunSuite:
           RecordCodec.decode(out.array(0) & 0xff, out.array, 9, out.size, Place(0))
         assertEquals(again, record, pair.name)
 
-  /** A file's description leaves out how messages are gathered. */
+  /** Whether a file's description leaves a record out, as it does for chunks and their indexes. */
   private def isHidden(record: Record) =
     record.opcode == Opcode.Chunk || record.opcode == Opcode.MessageIndex
 
@@ -150,7 +150,7 @@ private object ConformanceGolden:
           bytes("data"),
           0
         )
-        // The description leaves the CRC out; the parser has held it.
+        // The description leaves the CRC out; the parser has verified it.
         val out = ByteBuilder(64)
         RecordCodec.append(attachment, out)
         RecordCodec.decode(Opcode.Attachment, out.array, 9, out.size, Place(0))

@@ -2,10 +2,10 @@ package skein.mcap
 
 import java.util.SplittableRandom
 
-/** Files that are cut off, changed, or made to hurt. */
+/** Files that are truncated, changed, or malicious. */
 class DamageLaws extends munit.FunSuite:
 
-  test("a file cut off at any byte gives all that lies before the cut"):
+  test("a file truncated at any byte yields everything before the cut"):
     for seed <- 1L to 4 do
       val file  = RandomFile.draw(seed, most = 40)
       val whole = Parsing.all(file.bytes)
@@ -17,13 +17,13 @@ class DamageLaws extends munit.FunSuite:
           case Parsed.Failed(McapError.CutOff(at, _, _)) => assert(at.offset <= length, what)
           case Parsed.Failed(McapError.NotMcap(_))       => assert(length == 0, what)
           case other                                     => fail(s"$what: $other")
-        // All records that end before the cut; of chunks that are cut through, what can be had of them.
+        // All records that end before the cut; of truncated chunks, their complete records.
         val before = whole.found.filter(found => endOf(found, whole) <= length).map(_.record)
         val came   = read.records
         assertEquals(came.take(before.size), before, what)
         assertEquals(came.drop(before.size), rest(whole, before.size, came.size - before.size), what)
 
-  test("of an uncompressed chunk that is cut through, every whole message is read"):
+  test("of a truncated uncompressed chunk, every complete message is read"):
     for seed <- 1L to 6 do
       val file =
         RandomFile.draw(
@@ -45,7 +45,7 @@ class DamageLaws extends munit.FunSuite:
           s"${file.show}, cut at $length"
         )
 
-  test("a byte that has changed anywhere is found, and the error says where"):
+  test("a changed byte anywhere is detected, and the error names its position"):
     for seed <- 1L to 5 do
       val file   = RandomFile.draw(seed, most = 40)
       val random = SplittableRandom(seed)
@@ -57,23 +57,20 @@ class DamageLaws extends munit.FunSuite:
           case Parsed.Failed(error) => assert(error.message.startsWith("byte "), s"$what: $error")
           case other                => fail(s"$what: $other")
 
-  test("whatever comes, a reader gives records or says why not"):
+  test("for any bytes, a reader returns records or the reason why not"):
     for seed <- 1L to 400 do
       val random  = SplittableRandom(seed)
       val file    = RandomFile.draw(seed % 50, most = 30)
       val changed = file.bytes.toArray
       for _ <- 0 to random.nextInt(6) do
         val at = random.nextInt(changed.length)
-        // Lengths are what hurts: bytes of all ones are frequent.
+        // Wrong lengths do most harm: bytes of all ones are frequent.
         changed(at) = (if random.nextInt(3) == 0 then 0xff else random.nextInt(256)).toByte
       val bytes = Bytes.of(changed)
       try Parsing.all(bytes, limits = McapLimits(recordBytes = 1 << 16, chunkBytes = 1 << 16)).end: Unit
       catch case error: Throwable => throw AssertionError(s"seed $seed: $error", error)
 
-  test(
-    "what lz4 or zstd is damaged to is refused, never more than " +
-      "it claims, and never an error of the machine's"
-  ):
+  test("damaged lz4 or zstd data are refused, without exceeding the stated size or crashing the machine"):
     for seed <- 1L to 1000 do
       val random = SplittableRandom(seed)
       val source = new Array[Byte](random.nextInt(400))
@@ -90,12 +87,12 @@ class DamageLaws extends munit.FunSuite:
             .foreach(held => assert(held.size <= claimed, s"seed $seed"))
         catch case error: Throwable => throw AssertionError(s"seed $seed, cut $cut: $error", error)
 
-  /** Every byte of the first two files, of the others every seventh. */
+  /** Positions to test: every byte of the first two files, of the others every seventh. */
   private def places(file: RandomFile): Range =
     val step = if file.seed <= 2 then 1 else 7
     (file.seed % step).toInt until file.bytes.size by step
 
-  /** Where a record ends in the file; of one in a chunk, where the chunk does. */
+  /** The end of a record in the file; for a record in a chunk, the end of the chunk. */
   private def endOf(found: Parsed.Found, whole: Parsing): Long =
     if found.at.inChunk < 0 then found.at.offset + found.length
     else
@@ -103,6 +100,6 @@ class DamageLaws extends munit.FunSuite:
         case Parsed.Found(_: Record.Chunk, at, length) if at.offset == found.at.offset => at.offset + length
       }.get
 
-  /** So many records from there on, as a chunk that is cut through gives them: without the chunk. */
+  /** The next `count` records, as a truncated chunk yields them: without the chunk itself. */
   private def rest(whole: Parsing, from: Int, count: Int): Vector[Record] =
     whole.records.drop(from).dropWhile(_.opcode == Opcode.Chunk).take(count)

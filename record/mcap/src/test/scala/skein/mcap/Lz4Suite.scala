@@ -46,13 +46,13 @@ class Lz4Suite extends munit.FunSuite:
       val read = Lz4Frame.decompress(Bytes.of(out.toByteArray), source.length, cut = false)
       assertEquals(read, Bytes.of(source), s"seed $seed, $size")
 
-  test("of a part of an array, that part alone is compressed"):
+  test("only the given part of an array is compressed"):
     val source = draw(9, 4000)
     val half   = source.length / 2
     val frame  = Lz4Frame.compress(source, half, source.length)
     assertEquals(Lz4Frame.decompress(frame, source.length - half, cut = false), Bytes.of(source.drop(half)))
 
-  test("blocks that look back into the one before are read, with checksums of blocks and content"):
+  test("blocks that refer to the previous one are read, with checksums of blocks and content"):
     // Python's lz4.frame.compress(…, block_size=64 kB, block_linked=True, block_checksum=True,
     // content_checksum=True).
     val frame = HexFormat.of.parseHex(
@@ -79,7 +79,7 @@ class Lz4Suite extends munit.FunSuite:
     out.u32(0)
     Bytes.of(out.array, 0, out.size)
 
-  test("a block may refer to fewer bytes than a match has, and as far back as 65,535"):
+  test("a block may refer to fewer bytes than a match's length, and as far back as 65,535"):
     // A match ends some bytes before its block, as LZ4 asks for.
     val last  = Array.tabulate[Byte](9)(at => (4 + at).toByte)
     val short = linked(Array[Byte](0x30, 1, 2, 3), Array[Byte](0, 3, 0, -0x70) ++ last)
@@ -94,7 +94,7 @@ class Lz4Suite extends munit.FunSuite:
     val read   = Lz4Frame.decompress(far, first.length + 13, cut = false).toArray
     assertEquals(read.drop(first.length).toVector, first.slice(1, 5).toVector ++ last)
 
-  test("of a frame that is cut off, the blocks before the cut are read"):
+  test("of a truncated frame, the blocks before the cut are read"):
     val source = draw(3, 1) ++ Array.tabulate(300_000)(at => (at * at >>> 9).toByte)
     val frame  = Lz4Frame.compress(source, 0, source.length)
     for length <- 0 until frame.size by 997 do

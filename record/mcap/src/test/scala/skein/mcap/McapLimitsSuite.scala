@@ -18,7 +18,7 @@ class McapLimitsSuite extends munit.FunSuite:
       case Parsed.Failed(error) => error.message
       case other                => s"$other"
 
-  test("a record that claims more than the limit is refused before room is made for it"):
+  test("a record whose stated size exceeds the limit is refused before memory is allocated"):
     val file = after: out =>
       out.u8(Opcode.Attachment)
       out.u64(-2L)
@@ -27,13 +27,13 @@ class McapLimitsSuite extends munit.FunSuite:
       "byte 25: a Attachment record claims 18446744073709551614 bytes, expected at most 268435456"
     )
 
-  test("a claim within the limit gets no room that its bytes do not fill"):
+  test("a stated size within the limit allocates no memory ahead of the bytes"):
     val runtime = Runtime.getRuntime
     val file    = after: out =>
       out.u8(Opcode.Attachment)
       out.u64(Int.MaxValue - 100)
     val limits = McapLimits(recordBytes = Int.MaxValue - 100)
-    // More such parsers than the heap could hold if each made room for what is claimed.
+    // More such parsers than the heap could hold if each allocated the stated size.
     val parsers = Vector.fill((runtime.maxMemory >> 31).toInt + 8): () =>
       val parser = StreamParser(limits)
       parser.offer(file.toArray)
@@ -41,14 +41,14 @@ class McapLimitsSuite extends munit.FunSuite:
       parser
     assertEquals(parsers.map(_()).map(_.next()).toSet, Set(Parsed.NeedsBytes))
 
-  test("a chunk that claims to grow beyond the limit is refused"):
+  test("a chunk whose stated size exceeds the limit is refused"):
     val file = after(RecordCodec.append(Record.Chunk(0, 0, 1L << 40, 0, "zstd", Bytes.empty), _))
     assertEquals(
       errorOf(file),
       "byte 25: a chunk, uncompressed, claims 1099511627776 bytes, expected at most 268435456"
     )
 
-  test("errors say what was expected, what came, and where"):
+  test("errors state what was expected, what was found, and where"):
     assertEquals(
       errorOf(Bytes.utf8("SQLite format 3")),
       "byte 0: expected an MCAP file of version 0, which begins with 89 4d 43 41 50 30 0d 0a, " +
@@ -76,11 +76,11 @@ class McapLimitsSuite extends munit.FunSuite:
       "byte 8: the file is cut off: expected 8 bytes of Header, came 3 bytes"
     )
 
-  test("a record of a kind that is not known yet is given as it is"):
+  test("a record of an unknown kind is returned unchanged"):
     val file = after(RecordCodec.append(Record.Other(0x91, Bytes.utf8("later")), _))
     assertEquals(Parsing.all(file).records.last, Record.Other(0x91, Bytes.utf8("later")))
 
-  test("a channel that is named again otherwise is refused, one named again is not"):
+  test("a channel defined again differently is refused, one defined again equally is not"):
     def channel(topic: String) =
       Record.Channel(1, 0, topic, "", scala.collection.immutable.VectorMap.empty)
     def file(second: String) = after: out =>

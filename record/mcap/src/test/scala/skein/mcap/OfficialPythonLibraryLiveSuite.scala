@@ -5,12 +5,11 @@ import scala.jdk.CollectionConverters.*
 import skein.mcap.file.McapFile
 import skein.testing.{Lengthy, PythonEnvironment, TemporaryFolders, Waiting}
 
-/** The proof that others read what is written here, and the reverse: the official library of PyPI,
-  * unmodified, reads our files and writes others. Runs where Python can install that library; it fetches it
-  * once per user.
+/** Proof of compatibility in both directions: the official library of PyPI, unmodified, reads our files and
+  * writes others. Runs where Python can install that library; it fetches it once per user.
   */
 class OfficialPythonLibraryLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
-  folder.test("the official library opens every file we write, and finds what we wrote"): folder =>
+  folder.test("the official library opens every file we write, and reads its content"): folder =>
     val files   = (1L to 30).map(seed => s"any$seed" -> RandomFile.draw(seed, most = 100))
     val indexed =
       (1L to 30).map(seed =>
@@ -33,7 +32,7 @@ class OfficialPythonLibraryLiveSuite extends munit.FunSuite, TemporaryFolders, L
         file.show
       )
 
-  folder.test("we open every file that the official library writes, and find what it wrote"): folder =>
+  folder.test("we open every file that the official library writes, and read its content"): folder =>
     assertEquals(OfficialPythonLibrary.run("write.py", folder.toString), (0, "WROTE 48 files\n"))
     val paths = Files.list(folder).iterator.asScala.filter(_.toString.endsWith(".mcap")).toVector
     paths.foreach: path =>

@@ -2,14 +2,13 @@ package skein.mcap
 
 import java.io.ByteArrayOutputStream
 
-/** What a whole file gives to a parser. */
+/** A parser's results for a whole file. */
 final case class Parsing(found: Vector[Parsed.Found], end: Parsed):
   def records: Vector[Record]          = found.map(_.record)
   def messages: Vector[Record.Message] = records.collect { case message: Record.Message => message }
 
 object Parsing:
-  /** @param piece so many bytes are offered at a time
-    */
+  /** @param piece number of bytes offered at a time */
   def all(file: Bytes, piece: Int = 1 << 20, limits: McapLimits = McapLimits()): Parsing =
     val parser = StreamParser(limits)
     val array  = file.toArray

@@ -3,7 +3,7 @@ package skein.mcap
 import java.util.SplittableRandom
 import scala.collection.immutable.VectorMap
 
-/** A file drawn by a seed, and what was written into it. */
+/** A random file, with the records that were written into it. */
 final case class RandomFile(
     seed: Long,
     options: WriterOptions,
@@ -57,7 +57,7 @@ object RandomFile:
           metadata += record
         case 4 if random.nextInt(4) == 0 => writer.flush()
         case _ if channels.nonEmpty      =>
-          // Mostly forward, now and then back, and the same time twice.
+          // Mostly forward, sometimes back, and sometimes twice at one time.
           time = (time + random.nextLong(-300, 1000).max(-time)).max(0)
           val channel = 1 + random.nextInt(channels.size)
           val message = Record.Message(channel, step, time, time - random.nextInt(5), data(random))
@@ -76,7 +76,7 @@ object RandomFile:
       metadata.result()
     )
 
-  /** Everything that a file can have, so that the whole can be found by its index. */
+  /** Options with everything that makes the whole file accessible by its index. */
   def indexed(random: SplittableRandom): WriterOptions =
     WriterOptions(chunkBytes = 1 + random.nextInt(600), compression = compression(random))
 

@@ -1,9 +1,9 @@
 package skein.mcap
 
-/** What is written is read. */
+/** Written files are read back unchanged. */
 class RoundTripLaws extends munit.FunSuite:
 
-  test("a stream gives every message, attachment and metadata record as it was written"):
+  test("a stream returns every message, attachment and metadata record as it was written"):
     for seed <- 1L to 400 do
       val file = RandomFile.draw(seed)
       val read = Parsing.all(file.bytes, piece = 1 + (seed * 37 % 500).toInt)
@@ -12,7 +12,7 @@ class RoundTripLaws extends munit.FunSuite:
       assertEquals(attachments(read.records), file.attachments, file.show)
       assertEquals(read.records.collect { case record: Record.Metadata => record }, file.metadata, file.show)
 
-  test("of a file with all indexes, every index leads to the record that it names"):
+  test("in a file with all indexes, every index points to its record"):
     for seed <- 1L to 200 do
       val file  = RandomFile.draw(seed, options = RandomFile.indexed)
       val found = Parsing.all(file.bytes).found
@@ -32,7 +32,7 @@ class RoundTripLaws extends munit.FunSuite:
       val indexed = Set(Opcode.Chunk, Opcode.Attachment, Opcode.Metadata)
       assertEquals(kinds.sorted, found.map(_.record.opcode).filter(indexed).sorted, file.show)
 
-  test("the statistics of a file count what is in it"):
+  test("the statistics of a file count its content"):
     for seed <- 1L to 200 do
       val file = RandomFile.draw(seed, options = RandomFile.indexed)
       val read = Parsing.all(file.bytes)

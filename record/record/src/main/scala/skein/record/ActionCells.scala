@@ -3,7 +3,7 @@ package skein.record
 import skein.policy.{Action, Yaw}
 import skein.units.*
 
-/** An action as it lies in a recording: see [[FieldColumns]]. */
+/** An action's columns in a recording: see [[FieldColumns]]. */
 private[record] final case class ActionCells(
     kind: String,
     x: Double,

@@ -5,18 +5,18 @@ import java.lang.ref.WeakReference
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** What an image or a cloud consists of: bytes that nobody changes any more. They are kept as they came, or
-  * compressed by Zstandard, as recordings hold them. Equal where the bytes are.
+/** The content of an image or a cloud: immutable bytes, kept as received, or compressed by Zstandard as in
+  * recordings. Equal if the bytes are.
   *
-  * @param size of the bytes
+  * @param size of the bytes, uncompressed
   */
 final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
 
-  // Who opens a frame looks whether it is whole, and mostly wants its bytes at once.
+  // Opening a frame checks that it is complete, and its bytes are usually read immediately afterwards.
   private var open = WeakReference[Array[Byte]](null)
 
-  /** Decompressed where they are kept compressed, again if nobody holds them any more. Nobody changes what
-    * comes.
+  /** The bytes; decompressed if they are kept compressed, and again once they were garbage-collected. They
+    * must not be changed.
     */
   def bytes: Array[Byte] =
     if !isPacked then kept
@@ -26,10 +26,10 @@ final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
         open = WeakReference(bytes)
         bytes
 
-  /** A frame of Zstandard that says its size. */
+  /** The bytes as a Zstandard frame that states its size. */
   def packed: Array[Byte] = if isPacked then kept else Zstd.compress(kept, Blob.Level)
 
-  /** The same, kept compressed. */
+  /** This content, kept compressed from now on. */
   def compressed: Blob = if isPacked then this else new Blob(packed, isPacked = true, size)
 
   override def equals(other: Any): Boolean = other match
@@ -40,10 +40,9 @@ final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
   override def toString(): String = s"$size bytes"
 
 object Blob:
-  /** Of the bytes of one, more than any image of 8192 × 8192 pixels has. */
+  /** Most bytes of one, more than any image of 8192 × 8192 pixels has. */
   val MostBytes: Int = 256 * 1024 * 1024
 
-  /** The quickest. */
   private val Level = 1
 
   private[record] def crc(blob: Blob): Long =
@@ -51,12 +50,12 @@ object Blob:
     crc.update(blob.bytes)
     crc.getValue
 
-  /** The array must not change any more. */
+  /** A view of an array, which must not change any more. */
   def of(bytes: Array[Byte]): Blob = new Blob(bytes, isPacked = false, bytes.length)
 
-  /** Of what [[Blob.packed]] gave.
+  /** Content from the result of [[Blob.packed]].
     *
-    * @return or what is wrong with it
+    * @return Left states what is wrong with it
     */
   def ofPacked(packed: Array[Byte]): Either[String, Blob] =
     val size = Zstd.getFrameContentSize(packed)

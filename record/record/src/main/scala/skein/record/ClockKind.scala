@@ -1,6 +1,6 @@
 package skein.record
 
-/** The clocks to fly by, by name. */
+/** The clocks of flights, by name. */
 enum ClockKind(val label: String):
   case Real    extends ClockKind("real")
   case Virtual extends ClockKind("virtual")

@@ -8,15 +8,15 @@ import skein.policy.Action
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** How a value lies in one or more neighbouring columns: their names, and how to write and read them. */
+/** The layout of a value in one or more adjacent columns: their names, and how to write and read them. */
 private[record] trait Columns[A]:
   def definitions: Vector[Column]
   def append(value: A, to: RowWriter): Unit
   def read(cells: Cells): A
 
-/** One column as the table defines it.
+/** One column of a table.
   *
-  * @param older what gives its value in SQL where a file of an older format lacks the column or has it with
+  * @param older SQL expression of its value where a file of an older format lacks the column or has it with
   *   another type
   */
 private[record] final case class Column(
@@ -28,7 +28,7 @@ private[record] final case class Column(
   def isBlob: Boolean = sqlType == "BLOB"
   def sql: String     = s"$name $sqlType" + (if nullable then "" else " NOT NULL")
 
-/** Walks over the cells of a result's current row from left to right. */
+/** Iterates over the cells of a result's current row from left to right. */
 private[record] final class Cells(row: ResultSet):
   private var column = 0
 
@@ -43,7 +43,7 @@ private[record] final class Cells(row: ResultSet):
       None
     else Some(read)
 
-/** How fields of a type lie in columns, by the field's name: the columns' is that with the unit behind it. */
+/** The layout of a field of a type, by the field's name: column names append the unit to it. */
 private[record] trait FieldColumns[A]:
   def apply(name: String): Columns[A]
 
@@ -90,7 +90,7 @@ private[record] object FieldColumns:
   given texts: FieldColumns[Vector[String]] =
     single(_, "VARCHAR[]", _.texts(_), (row, column) => listed(row.getArray(column)).map(_.toString))
 
-  /** Compressed by Zstandard. */
+  /** Bytes, compressed by Zstandard. */
   given FieldColumns[Blob] = name =>
     single(
       name,
@@ -102,7 +102,7 @@ private[record] object FieldColumns:
 
   given FieldColumns[Instant] = name => long(name + "Ns").as(Instant.ofNanos, _.toNanos)
 
-  /** Milliseconds, exact up to 2^53 ns, 104 days; clocks may be further from one another. */
+  /** Milliseconds, exact up to 2^53 ns, 104 days; clock offsets may be larger. */
   given FieldColumns[Span] = name =>
     if name.endsWith("Offset") then long(name + "Ns").as(Span.ofNanos, _.toNanos)
     else double(name + "Ms").as(millis => Span.ofNanos(math.round(millis * 1e6)), _.toNanos / 1e6)
@@ -214,7 +214,7 @@ private[record] object Columns:
 
   /** The columns of a case class: those of its fields, one after the other.
     *
-    * @param names in the place of the fields' own, if any
+    * @param names that replace the fields' own, if any
     */
   inline def columns[A](names: String*)(using mirror: Mirror.ProductOf[A]): Columns[A] =
     ofFields(
@@ -239,7 +239,7 @@ private[record] object Columns:
           parts(index).append(value.asInstanceOf[Product].productElement(index), to)
       def read(cells: Cells): A = mirror.fromProduct(Tuple.fromArray(parts.map(_.read(cells)).toArray))
 
-  /** All null where the value is absent. */
+  /** Columns of an optional value: all null if it is absent. */
   def optional[A](columns: Columns[A]): Columns[Option[A]] = new Columns[Option[A]]:
     val definitions: Vector[Column]                   = columns.definitions.map(_.copy(nullable = true))
     def append(value: Option[A], to: RowWriter): Unit = value match
@@ -247,8 +247,8 @@ private[record] object Columns:
       case None          => definitions.foreach(_ => to.nothing())
     def read(cells: Cells): Option[A] = cells.nextOption(definitions.size)(columns.read(cells))
 
-  /** Optional columns of later formats. Where they are absent they are left out of the [[Digest]], so that it
-    * is that of the formats before.
+  /** Optional columns of later formats. Absent values are left out of the [[Digest]], so that it equals that
+    * of the formats before.
     */
   def added[A](columns: Columns[Option[A]]): Columns[Option[A]] = new Columns[Option[A]]:
     val definitions: Vector[Column]                   = columns.definitions
@@ -256,13 +256,13 @@ private[record] object Columns:
       if value.isEmpty then definitions.foreach(_ => to.nothingYet()) else columns.append(value, to)
     def read(cells: Cells): Option[A] = columns.read(cells)
 
-  /** A column that a file of an older format has in another way. */
+  /** A column that a file of an older format stores in another form. */
   def migrated[A](columns: Columns[A], older: String): Columns[A] = new Columns[A]:
     val definitions: Vector[Column]           = columns.definitions.map(_.copy(older = Some(older)))
     def append(value: A, to: RowWriter): Unit = columns.append(value, to)
     def read(cells: Cells): A                 = columns.read(cells)
 
-  /** Puts a word before every name: `validAtNs` becomes `ownValidAtNs`. */
+  /** Columns with a prefix before every name: `validAtNs` becomes `ownValidAtNs`. */
   def prefixed[A](prefix: String, columns: Columns[A]): Columns[A] = new Columns[A]:
     val definitions: Vector[Column] =
       columns.definitions.map(column => column.copy(name = prefix + column.name.capitalize))

@@ -10,7 +10,7 @@ final case class Difference(where: String, column: String, recorded: String, aga
 
 object Difference:
 
-  /** Of two sequences of records, compared in order, column by column, to the last bit. */
+  /** Compares two sequences of records in order, column by column, to the last bit. */
   def first(recorded: Iterable[Record], again: Iterable[Record]): Option[Difference] =
     val rows = recorded.iterator.map(Some(_)).zipAll(again.iterator.map(Some(_)), None, None)
     rows.collectFirst(Function.unlift:
@@ -37,7 +37,7 @@ object Difference:
     case command: CommandRow   => s"command ${command.sequence} to ${command.vehicle}"
     case other                 => s"a row of ${Table.of(other).name}"
 
-  /** A double's shortest text is another for another double. */
+  /** The cells as texts; different doubles have different shortest texts. */
   private def cells(record: Record): Vector[String] =
     val cells = Vector.newBuilder[String]
     val row   = new RowWriter:

@@ -9,10 +9,10 @@ import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.{Failure, Success}
 
-/** Writes a flight into one DuckDB file while it flies, and gives its rows to others who write them
-  * elsewhere. Records wait in a bounded queue; a thread of its own commits them at once, but not oftener than
-  * every [[DuckDbRecorder.commitInterval]], and [[DuckDbRecorder.batchSize]] rows at most. What is committed
-  * survives a kill of the process.
+/** Writes a flight into one DuckDB file while it runs, and passes its rows to other sinks. Records wait in a
+  * bounded queue; a thread of its own commits them immediately, but not more often than every
+  * [[DuckDbRecorder.commitInterval]], and at most [[DuckDbRecorder.batchSize]] rows at a time. Committed rows
+  * survive a kill of the process.
   */
 final class DuckDbRecorder private (
     capacity: Int,
@@ -29,8 +29,7 @@ final class DuckDbRecorder private (
     case large: (CameraImage | Cloud) => offerLarge(large)
     case _                            => enqueue(record)
 
-  /** Images and clouds are left out, and told of, where the disk is slower than they come: the flight goes
-    * on.
+  /** Drops images and clouds, and reports it, if the disk is slower than their arrival: the flight continues.
     */
   private def offerLarge(record: CameraImage | Cloud): Unit =
     val (vehicle, name, at) = record match
@@ -46,7 +45,7 @@ final class DuckDbRecorder private (
   private def enqueue(record: Recordable): Unit =
     if !writer.offer(record) then
       failed.trySuccess(RecordError.QueueFull(capacity)): Unit
-      // What is queued already is still written; what comes now would leave a gap.
+      // Queued records are still written; later ones would leave a gap.
       writer.end()
 
   def failure: Future[RecordError] = failed.future
@@ -61,26 +60,25 @@ object DuckDbRecorder:
   /** Records that may wait to be written: at 20 vehicles and 10 Hz about a minute. */
   val defaultCapacity = 65536
 
-  /** Of images and clouds among them: two seconds of four cameras of 640 × 480 pixels at 10 Hz. What comes
-    * then is left out, and is an event.
+  /** Bytes of waiting images and clouds: two seconds of four cameras of 640 × 480 pixels at 10 Hz. Later ones
+    * are dropped, and an event recorded.
     */
   val mostWaitingBytes: Long = 96L * 1024 * 1024
 
-  /** From the begin of one commit to that of the next. A kill of the process loses this and the time that a
-    * commit takes: 45 to 165 ms at a load of 12 to 16 on two cores.
+  /** Time from the begin of one commit to that of the next. A kill of the process loses this and the time of
+    * a commit: 45 to 165 ms at a load of 12 to 16 on two cores.
     */
   val commitInterval: FiniteDuration = 25.millis
 
-  /** Rows committed at once at the most. */
   val batchSize = 4096
 
-  /** Whether a recording can be begun there, as far as its name tells; else why not. */
+  /** Whether a recording can be created at this path, judged by its name; Left states why not. */
   def free(file: Path): Either[RecordError, Unit] = RecordingFile.free(file)
 
-  /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made.
+  /** Creates the file and begins to record. Fails if the file exists, or cannot be created.
     *
-    * @param beside get every row that is committed, and are closed with this
-    * @param threads makes the thread that writes
+    * @param beside sinks that receive every committed row, and are closed with this
+    * @param threads makes the writing thread
     */
   def open(
       file: Path,
@@ -127,7 +125,7 @@ object DuckDbRecorder:
         Future.successful(finish())
     DuckDbRecorder(capacity, writer, waitingBytes, failed, ending, closing, closed)
 
-  /** Numbers rows as the file does, for those beside it. */
+  /** Numbers rows as the file does, for the other sinks. */
   private final class Numbered(beside: Vector[RowSink]):
     private var next = 0L
 

@@ -5,11 +5,11 @@ import java.nio.file.{Files, Path}
 import java.sql.Connection
 import scala.util.Using
 
-/** Gives recordings to other programs. */
+/** Exports recordings for other programs. */
 object Export:
 
-  /** Writes each table as `TABLE.parquet` into the folder, which is made if need be; files of these names are
-    * replaced. Rows keep the order in which they were recorded. Blocks.
+  /** Writes each table as `TABLE.parquet` into the folder, which is created if necessary; files of these
+    * names are replaced. Rows keep the order in which they were recorded. Blocks.
     *
     * @return the files written
     */

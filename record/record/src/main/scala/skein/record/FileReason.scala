@@ -6,7 +6,7 @@ import java.util.Locale
 
 /** Why a file could not be read or written, for a person. */
 private[skein] object FileReason:
-  /** Without the names of Java's classes. */
+  /** The reason without names of Java's classes. */
   def of(failed: IOException): String = failed match
     case failed: FileSystemException =>
       val what = Option(failed.getReason).getOrElse:
@@ -14,7 +14,7 @@ private[skein] object FileReason:
           .stripSuffix("Exception")
           .replaceAll("(?<=.)([A-Z])", " $1")
           .toLowerCase(Locale.ROOT)
-      // Files that only try whether one can write are named by nobody.
+      // Files made only to test for write access are not named.
       Option(failed.getFile).filterNot(file => Path.of(file).getFileName.toString.startsWith(".skein"))
         .fold(what)(file => s"$what ($file)")
     case other => other.getMessage

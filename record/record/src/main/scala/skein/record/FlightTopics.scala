@@ -4,11 +4,11 @@ import java.nio.charset.StandardCharsets.UTF_8
 import skein.scene.Scene
 import skein.units.*
 
-/** A topic that a flight is shown by, and what its messages look like.
+/** A topic of a flight's messages, with their schema.
   *
   * @param schema JSON Schema; of binary messages a `FileDescriptorSet` of Protocol Buffers, in Base64
   * @param isBinary whether messages are of Protocol Buffers, else JSON
-  * @param newestOnly whether an older message is of no use beside a newer one
+  * @param newestOnly whether a newer message makes older ones useless
   */
 final case class Topic(
     name: String,
@@ -18,11 +18,12 @@ final case class Topic(
     newestOnly: Boolean = false
 )
 
-/** A message of a topic. Its bytes are made when somebody first asks for them.
+/** A message of a topic. Its bytes are made on first request.
   *
-  * @param key what it replaces the older messages of in its topic: those about the same vehicle
-  * @param known when the controller knew, on its own clock
-  * @param published the same, but for a prediction when it was made, and for a round trip when it began
+  * @param key older messages of the topic with this key are replaced: those about one vehicle
+  * @param known when the controller knew the fact, on its own clock
+  * @param published equals `known`, except for a prediction, when it was made, and for a round trip, when it
+  *   began
   */
 final class FlightMessage(
     val topic: String,
@@ -37,15 +38,14 @@ object FlightMessage:
   def json(topic: String, key: String, known: Instant, published: Instant)(text: => String): FlightMessage =
     FlightMessage(topic, key, known, published, () => text.getBytes(UTF_8))
 
-/** The rows of a flight as messages: every row on the topic `/skein/TABLE`, by the names of its columns, and
-  * beside them views of the same rows by Foxglove's schemas ([[FoxgloveViews]]). Rows are to come in their
-  * order.
+/** Converts the rows of a flight to messages: every row on the topic `/skein/TABLE`, by the names of its
+  * columns, and views of the rows by Foxglove's schemas ([[FoxgloveViews]]). Rows must be given in order.
   *
-  * @param from the time of rows that say none and come before all others
+  * @param from the time of rows without a time that precede all others
   * @param offset from the simulator's clock to the controller's until a decision estimates it; without one,
-  *   as if the first reading had taken no time
-  * @param scene what stands in the world
-  * @param form of images and clouds
+  *   as if the first reading had no latency
+  * @param scene of the flight's world
+  * @param form encoding of images and clouds
   */
 final class FlightTopics(
     vehicles: Vector[String],
@@ -59,11 +59,10 @@ final class FlightTopics(
   private val views = FoxgloveViews(vehicles, offset, scene, form)
   private var known = from
 
-  /** What is there before the first row. */
+  /** The messages before the first row. */
   def opening: Vector[FlightMessage] = views.opening(from).map(message(_, "", from, from))
 
-  /** @param number the row's place in the recording
-    */
+  /** @param number index of the row in the recording */
   def of(number: Long, record: Record): Vector[FlightMessage] =
     known = knownAt(record).getOrElse(known)
     val (at, published) = (known, publishedAt(record).getOrElse(known))
@@ -77,12 +76,12 @@ final class FlightTopics(
 object FlightTopics:
   private[record] val Prefix = "/skein/"
 
-  /** Of every flight, also of what has no rows in it: so a layout finds them all. */
+  /** The topics of every flight, including those without rows, so that a layout finds all of them. */
   def all(vehicles: Vector[String]): Vector[Topic] =
     Table.all.map(table => Topic(ofTable(table), s"skein.${table.name}", JsonRow.schema(table))) ++
       FoxgloveViews.topics(vehicles).map((name, schema) => Topic(name, schema, FoxgloveSchemas.all(schema)))
 
-  /** Of a camera or a lidar. */
+  /** The topics of a camera or a lidar. */
   def of(sensor: ImagingSensor, form: ImageEncoding = ImageEncoding.Whole): Vector[Topic] =
     def binary(name: String, schema: String) =
       Topic(name, schema, FoxgloveSchemas.binary(schema), isBinary = true, newestOnly = true)

@@ -3,13 +3,12 @@ package skein.record
 import java.util.Base64
 import scala.util.Using
 
-/** The schemas of Foxglove's that a flight is shown by, as JSON Schema, with the fields that are written
+/** The Foxglove schemas that views of a flight use, as JSON Schema, with the fields that are written
   * (https://docs.foxglove.dev/docs/sdk/schemas).
   */
 private[record] object FoxgloveSchemas:
 
-  /** Those of binary messages, as `FileDescriptorSet` in Base64, by name: those of Foxglove, which are of the
-    * MIT licence.
+  /** Foxglove's schemas of binary messages, as `FileDescriptorSet` in Base64, by name; under the MIT licence.
     */
   val binary: Map[String, String] = Vector("RawImage", "CompressedImage", "PointCloud").map: name =>
     val set = Using.resource(getClass.getResourceAsStream(s"foxglove/$name.fds"))(_.readAllBytes())
@@ -20,7 +19,7 @@ private[record] object FoxgloveSchemas:
   private val number              = typed("number")
   private val integer             = typed("integer")
   private val text                = typed("string")
-  // Viewers look into every object's properties, also where there never is one.
+  // Viewers read every object's properties, even if there are none.
   private val nobody                         = Json.obj("type" -> "\"object\"", "properties" -> "{}")
   private def many(items: String)            = Json.obj("type" -> "\"array\"", "items" -> items)
   private def fields(all: (String, String)*) =
@@ -34,7 +33,6 @@ private[record] object FoxgloveSchemas:
   private val pose       = fields("position" -> vector, "orientation" -> quaternion)
   private val colour     = fields("r" -> number, "g" -> number, "b" -> number, "a" -> number)
 
-  /** By name. */
   val all: Map[String, String] = Map(
     "foxglove.PoseInFrame" ->
       titled("foxglove.PoseInFrame", "timestamp" -> time, "frame_id" -> text, "pose" -> pose),

@@ -6,10 +6,10 @@ import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** What viewers show of a flight, as messages of Foxglove's schemas, made from the rows in their order.
-  * Frames: `world` is east, north, up, as viewers draw; `world_ned` north, east, down, as all else of a
-  * flight; each vehicle's own is its body, front, right, down. Times in messages are when physics was
-  * sampled, on the controller's clock, as far as the offset of the simulator's was known by then.
+/** A flight as messages of Foxglove's schemas, made from the rows in order. Frames: `world` is east, north,
+  * up, as viewers draw; `world_ned` north, east, down, as everywhere else in a flight; each vehicle's own is
+  * its body, front, right, down. Times in messages are the sampling times of physics, on the controller's
+  * clock, by the clock offset known at that time.
   */
 private[record] final class FoxgloveViews(
     vehicles: Vector[String],
@@ -29,7 +29,7 @@ private[record] final class FoxgloveViews(
   private var opened  = Instant.Epoch
   private val lenses  = mutable.Map.empty[ImagingSensor, (Long, Long, Option[Radians])]
 
-  /** Before the first row. */
+  /** The messages before the first row. */
   def opening(at: Instant): Vector[View] =
     opened = at
     def world    = transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)
@@ -39,7 +39,7 @@ private[record] final class FoxgloveViews(
 
   def of(record: Record): Vector[View] = record match
     case reading: ReadingRow =>
-      // As long as nothing better is known, as if the first reading had taken no time.
+      // Without a better estimate, as if the first reading had no latency.
       val ahead = aheadOf(reading.state.validAt, reading.state.receivedAt)
       offset = Some(ahead)
       val at    = reading.state.validAt + ahead
@@ -98,11 +98,11 @@ private[record] final class FoxgloveViews(
       Vector(drawn(name))
     case _ => Vector.empty
 
-  /** The controller's clock ahead of the simulator's: as known, or as if this had taken no time. */
+  /** The controller's clock minus the simulator's: as estimated, or as if this row had no latency. */
   private def aheadOf(validAt: Instant, receivedAt: Instant): Span =
     offset.getOrElse(receivedAt.since(validAt))
 
-  /** An image, where its camera was, and what lens it has where that is new. */
+  /** An image with its camera's pose, and with the lens if it is new. */
   private def seen(image: CameraImage): Vector[View] =
     val sensor = ImagingSensor.camera(image.vehicle, image.camera, image.kind)
     val at     = image.validAt + aheadOf(image.validAt, image.receivedAt)
@@ -121,7 +121,7 @@ private[record] final class FoxgloveViews(
       View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved))))
     ) ++ calibrated
 
-  /** A pinhole without distortion, whose axis goes through the middle. */
+  /** The calibration of a pinhole without distortion, whose axis passes through the image's middle. */
   private def calibration(at: Instant, frame: String, image: CameraImage, fov: Radians): String =
     val focal                 = image.width / (2 * StrictMath.tan(fov.value / 2))
     val (cx, cy)              = (image.width / 2.0, image.height / 2.0)
@@ -138,7 +138,6 @@ private[record] final class FoxgloveViews(
       "P"                -> numbers(focal, 0, cx, 0, 0, focal, cy, 0, 0, 0, 1, 0)
     )
 
-  /** What stands in the world, as one entity. */
   private def obstacles(at: Instant): String =
     val parts = stands.objects.flatMap(thing => thing.parts.map(part => (part, thing.place.outside(part.at))))
     entity(
@@ -167,8 +166,8 @@ private[record] final class FoxgloveViews(
     "color" -> colour
   )
 
-  /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it
-    * at once.
+  /** The recent track of a vehicle: complete, once a second, so that a viewer that seeks to a time has it
+    * immediately.
     */
   private def trail(name: String, at: Instant, position: Vector3): Option[View] =
     val trail = trails.getOrElseUpdate(name, Trail(at))
@@ -180,8 +179,8 @@ private[record] final class FoxgloveViews(
       def drawn  = entity(at, "world_ned", s"$name trail", lines = Vector(line(name, points, thickness = 2)))
       View.text(trailOf(name))(scene(drawn))
 
-  /** From where a vehicle was read to where it is expected when the command acts; around that, as far as the
-    * newest prediction was off.
+  /** A line from a vehicle's reading to its predicted position when the command acts; around that, the newest
+    * prediction's error.
     */
   private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) =
     val there = block(Placement(to), Vector3(0.5, 0.5, 0.5), colours(name))
@@ -211,7 +210,7 @@ private[record] final class FoxgloveViews(
     def all = entity(opened, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
     View.text(bodyOf(name))(scene(all))
 
-  /** A car's origin is on the ground. */
+  /** A vehicle's body; a car's origin is on the ground. */
   private def body(name: String) =
     val (size, middle) =
       if cars(name) then (CarM, Vector3(0, 0, -CarM.z / 2)) else (MultirotorM, Vector3.Zero)
@@ -227,7 +226,7 @@ private[record] final class FoxgloveViews(
   )
 
 private[record] object FoxgloveViews:
-  /** A message for a topic; its bytes are made when they are wanted. */
+  /** A message for a topic; its bytes are made on demand. */
   final case class View(topic: String, make: () => Array[Byte]):
     def json: String = String(make(), UTF_8)
 
@@ -247,7 +246,7 @@ private[record] object FoxgloveViews:
   private val Car         = VehicleKind.Car.toString
   private val MultirotorM = Vector3(0.8, 0.8, 0.25)
 
-  /** A BMW 320i's, as the built-in simulator's. */
+  /** Size of a BMW 320i, as the built-in simulator's cars. */
   private val CarM = Vector3(4.508, 1.61, 1.42)
 
   def imageOf(sensor: ImagingSensor): String       = s"/vehicles/${sensor.vehicle}/${sensor.name}/image"
@@ -270,18 +269,18 @@ private[record] object FoxgloveViews:
   private val TrailEvery  = Span.ofSeconds(1)
   private val TrailLength = Span.ofSeconds(20)
 
-  /** Half a turn about the line between north and east: x becomes y, y becomes x, and z turns round. */
+  /** Half a turn about the line between north and east: swaps x and y, and negates z. */
   private val NedInWorld = Quaternion(0, math.sqrt(0.5), math.sqrt(0.5), 0)
 
-  /** A camera's frame as viewers have it, right, down, front, in its own, front, right, down. */
+  /** Rotation of a camera's optical frame, right, down, front, in its own, front, right, down. */
   private val OpticalInCamera = Quaternion(0.5, 0.5, 0.5, 0.5)
 
-  /** Of the plates that bear tags. */
+  /** Thickness of the plates with tags. */
   private val TagM = 0.002
 
   private val Doubt = Json.obj("r" -> "0.5", "g" -> "0.5", "b" -> "0.5", "a" -> "0.3")
 
-  /** One turn after the other, the right one first. */
+  /** Product of two rotations, the right one first. */
   private def times(a: Quaternion, b: Quaternion) = Quaternion(
     a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
     a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,

@@ -6,12 +6,11 @@ import skein.units.*
 
 /** A camera or a lidar whose images or clouds are shown.
   *
-  * @param name the lidar's; the camera's, with a slash and what it shows where that is not `Scene`
+  * @param name the lidar's; the camera's, with a slash and the kind of image if that is not `Scene`
   */
 final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 
 object ImagingSensor:
-  /** What a record is of. */
   def of(record: Record): Option[ImagingSensor] = record match
     case image: CameraImage => Some(camera(image.vehicle, image.camera, image.kind))
     case cloud: Cloud       => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
@@ -20,9 +19,9 @@ object ImagingSensor:
   def camera(vehicle: String, camera: String, kind: String): ImagingSensor =
     ImagingSensor(vehicle, if kind == "Scene" then camera else s"$camera/$kind", isLidar = false)
 
-/** How images and clouds go to viewers: as messages of Protocol Buffers, by Foxglove's schemas. */
+/** Encodes images and clouds for viewers, as messages of Protocol Buffers, by Foxglove's schemas. */
 trait ImageEncoding:
-  /** Of images, a name of [[FoxgloveSchemas.binary]]. */
+  /** The schema of images, a name in [[FoxgloveSchemas.binary]]. */
   def imageSchema: String
 
   /** @param at its exposure, on the controller's clock
@@ -30,12 +29,11 @@ trait ImageEncoding:
     */
   def image(image: CameraImage, at: Instant, frame: String): Array[Byte]
 
-  /** Of a cloud, at most. */
   def mostPoints: Int
 
 object ImageEncoding:
 
-  /** As they were recorded. */
+  /** Encodes images and clouds without loss. */
   object Whole extends ImageEncoding:
     val imageSchema = "foxglove.RawImage"
     val mostPoints  = Int.MaxValue
@@ -67,7 +65,7 @@ object ImageEncoding:
       .text(4, frame)
       .result
 
-  /** `foxglove.PointCloud`; every n-th point where there are too many. */
+  /** Encodes a `foxglove.PointCloud`; only every n-th point if there are too many. */
   private[record] def cloud(cloud: Cloud, at: Instant, mostPoints: Int): Array[Byte] =
     val data   = thinned(cloud.xyz.bytes, mostPoints)
     val fields = Seq("x" -> 0, "y" -> 4, "z" -> 8).map((name, offset) =>

@@ -1,6 +1,6 @@
 package skein.record
 
-/** Text in JSON: written only, and only what cannot fail. */
+/** Writes JSON; no input can fail. */
 private[record] object Json:
 
   def string(text: String): String =
@@ -13,8 +13,7 @@ private[record] object Json:
       case other => out += other
     out.append('"').toString
 
-  /** @param number finite, as all numbers of a recording are
-    */
+  /** @param number finite, as all numbers of a recording are */
   def number(number: Double): String = number.toString
 
   def array(values: Iterable[String]): String = values.mkString("[", ",", "]")
@@ -22,7 +21,7 @@ private[record] object Json:
   def obj(fields: (String, String)*): String =
     fields.map((name, value) => s"${string(name)}:$value").mkString("{", ",", "}")
 
-/** Gathers a row as a JSON object, by the names of its columns; an absent value is left out. */
+/** Writes a row as a JSON object, by the names of its columns; an absent value is left out. */
 private[record] final class JsonRow(columns: Vector[Column]) extends RowWriter:
   private val fields = Vector.newBuilder[(String, String)]
   private val names  = columns.iterator.map(_.name)
@@ -37,13 +36,13 @@ private[record] final class JsonRow(columns: Vector[Column]) extends RowWriter:
   def texts(values: Vector[String]): Unit   = put(Json.array(values.map(Json.string)))
   def nothing(): Unit                       = names.next(): Unit
 
-  /** Its bytes go by a message of their own. */
+  /** Writes nothing: the bytes have a message of their own. */
   def blob(value: Blob): Unit = names.next(): Unit
 
   def json: String = Json.obj(fields.result()*)
 
 private[record] object JsonRow:
-  /** A table as a schema: what a row of it looks like. One type a field: viewers refuse a list of types. */
+  /** A table's JSON schema. One type for each field: viewers refuse a list of types. */
   def schema(table: Table[?]): String =
     val fields = table.numbered.filterNot(_.isBlob).map: column =>
       val one = column.sqlType.stripSuffix("[]") match

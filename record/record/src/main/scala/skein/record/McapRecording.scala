@@ -15,23 +15,22 @@ import skein.units.*
 /** A recording as an MCAP file, for Foxglove, Lichtblick, PlotJuggler and Rerun, and back.
   *
   * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns; these are
-  * the recording in full, and what `read` reads; but the pixels of an image and the points of a cloud are in
-  * the message behind its row, a `foxglove.RawImage` or a `foxglove.PointCloud`. Beside them stand views of
-  * the same rows by Foxglove's schemas ([[FoxgloveViews]]).
+  * the complete recording, which `read` reads; except that the pixels of an image and the points of a cloud
+  * are in the message after its row, a `foxglove.RawImage` or a `foxglove.PointCloud`. Additional messages
+  * are views of the rows by Foxglove's schemas ([[FoxgloveViews]]).
   *
   * Times of messages are on the controller's clock, ns. The log time is when the row's fact was known there:
-  * a reading was received, a decision made, a command sent or answered; of a row that says no such time, that
-  * of the row before. The publish time is the same, but for a prediction when it was made, and for a round
-  * trip when it began. When physics was sampled is in the message.
+  * a reading was received, a decision made, a command sent or answered; of a row without such a time, that of
+  * the row before. The publish time equals it, except for a prediction, when it was made, and for a round
+  * trip, when it began. When physics was sampled is in the message.
   */
 object McapRecording:
   private val About  = "skein"
   private val Binary = "protobuf"
 
-  /** Writes the file, or replaces it. Blocks; holds the whole recording in memory, images and clouds
-    * compressed.
+  /** Writes or replaces the file. Blocks; holds the whole recording in memory, images and clouds compressed.
     *
-    * @param scene what stands in the world, by the recording's parameters
+    * @param scene of the flight's world, by the recording's parameters
     */
   def write(
       recording: Path,
@@ -70,7 +69,7 @@ object McapRecording:
     val flight = Rows(mcap, names, from, Some(firstOffset(rows)), sceneOf(rows, scene))
     rows.foreach(flight.put)
 
-  /** What stood in the world of a recording's flight, where that was ours.
+  /** The scene of a recorded flight, if its simulator was ours.
     *
     * @param scene by the recording's parameters
     */
@@ -81,8 +80,8 @@ object McapRecording:
     if isOurs then scene(rows.collect { case (_, ParameterRow(name, value)) => name -> value }.toMap)
     else Scene.Empty
 
-  /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken
-    * no time.
+  /** The offset from the simulator's clock to the controller's: the first estimate, or as if the first
+    * reading had no latency.
     */
   private def firstOffset(rows: Vector[(Long, Record)]): Span =
     val estimated =
@@ -92,7 +91,9 @@ object McapRecording:
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
 
-  /** A flight in a file: its topics, and what is there before the first row, at once; then row by row. */
+  /** Writes a flight to a file: its topics and the messages before the first row immediately; then row by
+    * row.
+    */
   private[record] final class Rows(
       mcap: McapWriter,
       vehicles: Vector[String],
@@ -138,8 +139,8 @@ object McapRecording:
       )
       counts(channel) += 1
 
-  /** Makes a recording of what `write` wrote; equal contents, so an equal [[Digest]]. Blocks; needs room for
-    * the rows as text beside the recording meanwhile.
+  /** Makes a recording from the output of `write`, with equal contents, and so an equal [[Digest]]. Blocks;
+    * needs temporary disk space for the rows as text beside the recording.
     */
   def read(file: Path, recording: Path): Either[RecordError, Unit] =
     if Files.isDirectory(file) then Left(RecordError.NotAnExport(file, "it is a folder"))
@@ -169,7 +170,7 @@ object McapRecording:
         )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
     .flatten
 
-  /** The rows of each table that has any, as a file of JSON, a row a line, with the length of the longest. */
+  /** Writes the rows of each table that has any to a JSON file, a row a line, and measures the longest. */
   private def gather(file: Path, folder: Path): Either[RecordError, Vector[Gathered]] =
     McapFile.stream(file): records =>
       val outs = mutable.LinkedHashMap.empty[String, RowsFile]
@@ -219,11 +220,11 @@ object McapRecording:
         )
       finally outs.values.foreach(_.close())
 
-  /** Whether the bytes of a table's row are in a message of this topic. */
+  /** Whether messages of this topic contain the bytes of a table's row. */
   private def isOf(table: String, topic: String) =
     topic.endsWith(if table == Table.cloud.name then "/cloud" else "/image")
 
-  /** `data`, in both messages. */
+  /** The number of the field `data` in both messages. */
   private val BytesField = ImageEncoding.RawImageData.ensuring(_ == ImageEncoding.PointCloudData)
 
   /** @param longest line, in bytes, about

@@ -9,9 +9,9 @@ import skein.mcap.McapWriter
 import skein.mcap.file.ChannelSink
 import skein.scene.Scene
 
-/** Writes a flight into an MCAP file while it flies: what [[McapRecording]] exports of its recording, message
-  * by message. Only until the first decision has estimated the offset between the clocks, poses are placed as
-  * if the first reading had taken no time. The file can be read up to its last second should the process end.
+/** Writes a flight into an MCAP file while it runs: the messages of [[McapRecording]]'s export, one by one.
+  * Until the first decision has estimated the offset between the clocks, poses are placed as if the first
+  * reading had no latency. If the process ends, the file can be read up to its last second.
   */
 final class McapRowSink private (channel: FileChannel, file: Path, heading: RecordingHeader, scene: Scene)
     extends RowSink:
@@ -46,18 +46,18 @@ final class McapRowSink private (channel: FileChannel, file: Path, heading: Reco
 
   private def attempt(write: => Unit): Unit = if failed.isEmpty then
     try write
-    // Whatever it is, the recording goes on.
+    // Whatever the error, the recording continues.
     catch case NonFatal(error) => failed = Some(why(error))
 
   private def why(error: Throwable) = s"cannot write $file: $error"
 
 object McapRowSink:
-  /** Of the recording's commits: a second. */
+  /** Commits between two flushes: a second. */
   private val FlushEvery = 20
 
-  /** Makes the file, which must not be there yet.
+  /** Creates the file, which must not exist yet.
     *
-    * @param scene what stands in the world
+    * @param scene of the flight's world
     */
   def open(
       file: Path,

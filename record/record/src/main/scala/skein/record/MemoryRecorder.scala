@@ -6,7 +6,7 @@ import scala.concurrent.{Future, Promise}
 
 /** Keeps a flight in memory: for virtual time, where writing would be the slowest part, and for tests.
   *
-  * @param capacity records it takes; one more is a failure
+  * @param capacity most records; one more is a failure
   */
 final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecorder.defaultCapacity)
     extends Recorder:
@@ -38,16 +38,15 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
         case Some(reason) => Left(reason.get)
         case None         => Right(Written.nothing ++ (heading.records ++ records).map(Table.of(_).name))
 
-  /** What was recorded so far, in order. */
   def records: Vector[Record] = synchronized(kept.toVector)
 
-  /** The same, sorted by kind. */
+  /** The recording so far, sorted by kind. */
   def recording: Recording = Recording(heading, records)
 
-  /** How it begins, and what was recorded since. */
+  /** The heading's records, followed by those recorded since. */
   def all: Iterator[Record] = heading.records.iterator ++ records
 
-  /** Of what [[writeTo]] writes. */
+  /** The digest of the file that [[writeTo]] would write. */
   def digest: Digest = Digest.of(all)
 
   /** Writes the file that a [[DuckDbRecorder]] would have written. Blocks. */

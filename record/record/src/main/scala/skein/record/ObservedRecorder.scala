@@ -2,9 +2,9 @@ package skein.record
 
 import scala.concurrent.Future
 
-/** Records as `recorder` does, and shows every record to `observer`, which must not wait for anything.
+/** Records like `recorder`, and passes every record to `observer`, which must not block.
   *
-  * @param keeps what is recorded; all is shown
+  * @param keeps selects the records to keep; all are passed to the observer
   */
 final class ObservedRecorder(
     recorder: Recorder,

@@ -10,9 +10,9 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import scala.util.control.NonFatal
 
-/** Writes a flight into a Postgres database beside its recording: the same tables, with the same columns, in
-  * a schema that bears the flight's name. A thread of its own writes; where the database is slower than the
-  * flight, rows beyond [[PostgresRowSink.Capacity]] are left out; their number is reported at the end.
+/** Writes a flight into a Postgres database in addition to its recording: equal tables and columns, in a
+  * schema named after the flight. A thread of its own writes; if the database is slower than the flight, rows
+  * beyond [[PostgresRowSink.Capacity]] are dropped; their number is reported at the end.
   */
 final class PostgresRowSink private (connection: Connection, schema: String, target: PostgresAddress)
     extends RowSink:
@@ -85,17 +85,17 @@ object PostgresRowSink:
   /** Rows that may wait: at 20 vehicles and 10 Hz about a minute. */
   val Capacity = 65536
 
-  /** Of images and clouds among them. */
+  /** Most bytes of waiting images and clouds. */
   val MostWaitingBytes: Long = 64L * 1024 * 1024
 
   private val BatchSize   = 1024
   private val PollMillis  = 50L
   private val CloseWithin = 10_000L
 
-  /** Connects, and makes the tables. Blocks.
+  /** Connects, and creates the tables. Blocks.
     *
     * @param url `postgres://USER:PASSWORD@HOST:PORT/DATABASE`
-    * @return or why not, without the password
+    * @return Left states why not, without the password
     */
   def open(url: String, heading: RecordingHeader): Either[String, PostgresRowSink] =
     for
@@ -107,7 +107,7 @@ object PostgresRowSink:
         why
     yield made
 
-  /** Flights of one name are told apart by when they began. */
+  /** A schema's name: flights with one name are distinguished by their start time. */
   private def schemaOf(flight: FlightRow): String =
     s"${flight.id.replaceAll("[^A-Za-z0-9_.-]", "_").take(40)}-${flight.startedAt.toNanos / 1_000_000}"
 
@@ -164,7 +164,7 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
         case other                       => throw IllegalArgumentException(s"column of type $other")
     )
 
-/** Where a Postgres database is.
+/** The address of a Postgres database.
   *
   * @param shown without the password
   */
@@ -183,7 +183,7 @@ private[record] final case class PostgresAddress(jdbc: String, user: String, pas
 private[record] object PostgresAddress:
   private val ConnectSeconds = "5"
 
-  /** An IPv6 address stands in brackets. */
+  /** A database's URL; an IPv6 address is in brackets. */
   private val Form =
     """postgres(?:ql)?://([^:@/]+)(?::([^@/]*))?@([^:/@]+|\[[^\]/@]+\])(?::(\d{1,5}))?/([^/?#]+)""".r
 
@@ -197,7 +197,7 @@ private[record] object PostgresAddress:
       yield PostgresAddress(s"jdbc:postgresql://$at", name, secret, at)
     case _ => Left("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")
 
-  /** `%40` stands for `@`, as in all addresses (RFC 3986). */
+  /** Decodes percent-encoding, such as `%40` for `@` (RFC 3986). */
   private def decoded(text: String): Either[String, String] =
     try Right(URLDecoder.decode(text.replace("+", "%2B"), StandardCharsets.UTF_8))
     catch

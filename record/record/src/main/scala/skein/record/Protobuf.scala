@@ -4,8 +4,8 @@ import com.google.protobuf.{CodedInputStream, CodedOutputStream, WireFormat}
 import java.io.{ByteArrayOutputStream, IOException}
 import skein.mcap.Bytes
 
-/** A message of Protocol Buffers, written field by field: as much as the large messages of viewers need,
-  * whose bytes would be a third more as JSON.
+/** Encodes a message of Protocol Buffers field by field: a subset for viewers' large messages, which would be
+  * a third larger as JSON.
   */
 private[record] final class Protobuf(expected: Int = 64):
   private val written = ByteArrayOutputStream(expected)
@@ -26,9 +26,9 @@ private[record] final class Protobuf(expected: Int = 64):
 
 private[record] object Protobuf:
 
-  /** The last field of this number that holds bytes.
+  /** The last field of this number that contains bytes.
     *
-    * @return absent where there is none, or the message is damaged
+    * @return None without one, or if the message is damaged
     */
   def bytesOf(message: Bytes, field: Int): Option[Bytes] =
     val in    = CodedInputStream.newInstance(message.toArray)

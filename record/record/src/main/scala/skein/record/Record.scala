@@ -5,13 +5,13 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** One row of a recording; each case class below is one table. Column names are the field names with the unit
-  * behind them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`,
+/** One row of a recording; each case class below is one table. Column names are the field names followed by
+  * the unit: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`,
   * `Mps`, `Rad`, `RadPerS`. `validAt`, `actsAt` and `predictedFor` are on the simulator's clock, all other
   * instants on the controller's.
   *
-  * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order
-  * in which all records of the flight were accepted.
+  * Every table begins with the column `row`, which the recorder assigns: the index of the record in the order
+  * of acceptance.
   */
 sealed trait Record extends Recordable:
   def row: Record = this
@@ -40,7 +40,7 @@ final class LaterDecision(
   lazy val row: DecisionRow = make
 
 object Record:
-  /** The large part of an image or a cloud. */
+  /** The bytes of an image or a cloud, if the record is one. */
   def blobOf(record: Record): Option[Blob] = record match
     case image: CameraImage => Some(image.pixels)
     case cloud: Cloud       => Some(cloud.xyz)
@@ -70,10 +70,10 @@ final case class FlightRow(
     scenarioName: Option[String] = None
 ) extends Record:
 
-  /** Absent for a loop that is none of ours. */
+  /** The loop's kind; None for a user's own loop. */
   def loopKind: Option[LoopKind] = LoopKind.parse(loop).toOption
 
-  /** Whether it is the truth that others are held against: the simulator stood still while a loop decided. */
+  /** Whether it is the ground truth for other flights: the simulator was paused while the loop decided. */
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
 
   /** Whether its world is that of the recording's parameters. */
@@ -99,21 +99,21 @@ object VehicleRow:
   def of(agent: Agent): VehicleRow =
     VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
-  /** The parameter that says what a vehicle is, where it is no multirotor. */
+  /** The parameter that states a vehicle's kind, if it is not a multirotor. */
   def kind(name: String, kind: VehicleKind): Option[ParameterRow] =
     Option.when(kind != VehicleKind.Multirotor)(ParameterRow(s"kind.$name", kind.toString))
 
 /** One answer of the simulator.
   *
-  * @param sequence counts the readings of this vehicle in the order in which they were asked for
+  * @param sequence counts the readings of this vehicle in the order of the requests
   */
 final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
 
 /** One answer of a sensor.
   *
-  * @param sequence counts the answers asked of this sensor, in the order in which they were asked for
+  * @param sequence counts the answers of this sensor in the order of the requests
   * @param quantities names of the numbers, with units
-  * @param numbers as many
+  * @param numbers one for each quantity
   */
 final case class MeasurementRow(
     sequence: Long,
@@ -128,11 +128,11 @@ final case class MeasurementRow(
 
 /** An image of a vehicle's camera.
   *
-  * @param sequence counts the images of this camera that came
-  * @param kind what it shows, by AirSim's name, for example `Scene`
-  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, the lowest
-  *   first, m
-  * @param fov horizontal; absent where nobody has told
+  * @param sequence counts the received images of this camera
+  * @param kind kind of image, by AirSim's name, for example `Scene`
+  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, little-endian,
+  *   m
+  * @param fov horizontal; absent if unknown
   * @param positionNed of the camera, world, when it was exposed
   * @param orientation from the camera's frame (front, right, down) to the world's
   * @param validAt when it was exposed
@@ -157,11 +157,11 @@ final case class CameraImage(
 
 /** A scan of a vehicle's lidar.
   *
-  * @param sequence counts the scans of this lidar that came
+  * @param sequence counts the received scans of this lidar
   * @param positionNed of the lidar, world
   * @param orientation from the lidar's frame (front, right, down) to the world's
   * @param validAt when it was scanned
-  * @param xyz of each point in the lidar's frame, m: three numbers of 32 bits, the lowest byte first
+  * @param xyz of each point in the lidar's frame, m: three numbers of 32 bits, little-endian
   */
 final case class Cloud(
     sequence: Long,
@@ -176,22 +176,22 @@ final case class Cloud(
     xyz: Blob
 ) extends Record
 
-/** A measurement that a decision was made from.
+/** A measurement that a decision used.
   *
-  * @param vehicle that was decided for, and that measured
+  * @param vehicle of the decision and the measurement
   * @param decision the decision's sequence
   * @param measurement the measurement's sequence
   */
 final case class Sensing(vehicle: String, decision: Long, sensor: String, measurement: Long) extends Record
 
-/** One decision for one vehicle, with everything that it was made from.
+/** One decision for one vehicle, with all its inputs.
   *
   * @param sequence counts the decisions for this vehicle
   * @param own the vehicle's own reading that was used; its columns begin with `own`
   * @param opponent the opponent's reading that was used; its columns begin with `opponent`
   * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
   *   other roles, the opponent seen from the vehicle
-  * @param relativeY the same, to the right of that heading
+  * @param relativeY likewise, to the right of that heading
   * @param headingBefore commanded last to this vehicle
   * @param opponentHeading commanded last to the opponent, as far as known
   * @param heading the one chosen
@@ -200,7 +200,8 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
   * @param predicted the predicted states of both vehicles, if the decision was made from them instead of the
   *   readings
   * @param speed the one chosen; absent where the vehicle always commands its own
-  * @param action the action decided; absent where heading and speed say it, at the altitude of the start
+  * @param action the action decided; absent where heading and speed determine it, at the altitude of the
+  *   start
   */
 final case class DecisionRow(
     sequence: Long,
@@ -221,13 +222,13 @@ final case class DecisionRow(
     action: Option[Action] = None
 ) extends Record
 
-/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle,
-  * where the policy regards the whole team.
+/** Inputs of a decision besides its own and its opponent's reading: one row for each other vehicle, if the
+  * policy uses the whole team.
   *
-  * @param decider the vehicle that was decided for
+  * @param decider the vehicle of the decision
   * @param decision the decision's sequence
-  * @param reading the sequence of the reading of `vehicle` that was used
-  * @param predicted where it was expected to be, if that was decided upon instead of the reading
+  * @param reading the sequence of the used reading of `vehicle`
+  * @param predicted its predicted state, if the decision used that instead of the reading
   */
 final case class Sighting(
     decider: String,
@@ -237,17 +238,17 @@ final case class Sighting(
     predicted: Option[PredictedMotion]
 ) extends Record
 
-/** How a decision was planned.
+/** The planning of a decision.
   *
   * @param decision the sequence of the decision of `vehicle`
-  * @param candidates flown by all searches together
-  * @param slices that each of the searches finished before the deadline; all 0 where nothing was ready: then
-  *   the last plan went on, or the policy decided
-  * @param cost of the plan chosen; absent where none was tried
-  * @param took from asking until the decision was there
+  * @param candidates simulated by all searches together
+  * @param slices that each of the searches finished before the deadline; all 0 if nothing was ready: then the
+  *   last plan continued, or the policy decided
+  * @param cost of the chosen plan; absent if none was tried
+  * @param took from the request to the decision
   * @param breaches of hard limits within the plan's horizon
-  * @param course where the plan leads; absent where the policy decided in its place
-  * @param states from which it was planned, where readings do not tell all of them
+  * @param course the plan's positions; absent if the policy decided instead
+  * @param states initial states of the plan, if readings do not determine them completely
   */
 final case class Planned(
     vehicle: String,
@@ -261,14 +262,14 @@ final case class Planned(
     states: Option[PlannedStates] = None
 ) extends Record
 
-/** A decision that was made in another process, and the times of its ways there and back.
+/** A decision made in another process, with the times of its request and answer.
   *
-  * @param decision the sequence of the decision of `vehicle`; the decision says when it was made, by what was
-  *   known of the solver's clock
-  * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
-  * @param askedAt when the question left
-  * @param receivedAt when the answer came
-  * @param thinking from the question's coming to the solver to the answer's leaving, by the solver's clock
+  * @param decision the sequence of the decision of `vehicle`; the decision states when it was made, by the
+  *   known offset of the solver's clock
+  * @param question counts the requests for `vehicle`; missing ones were not answered in time
+  * @param askedAt when the request was sent
+  * @param receivedAt when the answer was received
+  * @param thinking from the arrival of the request at the solver to sending the answer, by the solver's clock
   * @param clock absent before the first answer of a solver
   */
 final case class SolvedRow(
@@ -281,27 +282,27 @@ final case class SolvedRow(
     clock: Option[SolverClock]
 ) extends Record:
 
-  /** From the question's leaving to the answer's coming. */
+  /** Time from sending the request to receiving the answer. */
   def roundTrip: Span = receivedAt.since(askedAt)
 
-/** How the solver's clock stood to the controller's, as was known when a decision was asked for.
+/** The solver's clock against the controller's, as known at the request for a decision.
   *
   * @param offset the controller's clock minus the solver's
   * @param uncertainty the truth lies within ± this
   */
 final case class SolverClock(offset: Span, uncertainty: Span)
 
-/** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command
-  * acts.
+/** The course of a plan: positions at the end of each step, world frame, m. The first step begins when the
+  * command acts.
   */
 final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
-/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty where its
-  * kinematics tell all of one.
+/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty if its kinematics
+  * determine them completely.
   */
 final case class PlannedStates(own: Vector[Double], opponent: Vector[Double])
 
-/** Where a vehicle was expected to be when the command acts. */
+/** A vehicle's predicted motion when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
 
 /** The paper's four observations at one decision. Both ages count from the *arrival* of the reading used, as
@@ -314,14 +315,14 @@ final case class Observations(
     sinceOpponentMove: Option[Span]
 )
 
-/** How old the readings used were, from when physics was sampled.
+/** Ages of the used readings, since physics was sampled.
   *
   * @param clockOffset the controller's clock minus the simulator's, as estimated then
   * @param uncertainty of the offset, and so of both ages: the truth lies within ± this
   */
 final case class TrueAge(own: Span, opponent: Span, clockOffset: Span, uncertainty: Span)
 
-/** The predicted states that a decision was made from instead of the readings.
+/** The predicted states that a decision used instead of the readings.
   *
   * @param actsAt when the command was expected to act, on the simulator's clock
   */
@@ -333,14 +334,14 @@ final case class Predicted(
     opponentVelocityNed: Vector3
 )
 
-/** A prediction whose moment has come and was read.
+/** A prediction that later readings verified.
   *
   * @param decider the vehicle for whose decision it was made
-  * @param vehicle whose place was predicted
+  * @param vehicle whose position was predicted
   * @param predictedFor on the simulator's clock
-  * @param age from the reading that was carried forward to the moment predicted for
+  * @param age from the reading used to the time predicted for
   * @param positionNed as predicted
-  * @param error distance to where the vehicle was then, between two readings interpolated
+  * @param error distance to the vehicle's position at that time, interpolated between two readings
   */
 final case class Prediction(
     decider: String,
@@ -410,14 +411,14 @@ final case class Event(
     count: Option[Long] = None
 ) extends Record
 
-/** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these
-  * rows if there are any, else from the readings.
+/** A vehicle's true position, if a loop samples it separately from its readings. Distances are computed from
+  * these rows if there are any, else from the readings.
   */
 final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) extends Record
 
-/** How the flight ended: the last row. There is none where the recording broke off before.
+/** How the flight ended: the last row; missing in a truncated recording.
   *
-  * @param reason why it ended before its time
+  * @param reason why it ended early
   */
 final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
 
@@ -445,84 +446,74 @@ enum EventSubject:
 
 /** What an [[Event]] tells of; recorded by name. */
 enum EventKind:
-  /** A newer value replaced one that was not used yet. */
+  /** A newer value replaced an unused one. */
   case Dropped
 
   /** A period passed without its action because an earlier one had not ended. */
   case Skipped
 
-  /** A call was not answered in time. */
   case TimedOut
 
-  /** A policy did not decide in time. */
   case DeadlineMissed
 
-  /** A solver in another process was started again, or another one answers: what policies remember begins
-    * anew.
-    */
+  /** A solver in another process was restarted or replaced: policies' memories start again. */
   case SolverRestarted
 
-  /** An answer came more than once; it counts once. */
+  /** An answer was received more than once; it counts once. */
   case Repeated
 
-  /** A plan could not keep within a hard limit. */
+  /** A plan could not keep a hard limit. */
   case LimitBroken
 
-  /** An answer came after its call had been given up. */
+  /** An answer was received after its call had ended. */
   case LateReply
 
-  /** The bounds on calls in flight refused a call. */
+  /** A bound on calls in flight refused a call. */
   case Overloaded
 
-  /** The simulator answered with an error. */
   case Refused
 
-  /** A connection was lost. */
   case Disconnected
 
-  /** A connection is there again. */
   case Reconnected
 
-  /** Nothing was heard of the simulator for longer than its answers take. */
+  /** The simulator was silent for longer than its answers take. */
   case SimulatorSilent
 
-  /** The simulator was heard of again. */
   case SimulatorBack
 
-  /** A step of the paused simulator was not as long as asked for. */
+  /** A step of the paused simulator differed from the requested length. */
   case StepDrift
 
   /** The simulator's clock did not keep pace with the controller's for some seconds. */
   case ClockDrift
 
-  /** Readings contradicted the known offset of the clocks, so its estimation began anew. */
+  /** Readings contradicted the estimated clock offset, so its estimation was restarted. */
   case ClockRestarted
 
-  /** The simulator's clock ran back, stood still, jumped or differed from vehicle to vehicle: the flight has
-    * no result.
+  /** The simulator's clock ran backwards, stopped, jumped or differed between vehicles: the flight has no
+    * result.
     */
   case ClockBroken
 
-  /** Somebody else took a vehicle from the flight or put it elsewhere: the flight has no result. */
+  /** Another client took control of a vehicle or moved it: the flight has no result. */
   case VehicleTaken
 
-  /** The machine was too busy to fly: the flight is not compared with others. */
+  /** The machine was too busy: the flight is not compared with others. */
   case Starved
 
-  /** A vehicle touched something. */
   case Contact
 
-  /** A call was given up because the flight had ended. */
+  /** A call was cancelled because the flight had ended. */
   case Cancelled
 
-  /** A policy that learns in flight has a new version, or what else its learner says. */
+  /** A policy that learns in flight has a new version, or its learner reports something. */
   case Learned
 
-  /** Somebody paused the flight: its vehicles hover and nobody decides, while its time runs on. */
+  /** A user paused the flight: its vehicles hover and no decisions are made, while its time continues. */
   case Paused
 
-  /** A paused flight was continued from outside. */
+  /** A user continued a paused flight. */
   case Continued
 
-  /** The flight ended before its time. */
   case Aborted

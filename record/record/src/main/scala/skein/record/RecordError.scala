@@ -9,20 +9,17 @@ enum RecordError(val message: String):
   case AlreadyExists(file: Path)
       extends RecordError(s"$file exists already; recordings are never overwritten")
 
-  /** The file could not be made, for example for want of the folder or of permission. */
+  /** The file could not be created, for example because the folder or permission is missing. */
   case CannotCreate(file: Path, reason: String) extends RecordError(s"cannot create recording $file: $reason")
 
-  /** The database refused rows, for example because the disk is full. What was committed before stays
-    * readable.
-    */
+  /** The database refused rows, for example because the disk is full. Rows committed before stay readable. */
   case WriteFailed(file: Path, reason: String)
       extends RecordError(s"cannot write to recording $file: $reason")
 
-  /** More records waited to be written than the queue holds: the disk is slower than the flight. */
+  /** More records waited than the queue holds: the disk is slower than the flight. */
   case QueueFull(capacity: Int)
       extends RecordError(s"recording cannot keep up: $capacity records wait to be written and no more fit")
 
-  /** There is no file at this path. */
   case NoSuchFile(file: Path) extends RecordError(s"there is no file $file")
 
   /** The file is in use, for example by a flight that still writes to it, or may not be read. */

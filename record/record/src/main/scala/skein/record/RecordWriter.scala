@@ -7,13 +7,13 @@ import scala.annotation.tailrec
 import scala.concurrent.{Future, Promise}
 import scala.util.control.NonFatal
 
-/** Writes records in batches, on a thread of its own: what has come since the last batch, `interval` after
-  * that began at the earliest. Whoever offers a record never waits, not even for a lock that this thread
-  * holds while others run.
+/** Writes records in batches, on a thread of its own: all records since the last batch, `interval` after that
+  * began at the earliest. Offering a record never waits, not even for a lock that this thread holds while
+  * other threads run.
   *
   * @param capacity records that may wait
   * @param batchSize most records of a batch
-  * @param write of a batch; false to end
+  * @param write a batch; returns false to end
   */
 private[record] final class RecordWriter(
     capacity: Int,
@@ -29,12 +29,12 @@ private[record] final class RecordWriter(
   private val thread             = threads.newThread(() => run())
   thread.start()
 
-  /** Completes when all is written, or nothing more can be. */
+  /** Completes when everything is written, or nothing more can be. */
   def ended: Future[Unit] = over.future
 
-  /** From any thread; ignored after [[end]].
+  /** Offers a record from any thread; ignored after [[end]].
     *
-    * @return false where as many wait as may
+    * @return false if the queue is full
     */
   def offer(record: Recordable): Boolean =
     if isEnding then true
@@ -46,7 +46,7 @@ private[record] final class RecordWriter(
       if isIdle then LockSupport.unpark(thread)
       true
 
-  /** Nothing more is taken; what waits is still written. */
+  /** Accepts no more records; waiting ones are still written. */
   def end(): Unit =
     isEnding = true
     LockSupport.unpark(thread)
@@ -66,7 +66,7 @@ private[record] final class RecordWriter(
       over.trySuccess(()): Unit
     catch case NonFatal(error) => over.tryFailure(error): Unit
 
-  /** One that is offered meanwhile ends it. */
+  /** Waits for records; one offered meanwhile wakes it. */
   private def idle(): Unit =
     isIdle = true
     if waiting.isEmpty then LockSupport.parkNanos(this, RecordWriter.LookNanos)

@@ -2,7 +2,7 @@ package skein.record
 
 import scala.concurrent.Future
 
-/** Records what a flight does. */
+/** Takes the records of a flight. */
 trait Recorder:
 
   /** Takes one record; never blocks, and makes no [[LaterRow]], from any thread. A record that cannot be kept
@@ -16,7 +16,7 @@ trait Recorder:
     */
   def failure: Future[RecordError]
 
-  /** Writes what is still queued and closes. Completes with the number of rows written, or with the failure.
-    * Every call has the same result.
+  /** Writes all waiting records and closes. Completes with the number of rows written, or with the failure.
+    * Every call has one result.
     */
   def close(): Future[Either[RecordError, Written]]

@@ -7,15 +7,15 @@ import org.duckdb.DuckDBConnection
 import scala.util.Using
 import skein.units.Expect
 
-/** The database behind a recording, while it is written. Not safe for use from several threads at once. */
+/** A recording's database while it is written. For one thread at a time. */
 private[record] final class RecordingFile private (val path: Path, connection: DuckDBConnection):
   private var nextRow = 0L
   private var written = Written.nothing
   private var broken  = false
 
-  /** Appends records in order and commits them: they survive the process from here on. */
+  /** Appends records in order and commits them: they survive a kill of the process from here on. */
   def write(records: Seq[Record]): Either[RecordError, Unit] =
-    // What is written to a file that has no name any more is lost when it is closed, and nothing else tells.
+    // Data written to a deleted file are lost when it is closed, without any other sign.
     if !Files.exists(path) then
       failed(RecordError.WriteFailed(path, "it was taken away while it was written"))
     else append(records)
@@ -27,7 +27,7 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       for (table, rows) <- numbered.groupBy((_, record) => Table.of(record)) do
         // groupBy has sorted every record to the table of its own type.
         table.asInstanceOf[Table[Record]].append(rows, connection)
-      // As SQL: the driver's own commit() returns as if all were well when the log cannot be written.
+      // As SQL: the driver's own commit() reports success when the log cannot be written.
       execute("COMMIT")
       written = written ++ records.map(Table.of(_).name)
       nextRow += records.size
@@ -37,13 +37,13 @@ private[record] final class RecordingFile private (val path: Path, connection: D
     broken = true
     Left(error)
 
-  /** Appends the last record, also behind a write that was refused, as far as the disk takes it then. */
+  /** Appends the last record, even after a refused write, if the disk accepts it then. */
   def end(record: Ending): Either[RecordError, Unit] =
     if broken then
       val _ = RecordingFile.attempt(RecordError.WriteFailed(path, _))(execute("ROLLBACK"))
     write(Seq(record))
 
-  /** Moves the write-ahead log into the file and closes it, also where that fails. */
+  /** Moves the write-ahead log into the file and closes it, even if that fails. */
   def close(): Either[RecordError, Written] =
     RecordingFile.attempt(RecordError.WriteFailed(path, _)):
       Using.resource(connection)(_ => execute("CHECKPOINT"))
@@ -53,8 +53,8 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 
 private[record] object RecordingFile:
 
-  /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the
-    * first.
+  /** Creates the file and its tables and writes the heading. Blocks, for a few hundred milliseconds the first
+    * time.
     */
   def create(file: Path, heading: RecordingHeader): Either[RecordError, RecordingFile] =
     free(file).flatMap: _ =>
@@ -68,12 +68,12 @@ private[record] object RecordingFile:
           val _ = opened.close()
         begun.map(_ => opened)
 
-  /** Whether a recording could have this name. */
+  /** Whether a recording can have this name; Left states why not. */
   def free(file: Path): Either[RecordError, Unit] =
     if isUnnameable(file) then Left(RecordError.CannotCreate(file, Unnameable))
     else Expect.that(!Files.exists(file))(RecordError.AlreadyExists(file))
 
-  /** Makes the file and its tables, with rows that somebody else puts in. Blocks. */
+  /** Creates the file and its tables; `rows` fills them. Blocks. */
   def filled(file: Path)(rows: DuckDBConnection => Unit): Either[RecordError, Unit] =
     attempt(RecordError.CannotCreate(file, _)):
       Using.resource(connect(file, readOnly = false)): connection =>
@@ -91,7 +91,7 @@ private[record] object RecordingFile:
     execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
     Table.all.foreach(table => execute(connection, table.create))
 
-  /** A connection to the file alone: one thread of its own, no extensions from the network. */
+  /** A connection to this file only: with one thread, and without extensions from the network. */
   def connect(file: Path, readOnly: Boolean): DuckDBConnection =
     if isUnnameable(file) then throw SQLException(Unnameable)
     val properties = Properties()

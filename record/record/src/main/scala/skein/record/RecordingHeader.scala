@@ -1,6 +1,6 @@
 package skein.record
 
-/** What a recording begins with; on disk before the first record is taken. */
+/** The first records of a recording; on disk before any other is taken. */
 final case class RecordingHeader(
     flight: FlightRow,
     vehicles: Seq[VehicleRow],

@@ -6,10 +6,10 @@ import java.sql.Connection
 import scala.util.Using
 import skein.units.Expect
 
-/** Reads recordings back. A file that a killed process left is as good as another. */
+/** Reads recordings. A file left by a killed process is read like any other. */
 object RecordingReader:
 
-  /** The whole recording in memory. Blocks. */
+  /** Reads the whole recording into memory. Blocks. */
   def read(file: Path): Either[RecordError, Recording] =
     withRecording(file): connection =>
       RecordingFile
@@ -27,7 +27,8 @@ object RecordingReader:
       RecordingFile.attempt(RecordError.NotARecording(file, _)):
         Table.all.flatMap(_.readNumbered(connection)).sortBy(_._1)
 
-  /** Opens for reading only, checks that it is a recording of a format that is read, and closes afterwards.
+  /** Opens a file for reading only, checks that it is a recording of a supported format, and closes it
+    * afterwards.
     */
   private[record] def withRecording[A](file: Path)(
       action: Connection => Either[RecordError, A]
@@ -54,7 +55,7 @@ object RecordingReader:
         Expect.that(found >= RecordingFormat.oldest && found <= RecordingFormat.version):
           RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, found)
 
-  /** DuckDB's files bear its name behind an eight-byte checksum. */
+  /** Whether a file is DuckDB's: its name follows an eight-byte checksum. */
   private def isDuckDb(file: Path): Either[RecordError, Boolean] =
     try
       Using.resource(Files.newInputStream(file)): in =>

@@ -13,16 +13,15 @@ private[record] trait RowWriter:
   def doubles(values: Vector[Double]): Unit
   def texts(values: Vector[String]): Unit
 
-  /** The last of a row. */
+  /** Writes bytes; the last value of a row. */
   def blob(value: Blob): Unit
 
-  /** An absent value. */
   def nothing(): Unit
 
-  /** An absent value of a column that older formats do not have. */
+  /** An absent value in a column that older formats lack. */
   def nothingYet(): Unit = nothing()
 
-/** Writes into the row that the appender has begun. */
+/** Writes values into the appender's current row. */
 private[record] final class AppenderRow(appender: DuckDBAppender) extends RowWriter:
   def text(value: String): Unit             = { val _ = appender.append(value) }
   def long(value: Long): Unit               = { val _ = appender.append(value) }

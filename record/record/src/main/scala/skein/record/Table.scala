@@ -11,7 +11,7 @@ import skein.record.Columns.*
 /** A table of a recording: the type of its rows, its name and its columns.
   *
   * @param rows their class
-  * @param since the format that it came with: files of an older one do not have it, which reads as no rows
+  * @param since the first format with this table; files of older ones read as if it had no rows
   */
 private[record] final case class Table[A <: Record](
     name: String,
@@ -20,7 +20,7 @@ private[record] final case class Table[A <: Record](
     since: Int = RecordingFormat.oldest
 ):
 
-  /** Its columns, after the number of the row. */
+  /** Its columns, after the row number. */
   def numbered: Vector[Column] = Column("row", "BIGINT") +: columns.definitions
 
   def create: String = numbered.map(_.sql).mkString(s"CREATE TABLE $name (", ", ", ")")
@@ -37,8 +37,8 @@ private[record] final case class Table[A <: Record](
   /** All rows in the order in which they were recorded. */
   def read(connection: Connection): Vector[A] = readNumbered(connection).map(_._2)
 
-  /** The same, each with its number. A column that may be null and is missing in an older file is absent,
-    * unless the older file says it in another way.
+  /** All rows with their numbers, in the order in which they were recorded. A nullable column that is missing
+    * in an older file is absent, unless the older file stores it in another form.
     */
   def readNumbered(connection: Connection): Vector[(Long, A)] =
     val present = columnsIn(connection)
@@ -63,13 +63,13 @@ private[record] final case class Table[A <: Record](
     try columns.read(cells)
     catch case bad: SQLException => throw SQLException(s"table $name, row $row: ${bad.getMessage}", bad)
 
-  /** Whether an older file does not have it. */
+  /** Whether an older file lacks this table. */
   def isMissing(connection: Connection): Boolean = isMissing(columnsIn(connection), connection)
 
   private def isMissing(present: Map[String, String], connection: Connection): Boolean =
     present.isEmpty && since > RecordingFormat.of(connection)
 
-  /** Names and types. */
+  /** Names and types of the table's columns in a file. */
   private def columnsIn(connection: Connection): Map[String, String] =
     Using.resource(connection.createStatement()): statement =>
       Using.resource(statement.executeQuery(
@@ -162,15 +162,13 @@ private[record] object Table:
       ending
     )
 
-  /** Those of which [[Recording]]s are made: images and clouds are read where they are wanted. */
+  /** The tables of which [[Recording]]s are made: images and clouds are read only on request. */
   val ofRecording: Vector[Table[? <: Record]] = all.filterNot(table => table == image || table == cloud)
 
   private val byRows: Map[Class[?], Table[? <: Record]] = all.map(table => table.rows -> table).toMap
 
-  /** How a record lies in its table. */
   def columnsOf(record: Record): Columns[Record] =
     // The table that `of` gives is that of the record's own type.
     of(record).columns.asInstanceOf[Columns[Record]]
 
-  /** The table that a record belongs to. */
   def of(record: Record): Table[? <: Record] = byRows(record.getClass)

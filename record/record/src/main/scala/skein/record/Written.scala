@@ -1,10 +1,10 @@
 package skein.record
 
-/** What a recording holds once closed: rows by table, tables without rows left out. */
+/** A closed recording's content: rows by table, tables without rows left out. */
 final case class Written(rows: Map[String, Long]):
   def total: Long = rows.values.sum
 
-  /** As many rows more as there are names of tables. */
+  /** Adds one row for each table name. */
   private[record] def ++(tables: Seq[String]): Written =
     val more = tables.groupMapReduce(identity)(_ => 1)(_ + _)
     Written(more.foldLeft(rows):

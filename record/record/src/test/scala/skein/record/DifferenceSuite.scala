@@ -5,7 +5,7 @@ import skein.units.*
 class DifferenceSuite extends munit.FunSuite:
   private val one = Samples.reading(1)
 
-  test("equal recordings do not differ, and of others the first row and column is named that does"):
+  test("equal recordings do not differ, and of different ones the first row and column is named"):
     assertEquals(Difference.first(Samples.oneOfEach, Samples.oneOfEach), None)
     val later = one.copy(state = one.state.copy(sentAt = one.state.sentAt + Span.ofNanos(1)))
     val found = Difference.first(Seq(Samples.decision(1), one), Seq(Samples.decision(1), later))
@@ -15,7 +15,7 @@ class DifferenceSuite extends munit.FunSuite:
       Some(("sentAtNs", one.state.sentAt.toNanos.toString, later.state.sentAt.toNanos.toString))
     )
 
-  test("a row that is missing, or more, is named"):
+  test("a missing row, or an additional one, is named"):
     val two = Samples.reading(2)
     assertEquals(
       Difference.first(Seq(one, two), Seq(one)),

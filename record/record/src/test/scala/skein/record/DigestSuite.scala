@@ -9,7 +9,7 @@ import skein.testing.TemporaryFolders
 class DigestSuite extends munit.FunSuite, TemporaryFolders:
   private def digest(records: Record*) = Digest.of(records.iterator)
 
-  test("the digest is the SHA-256 of the bytes that its documentation lays out"):
+  test("the digest is the SHA-256 of the bytes that its documentation specifies"):
     val bytes               = java.io.ByteArrayOutputStream()
     val out                 = java.io.DataOutputStream(bytes)
     def text(value: String) =
@@ -86,7 +86,7 @@ class DigestSuite extends munit.FunSuite, TemporaryFolders:
       Files.delete(file)
       Files.delete(folder)
 
-  test("another value, another order or one record less give another digest"):
+  test("another value, another order or a missing record changes the digest"):
     val all    = Samples.oneOfEach
     val whole  = digest(all*)
     val others = Seq(

@@ -8,7 +8,7 @@ import scala.util.Using
 import scala.util.chaining.scalaUtilChainingOps
 import skein.testing.TemporaryFolders
 
-/** Needs threads: a database writes while others offer. */
+/** Needs threads: a database writes while others offer records. */
 class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("DuckDbRecorderLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
@@ -21,7 +21,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
 
   private def read(file: Path): Recording = RecordingReader.read(file).fold(e => fail(e.message), identity)
 
-  folder.test("what was offered before close is in the file, and the summary counts it"): folder =>
+  folder.test("records offered before close are in the file, and the summary counts them"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     Samples.oneOfEach.foreach(recorder.offer)
@@ -31,7 +31,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
     assert(!recorder.failure.isCompleted)
     assertEquals(read(file), Recording(Samples.heading, Samples.oneOfEach))
 
-  folder.test("of many rows in many batches each is in the file, once and in its order"): folder =>
+  folder.test("many rows in many batches are all in the file, once and in order"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 65536)
     val offered  = 3 * DuckDbRecorder.batchSize + 1
@@ -54,7 +54,9 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(sequences.nonEmpty && sequences.size < offered)
       assertEquals(sequences, Vector.range(1L, sequences.size + 1L))
 
-  folder.test("rows that the database refuses fail the recording while it goes on, and its end"): folder =>
+  folder.test(
+    "rows that the database refuses fail the recording during the flight, and at its end"
+  ): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     Using.resource(RecordingFile.connect(file, readOnly = false)): beside =>
@@ -66,7 +68,9 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
       case other                                => fail(s"expected WriteFailed, got $other")
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
 
-  folder.test("a file that is taken away fails the recording at once, which would end without one"): folder =>
+  folder.test(
+    "a deleted file fails the recording immediately, which would otherwise end without a file"
+  ): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     recorder.offer(Samples.reading(1))
@@ -76,7 +80,9 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(Await.result(recorder.failure, 10.seconds), failed)
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
 
-  folder.test("a path that the driver would take for settings is refused, written and read"): folder =>
+  folder.test(
+    "a path that the driver would interpret as settings is refused, for writing and reading"
+  ): folder =>
     val file = Files.createDirectory(folder.resolve("a;access_mode=READ_ONLY")).resolve("flight.duckdb")
     val made = Await.result(DuckDbRecorder.open(file, Samples.heading), 30.seconds).left.map(_.message)
     assert(clue(made).left.exists(_.contains("expected a path without ';'")))

@@ -5,8 +5,8 @@ import skein.scene.SceneFile
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is for ever,
-  * colours lie between 0 and 1, and the quaternion that turns nothing is 1 in `w` and 0 else.
+/** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is infinite,
+  * colours are between 0 and 1, and the identity quaternion is 1 in `w` and 0 elsewhere.
   */
 class FoxgloveViewsSuite extends munit.FunSuite:
   private val names = Vector("Pursuer", "Evader") ++ (3 to 6).map(number => s"Vehicle$number")
@@ -20,7 +20,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
   private def pose(x: Double, y: Double, z: Double)  =
     ujson.Obj("position" -> place(x, y, z), "orientation" -> still)
 
-  test("a vehicle is a body where its frame is, with its name above it, for as long as the flight"):
+  test("a vehicle is a body in its own frame, with its name above it, for the whole flight"):
     val first = entity(drawn(1))
     assertEquals((first("frame_id").str, first("frame_locked").bool), ("Pursuer", true))
     assertEquals(first("lifetime"), ujson.Obj("sec" -> 0, "nsec" -> 0))
@@ -31,7 +31,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     // Down is positive.
     assert(at("x").num == 0 && at("y").num == 0 && at("z").num < 0, at.toString)
 
-  test("a car is as long as it is wide twice over, and stands on the ground where its frame is"):
+  test("a car is more than twice as long as wide, and stands on the ground in its frame"):
     val seen    = FoxgloveViews(names, Some(Span.Zero))
     val _       = seen.opening(Samples.at(0))
     val told    = VehicleRow.kind("Evader", VehicleKind.Car).get
@@ -48,7 +48,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     do
       assertEquals(seen.of(other).size, 0)
 
-  test("five vehicles have colours that differ, and the sixth has the first one's again"):
+  test("five vehicles have different colours, and the sixth has the first one's again"):
     val colours = drawn.tail.take(6).map(entity(_)("cubes")(0)("color"))
     assertEquals(colours.distinct.size, 5)
     assertEquals(colours(5), colours(0))
@@ -72,7 +72,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEquals(seen("cubes")(0)("pose"), pose(expected.x, expected.y, expected.z))
     val own = entity(drawn(1))("cubes")(0)("color")
     assertEquals((line("color"), seen("cubes")(0)("color")), (own, own))
-    // When the command acts, by the clocks' offset that the decision tells, on the controller's clock.
+    // When the command acts, by the clock offset in the decision, on the controller's clock.
     val acts = (decision.predicted.get.actsAt + decision.trueAge.get.clockOffset).toNanos
     assertEquals(
       seen("timestamp"),
@@ -83,8 +83,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val turn            = read(drawn.head)("transforms")(0)
     val rotation        = turn("rotation")
     val Seq(x, y, z, w) = Seq("x", "y", "z", "w").map(rotation(_).num): @unchecked
-    // The rotation's matrix, by its definition, row by row: what was north becomes y, what was east x, down
-    // −z.
+    // The rotation's matrix, by its definition, row by row: north becomes y, east x, down −z.
     val rows = Vector(
       Vector(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
       Vector(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
@@ -112,7 +111,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val log     = read(views.of(event).head)
     assertEquals((log("level").num, log("name").str), (3.0, "Evader"))
 
-  test("what stands in the world is a scene of boxes and poles, where and as large as they are"):
+  test("the world's objects are a scene of boxes and poles, with their positions and sizes"):
     val stands = SceneFile
       .parse(
         """objects = [
@@ -133,7 +132,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEquals((pole("size")("z").num, pole("pose")("position")("z").num), (5.0, -2.5))
     assertEquals(views.opening(Samples.at(0)).find(_.topic == "/scene"), None)
 
-  test("a plan is a line where it leads, at the vehicle's height"):
+  test("a plan is a line along its course, at the vehicle's height"):
     val seen = FoxgloveViews(names, Some(Span.Zero))
     seen.of(Samples.reading(1)): Unit
     val planned = Samples.oneOfEach.collectFirst { case one: Planned => one }.get
@@ -144,7 +143,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
       Vector[ujson.Value](place(1.5, -0.5, -20.3), place(2.5, 0.25, -20.3))
     )
 
-  test("where a vehicle is expected, a ball is as large as its newest prediction was off"):
+  test("at a vehicle's predicted position, a ball has the size of its newest prediction error"):
     val seen  = FoxgloveViews(names, Some(Span.Zero))
     val guess = Samples.oneOfEach.collectFirst { case one: Prediction => one }.get
     seen.of(guess.copy(vehicle = "Pursuer", error = Metres(0.75))): Unit
@@ -152,7 +151,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEquals(drawn("spheres")(0)("size"), place(1.5, 1.5, 1.5))
     assertEquals(drawn("spheres")(0)("pose"), drawn("cubes")(0)("pose"))
 
-  test("a camera's image is raw, its frame right, down, front, and its lens told once"):
+  test("a camera's image is raw, its frame right, down, front, and its lens is sent once"):
     val seen                             = FoxgloveViews(names, Some(Span.Zero))
     val Vector(image, frame, calibrated) = seen.of(Samples.image(1)): @unchecked
     val bytes                            = Protobuf.bytesOf(Bytes.of(image.make()), 6).get
@@ -162,7 +161,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val moved = ujson.read(frame.json)("transforms")(0)
     assertEquals(moved("child_frame_id").str, "Pursuer/front_center")
     val lens = ujson.read(calibrated.json)
-    // 40 pixels see 1.5 rad.
+    // 40 pixels cover 1.5 rad.
     assertEqualsDouble(lens("K")(0).num, 20 / math.tan(0.75), 1e-9)
     assertEquals((lens("K")(2).num, lens("K")(5).num), (20.0, 15.0))
     assertEquals(lens("frame_id"), moved("child_frame_id"))
@@ -173,7 +172,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val turn  = ujson.read(FoxgloveViews(names, None).of(level)(1).json)("transforms")(0)("rotation")
     assertEquals(turn, ujson.Obj("x" -> 0.5, "y" -> 0.5, "z" -> 0.5, "w" -> 0.5))
 
-  test("a cloud has its points as they came, in the lidar's frame; too many are thinned"):
+  test("a cloud has its points unchanged, in the lidar's frame; too many are thinned"):
     val topics = FoxgloveViews(names, Some(Span.Zero)).of(Samples.cloud(1))
     assertEquals(topics.map(_.topic), Vector("/vehicles/Evader/Lidar/cloud"))
     def points(most: Int) =

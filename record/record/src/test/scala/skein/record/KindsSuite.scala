@@ -1,13 +1,13 @@
 package skein.record
 
-/** Loops and clocks by the names that commands and recordings have for them. */
+/** Loops and clocks by their names in commands and recordings. */
 class KindsSuite extends munit.FunSuite:
 
-  test("every clock and every loop is found by its own name"):
+  test("every clock and every loop is found by its name"):
     for kind <- ClockKind.values do assertEquals(ClockKind.parse(kind.label), Right(kind))
     for kind <- LoopKind.values do assertEquals(LoopKind.parse(kind.label), Right(kind))
 
-  test("a name that is none is refused with those that are"):
+  test("an unknown name is refused with the known ones"):
     assertEquals(ClockKind.parse("Real"), Left("expected real or virtual, came 'Real'"))
     assertEquals(
       LoopKind.parse("streams"),

@@ -6,11 +6,11 @@ import skein.mcap.{OfficialPythonLibrary, Told}
 import skein.mcap.file.McapFile
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** The proof that others read what is exported: the official library of PyPI, unmodified. Runs where Python
-  * can install it.
+/** Proof that other programs read exports: the official library of PyPI, unmodified. Runs where Python can
+  * install it.
   */
 class McapRecordingLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
-  folder.test("the official library opens what is exported, and finds the same messages at the same times"):
+  folder.test("the official library opens an export, and reads equal messages at equal times"):
     folder =>
       val recording = folder.resolve("flight.duckdb")
       val mcap      = folder.resolve("indexed.mcap")

@@ -9,7 +9,7 @@ import skein.mcap.Record.Message
 import skein.mcap.file.McapFile
 import skein.testing.TemporaryFolders
 
-/** MCAP files that are written while a recording is. */
+/** MCAP files that are written in parallel to a recording. */
 class McapRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("McapRowSinkLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
@@ -36,7 +36,7 @@ class McapRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(Digest.ofFile(again), Digest.ofFile(file))
     assertEquals(RecordingReader.records(again), RecordingReader.records(file))
 
-  folder.test("after a second of commits what was written can be read, though the file was never finished"):
+  folder.test("after a second of commits the written rows can be read, though the file was never finished"):
     folder =>
       val mcap    = folder.resolve("cut.mcap")
       val written = sink(mcap)
@@ -49,7 +49,7 @@ class McapRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(readings > 20, s"$readings messages")
       written.close()
 
-  folder.test("a file that cannot be written any more says so, and the recording goes on"): folder =>
+  folder.test("a file that can no longer be written is reported, and the recording continues"): folder =>
     val (file, mcap) = (folder.resolve("a.duckdb"), folder.resolve("a.mcap"))
     val broken       = sink(mcap)
     broken.close()
@@ -57,7 +57,7 @@ class McapRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
     assert(broken.failure.exists(_.startsWith(s"cannot write $mcap")), broken.failure.toString)
     assertEquals(RecordingReader.read(file).map(_.readings.size), Right(1))
 
-  folder.test("a file that is there already is not written over"): folder =>
+  folder.test("an existing file is not overwritten"): folder =>
     val mcap = Files.writeString(folder.resolve("a.mcap"), "mine")
     assertEquals(McapRowSink.open(mcap, Samples.heading).left.toOption, Some(RecordError.AlreadyExists(mcap)))
     assertEquals(Files.readString(mcap), "mine")

@@ -68,7 +68,7 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
           assert(own.nonEmpty, table.name)
           assertEquals(rowsOf(postgres, table, s"\"${schemas.head}\".${table.name}"), own, table.name)
 
-  test("a database that stands still holds up nobody: rows beyond the queue are counted, and told"):
+  test("a blocked database delays nothing: rows beyond the queue are counted, and reported"):
     val named = heading("standing-still")
     val sink  = opened(named)
     Using.resource(server.get.getPostgresDatabase.getConnection()): other =>
@@ -76,7 +76,7 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
       val schema = Using.resource(other.createStatement().executeQuery(
         "SELECT schema_name FROM information_schema.schemata WHERE schema_name LIKE 'standing-still-%'"
       ))(found => { found.next(): Unit; found.getString(1) })
-      // Nobody else can write to the table until this ends.
+      // No other connection can write to the table until this ends.
       other.createStatement().execute(s"LOCK TABLE \"$schema\".reading IN ACCESS EXCLUSIVE MODE"): Unit
       val rows = PostgresRowSink.Capacity + 10_000L
       val from = System.nanoTime()
@@ -88,7 +88,7 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
     val said = sink.failure.getOrElse(fail("nothing was lost"))
     assert("""(\d+) rows are missing""".r.findFirstMatchIn(said).exists(_.group(1).toInt >= 8000), said)
 
-  test("what was written for a flight that could not be flown is taken away again"):
+  test("the tables of a flight that could not start are deleted"):
     val sink = opened(heading("not-flown"))
     sink.close()
     sink.discard()
@@ -106,13 +106,13 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
     assertEquals(shown("[::1]:7000"), Right("[::1]:7000/flights"))
     assert(shown("::1").isLeft)
 
-  test("letters that an address has for itself stand in user and password as percent and two digits"):
+  test("reserved characters in user and password are percent-encoded"):
     val read = PostgresAddress.parse("postgres://m%40e:a%3Ab%2Fc+%25@db/flights").fold(fail(_), identity)
     assertEquals((read.user, read.password, read.shown), ("m@e", "a:b/c+%", "db:5432/flights"))
     val wrong = PostgresAddress.parse("postgres://me:se%zzcret@db/flights").left.toOption.get
     assert(wrong.contains("two hexadecimal digits") && !wrong.contains("cret"), wrong)
 
-  test("where there is no server, or no address, one line says so, and no password"):
+  test("a missing server, or an invalid address, is reported in one line, without the password"):
     val nobody = PostgresRowSink.open("postgres://me:secret@127.0.0.1:1/db", Samples.heading)
     assert(
       nobody.left.exists(why => why.contains("127.0.0.1:1/db") && !why.contains("secret")),

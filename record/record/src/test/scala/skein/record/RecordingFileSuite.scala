@@ -7,10 +7,10 @@ class RecordingFileSuite extends munit.FunSuite:
   private def told(failure: Throwable) =
     RecordingFile.attempt(RecordError.WriteFailed(Path.of("x.duckdb"), _))(throw failure).left.map(_.message)
 
-  test("of what the database throws the first line is told"):
+  test("of a database's exception the first line is reported"):
     assert(told(SQLException("no room left\nat the third page")).left.exists(_.endsWith("no room left")))
 
-  test("where the database's library cannot be loaded, the deepest cause says why"):
+  test("if the database's library cannot be loaded, the deepest cause is reported"):
     val deepest = java.io.IOException("permission denied\nfor /tmp/x")
     val error   = told(ExceptionInInitializerError(RuntimeException("while it was unpacked", deepest)))
     assert(

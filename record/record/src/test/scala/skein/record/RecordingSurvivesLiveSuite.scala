@@ -5,12 +5,12 @@ import java.nio.file.Path
 import scala.jdk.CollectionConverters.*
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** Needs the real clock and processes of its own: what survives a kill is seen only in another process. */
+/** Needs the real clock and processes of its own: only another process can see what survives a kill. */
 class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def read(file: Path): Recording = RecordingReader.read(file).fold(e => fail(e.message), identity)
 
-  /** Starts [[RecordUntilStopped]]; what the database unpacks goes into the file's folder. */
+  /** Starts [[RecordUntilStopped]]; files that the database unpacks go into the file's folder. */
   private def child(file: Path): Process =
     val java    = Path.of(System.getProperty("java.home"), "bin", "java").toString
     val options = List("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "--enable-native-access=ALL-UNNAMED")
@@ -22,8 +22,8 @@ class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhur
     val reader = BufferedReader(InputStreamReader(process.getInputStream))
     Iterator.continually(reader.readLine()).takeWhile(_ != null)
 
-  /** Kills a process that records into `file`, checks what is left, and tells how old the last row kept was,
-    * ms.
+  /** Kills a process that records into `file`, checks the remaining file, and returns the age of the last
+    * row, ms.
     */
   private def killed(file: Path): Double =
     val process  = child(file)
@@ -39,18 +39,16 @@ class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhur
     lostMs
 
   folder.test("a kill -9 leaves a readable file without at most the last 200 ms"): folder =>
-    // A busy disk may delay a commit; it does not do so each time.
+    // A busy disk may delay a commit, but not every time.
     val lostMs = Iterator.range(0, 3).map(attempt => killed(folder.resolve(s"flight$attempt.duckdb")))
     assert(lostMs.exists(_ <= 200), "more than 200 ms were lost three times in a row")
 
-  folder.test(
-    "a disk that takes no more ends the recording with a clear error and leaves what was committed"
-  ): folder =>
+  folder.test("a full disk ends the recording with a clear error and leaves what was committed"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val process  = child(file)
     val reported = lines(process)
     val begin    = reported.take(200).toVector
-    // A limit on the size of files meets the process as a full disk does: its writes are refused.
+    // A limit on the size of files acts like a full disk: the process's writes are refused.
     val limit = List("prlimit", "--pid", process.pid.toString, "--fsize=1000000")
     assertEquals(ProcessBuilder(limit.asJava).inheritIO().start().waitFor(), 0)
     val all = begin ++ reported

@@ -3,8 +3,8 @@ package skein.view
 /** Who may ask an HTTP server of ours: programs, and the pages that it serves itself. A browser's page of
   * another site may not, not even under a name that it has led to this machine (DNS rebinding).
   *
-  * Headers are compared as texts. So a header that says something unheard of is as foreign as one that names
-  * another site, and is never taken for none.
+  * Headers are compared as texts. So an invalid header counts as foreign, like one that names another site,
+  * and never as absent.
   *
   * @param port on loopback
   * @param origins pages of other sites that may look all the same, for example `https://app.foxglove.dev`
@@ -14,7 +14,7 @@ final case class Access(port: Int, origins: Set[String] = Set.empty):
 
   /** Why a request is refused, if it is.
     *
-    * @param headers all names in lower case, and values, as they came
+    * @param headers all names in lower case, and values, as received
     */
   def refusal(headers: Iterable[(String, String)]): Option[String] =
     def said(name: String) = headers.collect { case (`name`, value) => value }.toVector
@@ -37,5 +37,5 @@ object Access:
   private val Own    = Set("127.0.0.1", "localhost", "[::1]")
   private val Scheme = "http://"
 
-  /** Which browsers leave out. */
+  /** The port that browsers leave out. */
   private val DefaultPort = 80

@@ -4,11 +4,10 @@ import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
 import skein.record.{ImagingSensor, Record, Recordable}
 
-/** Takes a flight's records to viewers. Bounded, and the newest wins; of the images of a camera, and of the
-  * clouds of a lidar, the newest alone waits. `offer` takes no lock: a viewer's thread that the system has
-  * put off cannot hold up a flight.
+/** Passes a flight's records to viewers. Bounded, and the newest wins; of a camera's images, and of a lidar's
+  * clouds, only the newest waits. `offer` takes no lock: a suspended viewer thread cannot delay a flight.
   *
-  * @param capacity records that wait; as many more as threads offer at one moment may for that moment
+  * @param capacity records that wait; for a moment, as many more as threads offer concurrently
   */
 final class Feed(capacity: Int = Feed.DefaultCapacity):
   private val queue   = ConcurrentLinkedQueue[Recordable]()
@@ -38,5 +37,5 @@ final class Feed(capacity: Int = Feed.DefaultCapacity):
   def lost: Long = dropped.get
 
 object Feed:
-  /** Some seconds of twenty vehicles at 20 Hz. */
+  /** Some seconds of twenty vehicles' records at 20 Hz. */
   val DefaultCapacity = 16384

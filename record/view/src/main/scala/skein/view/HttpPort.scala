@@ -10,9 +10,8 @@ import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.Seats
 
-/** A port of ours that speaks HTTP. It has a limited number of connections, of which those that say nothing
-  * make room for others, answers no page of another site, and tells browsers to give what it answers to pages
-  * of its own alone.
+/** A port that speaks HTTP, with a limited number of connections, of which silent ones make room for others.
+  * It answers no page of another site, and makes browsers give its answers only to its own pages.
   */
 object HttpPort:
 
@@ -20,9 +19,9 @@ object HttpPort:
     *
     * @param port 0 for any that is free
     * @param access by the port that it listens on
-    * @param refused told of each request that `access` refuses
-    * @param answer must not wait; an answer that is no error counts as a word of use
-    * @return fails where it cannot listen
+    * @param refused called with each request that `access` refuses
+    * @param answer must not block; an answer that is no error counts as activity
+    * @return fails if it cannot listen
     */
   def bind(port: Int, seats: Seats, access: Int => Access, refused: () => Unit)(
       answer: (HttpRequest, Guest) => HttpResponse
@@ -47,15 +46,15 @@ object HttpPort:
             )))): Unit)
       .run()
 
-  /** One connection. */
+  /** One connection, with its place at the port. */
   final class Guest private[HttpPort] (seat: Seats.Seat, switch: SharedKillSwitch):
     // A WebSocket outlives the requests of its connection.
     private val running = AtomicInteger()
 
-    /** It has said something of use. */
+    /** Marks the connection as active. */
     def spoke(): Unit = seat.spoke()
 
-    /** The connection has its place at least as long as this flow runs, which ends when it loses that. */
+    /** A flow during which the connection keeps its place; the flow ends when it loses it. */
     def during[A, B](flow: Flow[A, B, ?]): Flow[A, B, ?] =
       running.incrementAndGet(): Unit
       flow

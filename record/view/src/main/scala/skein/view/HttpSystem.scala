@@ -4,11 +4,11 @@ import com.typesafe.config.ConfigFactory
 import org.apache.pekko.actor.{ActorSystem, BootstrapSetup}
 import scala.concurrent.ExecutionContext
 
-/** What a small HTTP server runs on: an actor system of its own, with bounds for whoever connects. */
+/** An actor system for a small HTTP server, with bounds for its clients. */
 object HttpSystem:
 
-  /** @param threads all that it has
-    * @param more of `pekko.http.server`
+  /** @param threads all that it uses
+    * @param more settings of `pekko.http.server`
     */
   def apply(name: String, threads: ExecutionContext, more: String): ActorSystem =
     val bounds = ConfigFactory.parseString(more).atPath("pekko.http.server")

@@ -9,8 +9,8 @@ import scala.util.Using
 import skein.record.{CameraImage, ImageEncoding}
 import skein.units.Instant
 
-/** What viewers see of images and clouds while a flight flies: JPEGs of up to [[ImagePreviews.MostWide]]
-  * pixels to a side, and a share of the points. Exact ones are in the recording.
+/** Previews of images and clouds for viewers during a flight: JPEGs of up to [[ImagePreviews.MostWide]]
+  * pixels a side, and a part of the points. Exact ones are in the recording.
   */
 private[view] object ImagePreviews extends ImageEncoding:
   val MostWide    = 480
@@ -20,7 +20,7 @@ private[view] object ImagePreviews extends ImageEncoding:
   def image(image: CameraImage, at: Instant, frame: String): Array[Byte] =
     ImageEncoding.compressed(jpeg(small(image)), "jpeg", at, frame)
 
-  /** Each pixel the mean of a square; a depth as grey, black from [[FarM]] on. */
+  /** A smaller image: each pixel is the mean of a square; depth as grey, black from [[FarM]] on. */
   private def small(image: CameraImage): BufferedImage =
     val (width, height) = (image.width.toInt, image.height.toInt)
     val by              = ((width.max(height) + MostWide - 1) / MostWide).max(1)

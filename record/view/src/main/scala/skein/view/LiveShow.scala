@@ -13,19 +13,19 @@ import skein.record.{
 import skein.scene.Scene
 import skein.units.{Instant, Span}
 
-/** Something besides the records that is shown of a flight, asked for now and then.
+/** Additional data of a flight for viewers, computed from time to time.
   *
-  * @param json as the topic's schema says; none where nothing is new
-  * @param see shown every record first, on the same thread
+  * @param json by the topic's schema; None without news
+  * @param see called with every record before, on the same thread
   */
 final case class Gauge(topic: Topic, every: Span, json: () => Option[String], see: Record => Unit = _ => ())
 
-/** A flight while it flies. Its records come by `feed`; of a camera's images and of a lidar's clouds up to
-  * ten a second are shown. Its time begins with the first reading and stands still when it has ended, and
-  * nothing is shown after that.
+/** A flight while it runs. `feed` supplies its records; of a camera's images and of a lidar's clouds up to
+  * ten a second are shown. Its time begins with the first reading and stops when it has ended, and nothing is
+  * shown after that.
   *
-  * @param scene what stands in its world
-  * @param sensors whose images and clouds come
+  * @param scene of its world
+  * @param sensors whose images and clouds are shown
   */
 final class LiveShow(
     heading: RecordingHeader,
@@ -66,7 +66,7 @@ final class LiveShow(
         if now.since(last) < LiveShow.LookEvery then last
         else feed.poll(sensor).fold(last)(record => { show(record); now })
       asked = gauges.zip(asked).map: (gauge, last) =>
-        // At its end, too, so that it does not stand at what was before.
+        // At its end, too, so that it does not stop at an earlier state.
         if now.since(last) < gauge.every && ended.isEmpty then last
         else
           gauge.json().foreach(json => publish(FlightMessage.json(gauge.topic.name, "", now, now)(json)))
@@ -102,7 +102,7 @@ object LiveShow:
       ImagePreviews
     ))
 
-  /** When its time began: as text, since numbers of JSON are not exact to the nanosecond. */
+  /** The topic of its start time: as text, since JSON numbers are not exact to the nanosecond. */
   private val clock = Topic(
     "/skein/clock",
     "skein.clock",
@@ -111,5 +111,5 @@ object LiveShow:
 
   private val LookEvery = Span.ofMillis(100)
 
-  /** Records of one turn: so that no turn lasts for long. */
+  /** Most records of one turn, so that no turn lasts long. */
   private val MostAtOnce = 8192

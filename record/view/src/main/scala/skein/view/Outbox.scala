@@ -2,11 +2,11 @@ package skein.view
 
 import scala.collection.immutable.{TreeMap, VectorMap}
 
-/** What waits for one viewer. The newest wins: where more waits than may, the oldest is lost, first of the
-  * subscription that has too much, then of all. Notices of the server are few, one a key, and go before
-  * everything.
+/** Messages that wait for one viewer. The newest wins: beyond the limits, the oldest is dropped, first of the
+  * subscription with too many, then of all. Notices of the server are few, one for each key, and are sent
+  * before everything else.
   *
-  * @param lost messages, since the viewer came
+  * @param lost messages since the viewer connected
   */
 final case class Outbox[A] private (
     limits: ViewerLimits,
@@ -22,8 +22,7 @@ final case class Outbox[A] private (
   /** Replaces a waiting notice with this key; the new one is sent last. */
   def noticed(key: String, message: A): Outbox[A] = copy(notices = (notices - key).updated(key, message))
 
-  /** @param most of this subscription that may wait
-    */
+  /** @param most messages of this subscription that may wait */
   def offered(subscription: Long, message: A, size: Int, most: Int = limits.waiting): Outbox[A] =
     val places2 = places.updated(subscription, places.getOrElse(subscription, Vector.empty) :+ next)
     copy(
@@ -33,7 +32,7 @@ final case class Outbox[A] private (
       next = next + 1
     ).bounded(subscription, most)
 
-  /** The next to be sent, and what waits then. */
+  /** The next message to send, and the remaining outbox. */
   def taken: Option[(A, Outbox[A])] =
     notices.headOption match
       case Some((key, message)) => Some((message, copy(notices = notices - key)))
@@ -54,8 +53,7 @@ final case class Outbox[A] private (
 
   private def losing(place: Long) = without(place).copy(lost = lost + 1)
 
-  /** @param place the first of its subscription
-    */
+  /** @param place of the first message of its subscription */
   private def without(place: Long): Outbox[A] =
     val gone = waiting(place)
     val left = places(gone.subscription).tail

@@ -3,7 +3,7 @@ package skein.view
 import org.apache.pekko.http.scaladsl.model.*
 import scala.util.Using
 
-/** The page and its files. It loads nothing from elsewhere, which [[HttpPort]]'s headers enforce. */
+/** The page and its files. It loads nothing from other sites, which [[HttpPort]]'s headers enforce. */
 private[view] object Page:
   private val css  = MediaTypes.`text/css`.withCharset(HttpCharsets.`UTF-8`)
   private val code = MediaTypes.`application/javascript`.withCharset(HttpCharsets.`UTF-8`)

@@ -2,12 +2,12 @@ package skein.view
 
 import skein.units.{Instant, Span}
 
-/** Where a recording is played: a pure clock that can stand, jump and run at another speed.
+/** The position in a recording that is played: a pure clock that can stop, seek and run at another speed.
   *
   * @param start of the recording
   * @param end of the recording, where it stops
   * @param at the recorded time at `since`
-  * @param since on the clock of whoever asks
+  * @param since on the caller's clock
   * @param speed recorded seconds per second, more than 0
   */
 final case class Playback private (
@@ -26,8 +26,8 @@ final case class Playback private (
 
   def hasEnded(now: Instant): Boolean = position(now) >= end
 
-  /** Plays on, or stands, from where it is now or from another time, which is held between start and end. To
-    * play from the end is to play from the start.
+  /** Plays or stops, from the current position or from another one, which is clamped to start and end.
+    * Playing from the end starts again from the beginning.
     */
   def controlled(playing: Boolean, speed: Double, seek: Option[Instant], now: Instant): Playback =
     val wanted = seek.getOrElse(position(now))

@@ -7,39 +7,39 @@ import scala.util.control.NonFatal
 import skein.record.Topic
 import skein.units.Instant
 
-/** A topic as a connection names it. */
+/** A topic with its channel number on a connection. */
 final case class FoxgloveChannel(id: Long, topic: Topic)
 
-/** What a viewer says. Numbers of subscriptions are its own, those of channels the server's. */
+/** A viewer's message. Viewers choose the numbers of subscriptions, the server those of channels. */
 enum ClientMessage:
   case Subscribe(subscriptions: Vector[(subscription: Long, channel: Long)])
   case Unsubscribe(subscriptions: Vector[Long])
 
-  /** To play or to stop, how fast, and from where.
+  /** Controls playback: whether to play, how fast, and from where.
     *
     * @param speed recorded seconds per second
-    * @param request names it in the answer
+    * @param request identifies the answer
     */
   case Playback(playing: Boolean, speed: Double, seek: Option[Instant], request: String)
 
-  /** What the protocol knows and this server does not offer. */
+  /** A message of the protocol that this server does not support. */
   case NotOffered(op: String)
 
 /** Foxglove's WebSocket protocol: pure, bytes and texts in and out.
   *
-  * After `foxglove/ws-protocol`, docs/spec.md, and for playback the WebSocket server of the Foxglove SDK.
+  * Source: `foxglove/ws-protocol`, docs/spec.md, and for playback the WebSocket server of the Foxglove SDK.
   * Binary messages are little-endian.
   */
 object Protocol:
 
-  /** In the order of preference. */
+  /** Supported subprotocols, in order of preference. */
   val Names: Vector[String] = Vector("foxglove.sdk.v1", "foxglove.websocket.v1")
 
-  /** How a recording is played.
+  /** The state of playback.
     *
     * @param speed recorded seconds per second
     * @param seeked whether the time has jumped
-    * @param request that this answers; empty where it answers none
+    * @param request that this answers; empty without one
     */
   final case class Playing(status: Status, now: Instant, speed: Double, seeked: Boolean, request: String)
 
@@ -48,8 +48,8 @@ object Protocol:
 
   /** The first message to every viewer.
     *
-    * @param recorded begin and end of a recording that can be played; absent while a flight flies
-    * @param session another after a restart
+    * @param recorded begin and end of a recording that can be played; None during a flight
+    * @param session differs after a restart
     */
   def serverInfo(name: String, session: String, recorded: Option[(Instant, Instant)]): String =
     val info = ujson.Obj(
@@ -100,9 +100,9 @@ object Protocol:
         .putBytes(request)
     )
 
-  /** A text message of a viewer.
+  /** Parses a viewer's text message.
     *
-    * @return or what was wrong with it
+    * @return Left states what was wrong with it
     */
   def read(text: String): Either[String, ClientMessage] =
     try

@@ -4,10 +4,10 @@ import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSens
 import skein.scene.Scene
 import skein.units.Instant
 
-/** A recording, played.
+/** A recording that is played.
   *
-  * @param rows in their order, with their numbers
-  * @param scene what stood in its world
+  * @param rows in order, with their numbers
+  * @param scene of its world
   */
 final class RecordedShow(
     id: String,
@@ -17,7 +17,7 @@ final class RecordedShow(
     scene: Scene = Scene.Empty
 ) extends Show(id, RecordedShow.topics(vehicles, rows), limits):
 
-  /** When each row was known: of one that says no time, that of the row before. */
+  /** The time at which each row was known: of a row without a time, that of the row before. */
   private val times: Array[Instant] =
     val first = rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
       Instant.ofNanos(0)
@@ -50,7 +50,7 @@ final class RecordedShow(
     playback = playback.controlled(wanted.playing, wanted.speed, wanted.seek, now)
     val position = playback.position(now)
     val seeked   = position != before
-    // Whoever shows it has to know of the jump before the rows that follow.
+    // Viewers must learn of the seek before the rows that follow.
     if position < before then forget()
     tell(now, seeked, wanted.request)
     if position < before then begin()
@@ -67,7 +67,7 @@ final class RecordedShow(
 
   private def begun = FlightTopics(vehicles, start, scene = scene, form = ImagePreviews)
 
-  /** Of images and clouds that are passed over, the newest alone. */
+  /** Shows all rows up to a time; of skipped images and clouds only the newest. */
   private def showUntil(time: Instant): Unit =
     val from = next
     while next < rows.size && times(next) <= time do next += 1
@@ -85,7 +85,7 @@ final class RecordedShow(
 
   private def tell(now: Instant, seeked: Boolean, request: String): Unit =
     told = Some(statusAt(now))
-    // What comes after a jump must not take its place: the jump is told once.
+    // Messages after a seek must not replace its notice: the seek is reported once.
     val key = if seeked then "jump" else "playback"
     notice(key, ServerBytes(Protocol.playbackState(state(now, seeked, request))))
 
@@ -98,7 +98,7 @@ object RecordedShow:
       ))
 
   /** @param rows of one recording, its heading first
-    * @param scene what stood in its world, by the recording's parameters
+    * @param scene of its world, by the recording's parameters
     */
   def of(
       rows: Vector[(Long, Record)],

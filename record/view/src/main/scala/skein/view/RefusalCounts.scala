@@ -3,21 +3,21 @@ package skein.view
 import java.util.concurrent.atomic.AtomicLong
 import skein.link.Seats
 
-/** What a server has turned away. */
+/** Counts of a server's refused connections and requests. */
 final class RefusalCounts private[view] (seats: Seats):
   private val requests, messages = AtomicLong()
 
   private[view] def refusedRequest(): Unit = requests.incrementAndGet(): Unit
   private[view] def refusedMessage(): Unit = messages.incrementAndGet(): Unit
 
-  /** Connections beyond the most that may be open. */
+  /** Connections refused since too many were open. */
   def refusedConnections: Long = seats.refusedConnections
 
-  /** Connections that said nothing, and were closed to make room for others. */
+  /** Silent connections that were closed to make room for others. */
   def displacedConnections: Long = seats.displacedConnections
 
-  /** Requests of foreign pages, for what is not there, or for what may not be done. */
+  /** Requests of foreign pages, for missing resources, or for forbidden actions. */
   def refusedRequests: Long = requests.get
 
-  /** Messages of viewers that were none of the protocol. */
+  /** Viewers' messages that do not belong to the protocol. */
   def refusedMessages: Long = messages.get

@@ -7,11 +7,11 @@ import scala.util.control.NonFatal
 import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
-/** One flight as viewers see it: channels, the newest of each, and who is looking. Of each topic and vehicle
-  * the newest message is kept, so that whoever comes later, or looks at a time that stands still, sees where
-  * everything is.
+/** One flight for viewers: its channels, the newest messages, and the viewers. The newest message of each
+  * topic and vehicle is kept, so that a viewer that connects later, or sees a stopped time, has the whole
+  * picture.
   *
-  * All its methods may be called from any thread; none waits but for another of them.
+  * All methods may be called from any thread; they only wait for each other.
   *
   * @param id of the flight
   */
@@ -32,12 +32,12 @@ abstract class Show private[view] (
     lazy val payload: ByteString = ByteString.fromArrayUnsafe(message.bytes)
     def at: Instant              = message.known
 
-  /** Begin and end of a recording; none while it flies. */
+  /** Begin and end of a recording; None during a flight. */
   def recorded: Option[(Instant, Instant)]
 
   def controls: Map[FlightControl, () => Unit] = Map.empty
 
-  /** Sends news to the viewers. To be called about forty times a second. */
+  /** Sends new messages to the viewers. To be called about forty times a second. */
   def turn(now: Instant): Unit
 
   /** Calls [[turn]]. If it fails, viewers get the reason, and the next turn follows. */
@@ -82,5 +82,5 @@ abstract class Show private[view] (
   def watching: Int = synchronized(viewers.size)
 
 object Show:
-  /** By this, viewers that connect again recognise the process. */
+  /** Identifies the process to viewers that reconnect. */
   private[view] val session: String = java.util.UUID.randomUUID().toString

@@ -2,11 +2,11 @@ package skein.view
 
 import java.util.concurrent.atomic.AtomicReference
 
-/** The flights on show, in the order in which they were added. */
+/** The shown flights, in the order in which they were added. */
 final class Shows:
   private val shown = AtomicReference(Vector.empty[Show])
 
-  /** Replaces an earlier one of this name. */
+  /** Adds a flight; replaces an earlier one of this name. */
   def add(show: Show): Unit =
     val _ = shown.updateAndGet(before => before.filterNot(_.id == show.id) :+ show)
 

@@ -1,6 +1,6 @@
 package skein.view
 
-/** What one viewer wants to see: its subscriptions by channel. */
+/** One viewer's subscriptions by channel. */
 final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long], chosen: Map[Long, Long]):
 
   def of(channel: Long): Iterable[Long] = byChannel.getOrElse(channel, Nil)
@@ -8,8 +8,7 @@ final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long
   private lazy val byChannel: Map[Long, Iterable[Long]] =
     chosen.groupMap((_, channel) => channel)((subscription, _) => subscription)
 
-  /** @return or why not
-    */
+  /** @return Left states why it is refused */
   def added(subscription: Long, channel: Long): Either[String, Subscriptions] =
     if !channels(channel) then Left(s"there is no channel $channel")
     else if chosen.contains(subscription) then Left(s"there is a subscription $subscription already")

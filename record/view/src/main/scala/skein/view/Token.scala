@@ -4,9 +4,9 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.security.{MessageDigest, SecureRandom}
 import java.util.HexFormat
 
-/** A word that only who reads the terminal knows: with it a flight can be ended from the page. */
+/** A secret printed in the terminal: with it the page can control a flight. */
 final class Token private (val word: String):
-  /** Takes as long for a wrong word as for the right one. */
+  /** Compares in constant time: a wrong word takes as long as the right one. */
   def is(said: String): Boolean = MessageDigest.isEqual(word.getBytes(UTF_8), said.getBytes(UTF_8))
 
 object Token:

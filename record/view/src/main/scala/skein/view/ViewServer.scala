@@ -33,7 +33,7 @@ final class ViewServer private (
 
   def url: String = s"http://127.0.0.1:$port"
 
-  /** Shows viewers the last there is, gives them a moment to take it, and closes every connection. */
+  /** Shows viewers the last messages, gives them a moment to receive these, and closes every connection. */
   def close(): Future[Done] =
     import system.dispatcher
     turning()
@@ -48,13 +48,13 @@ final class ViewServer private (
 
 object ViewServer:
 
-  /** Foxglove's usual port. */
+  /** The default port of Foxglove's protocol. */
   val DefaultPort = 8765
 
   /** @param port 0 for any that is free
-    * @param threads what it runs on
+    * @param threads that it runs on
     * @param origins other sites whose pages may connect
-    * @return fails where it cannot listen
+    * @return fails if it cannot listen
     */
   def start(
       shows: Shows,
@@ -159,7 +159,7 @@ object ViewServer:
         val stage = ViewerStage(show, clock, counts, () => guest.spoke())
         upgrade.handleMessages(guest.during(whole(show.limits, counts).via(stage)), Some(name))
 
-  /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
+  /** Joins the parts of messages; a message that is too long, or too slow, ends the connection. */
   private def whole(limits: ViewerLimits, counts: RefusalCounts)(using
       ActorSystem
   ): Flow[Message, Message, ?] =

@@ -3,14 +3,14 @@ package skein.view
 import org.apache.pekko.util.ByteString
 import skein.units.Instant
 
-/** What is sent to a viewer: WebSocket messages. */
+/** A WebSocket message to a viewer. */
 private[view] sealed trait ServerMessage
 private[view] final case class ServerText(text: String)       extends ServerMessage
 private[view] final case class ServerBytes(bytes: ByteString) extends ServerMessage
 
-/** One who looks: what it subscribed to, and what waits for it. From any thread.
+/** A viewer: its subscriptions, and its waiting messages. From any thread.
   *
-  * @param wake called where something waits again, after [[take]] has found nothing
+  * @param wake called when something waits again, after [[take]] has found nothing
   */
 private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake: () => Unit):
   @volatile private var subscriptions = Subscriptions.none(limits, channels)
@@ -28,8 +28,7 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
       subscriptions = left
       outbox = outbox.unsubscribed(subscription)
 
-  /** @param newestOnly whether what waits of this subscription is of no use any more
-    */
+  /** @param newestOnly whether waiting messages of this subscription become useless */
   def offer(subscription: Long, logTime: Instant, payload: ByteString, newestOnly: Boolean = false): Unit =
     val message = ServerBytes(Protocol.messageData(subscription, logTime, payload))
     val most    = if newestOnly then 1 else limits.waiting
@@ -41,7 +40,7 @@ private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake
 
   def lost: Long = synchronized(outbox.lost)
 
-  /** The next message. What was lost is said before the next one. */
+  /** The next message. Lost messages are reported before it. */
   def take(): Option[ServerMessage] = synchronized:
     if outbox.lost > toldLost then
       toldLost = outbox.lost

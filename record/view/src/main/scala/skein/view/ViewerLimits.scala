@@ -1,11 +1,11 @@
 package skein.view
 
-/** What viewers may take.
+/** Limits of viewers.
   *
-  * @param connections open at once; one more is closed at once
+  * @param connections open at a time; further ones are closed immediately
   * @param messageBytes of one message of a viewer
   * @param subscriptions of one viewer
-  * @param refusals messages of one viewer that are none, before it is turned out
+  * @param refusals invalid messages of one viewer, before it is disconnected
   * @param waiting messages that wait for one viewer, of each of its subscriptions
   * @param waitingBytes of all that waits for one viewer
   */
@@ -19,7 +19,7 @@ final case class ViewerLimits(
 )
 
 object ViewerLimits:
-  /** A jump within a recording shows at once all that came before: 40 s of twenty vehicles. Viewers share the
-    * bytes.
+  /** Limits for recordings: a seek shows everything before it in one go: 40 s of twenty vehicles. Viewers
+    * share the bytes.
     */
   val OfRecording: ViewerLimits = ViewerLimits(waiting = 65_536, waitingBytes = 64L * 1024 * 1024)

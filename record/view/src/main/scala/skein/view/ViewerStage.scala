@@ -5,13 +5,13 @@ import org.apache.pekko.stream.*
 import org.apache.pekko.stream.stage.*
 import skein.units.Clock
 
-/** One viewer's connection: what it says comes in whole, what it is shown goes out.
+/** One viewer's connection: its complete messages come in, messages for it go out.
   *
-  * '''Emits when''' downstream pulls and something waits for the viewer. '''Backpressures when''' never; what
-  * waits is bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever way, or the
-  * viewer has said too much that is none of the protocol. '''Cancels when''' downstream cancels.
+  * '''Emits when''' downstream pulls and something waits for the viewer. '''Backpressures when''' never;
+  * waiting messages are bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever
+  * way, or the viewer has sent too many invalid messages. '''Cancels when''' downstream cancels.
   *
-  * @param spoke called for each message that is obeyed
+  * @param spoke called for each valid message
   */
 private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalCounts, spoke: () => Unit)
     extends GraphStage[FlowShape[Message, Message]]:
@@ -41,7 +41,7 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: RefusalC
         message.flatMap(obey).fold(refuse, _ => spoke())
         if refused > show.limits.refusals then completeStage() else pull(in)
 
-      /** What came was no frame: that is the viewer's mistake, and no failure of ours. */
+      /** Invalid frames are the viewer's mistake, and no failure of the server. */
       override def onUpstreamFailure(error: Throwable): Unit =
         counts.refusedMessage()
         completeStage()

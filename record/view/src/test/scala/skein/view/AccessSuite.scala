@@ -6,7 +6,7 @@ class AccessSuite extends munit.FunSuite:
 
   private val foreign = AccessSuite.foreign(8765)
 
-  test("an origin that is not exactly ours is refused, also one that nobody can parse"):
+  test("an origin that is not exactly ours is refused, also an unparsable one"):
     for from <- foreign do assert(access.refusal(Seq(here, "origin" -> from)).isDefined, from)
 
   test("two origins are refused, even two of ours"):
@@ -14,12 +14,18 @@ class AccessSuite extends munit.FunSuite:
     assertEquals(access.refusal(Seq(here, own)), None)
     assert(access.refusal(Seq(here, own, own)).isDefined)
 
-  test("programs, which say no origin, and the server's own pages may look, by each name of this machine"):
+  test(
+    "programs, which send no origin, and the server's own pages are accepted, by each name of this " +
+      "machine"
+  ):
     for name <- Seq("127.0.0.1:8765", "localhost:8765", "[::1]:8765") do
       assertEquals(access.refusal(Seq("host" -> name)), None)
       assertEquals(access.refusal(Seq(here, "origin" -> s"http://$name")), None)
 
-  test("a name that another site has led to this machine is refused, and so is none, and two"):
+  test(
+    "a name that another site has directed to this machine is refused, and so are a missing and a " +
+      "second one"
+  ):
     for name <- Seq(
         "elsewhere.example:8765",
         "127.0.0.1.elsewhere.example:8765",
@@ -34,7 +40,7 @@ class AccessSuite extends munit.FunSuite:
     assert(access.refusal(Nil).isDefined)
     assert(access.refusal(Seq(here, here)).isDefined)
 
-  test("a site that the user names may look, and no site that resembles it"):
+  test("a site that the user names is accepted, and no similar one"):
     val open = access.copy(origins = Set("https://app.foxglove.dev"))
     assertEquals(open.refusal(Seq(here, "origin" -> "https://app.foxglove.dev")), None)
     for from <- foreign ++ Seq("https://app.foxglove.dev.elsewhere.example", "https://app.foxglove.dev:443")
@@ -47,7 +53,7 @@ class AccessSuite extends munit.FunSuite:
     assert(web.refusal(Seq("host" -> "elsewhere.example")).isDefined)
 
 object AccessSuite:
-  /** What a browser, or who speaks like one, may say of another site, or of none. */
+  /** Headers by which a browser, or a program that imitates one, may name another site, or none. */
   def foreign(port: Int): Seq[String] = Seq(
     "http://elsewhere.example",
     "http://a{b.elsewhere.example",

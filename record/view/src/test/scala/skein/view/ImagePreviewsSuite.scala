@@ -31,7 +31,7 @@ class ImagePreviewsSuite extends munit.FunSuite:
     near(small.getRGB(20, 100), 0, 0, 255)
     near(small.getRGB(400, 100), 255, 0, 0)
 
-  test("depths are grey: white where it is near, black where it is far or endless"):
+  test("depths are grey: white for near, black for far or infinite ones"):
     val depths = ByteBuffer.allocate(64 * 32 * 4).order(ByteOrder.LITTLE_ENDIAN)
     for at <- 0 until 64 * 32 do
       depths.putFloat(if at % 64 < 16 then 0 else if at % 64 < 32 then 25 else Float.PositiveInfinity): Unit
@@ -41,7 +41,7 @@ class ImagePreviewsSuite extends munit.FunSuite:
     near(small.getRGB(50, 16), 0, 0, 0)
 
 object ImagePreviewsSuite:
-  /** Of a `foxglove.CompressedImage`, whatever else is in it: from the JPEG's first bytes on. */
+  /** The JPEG in a `foxglove.CompressedImage`, from its first bytes on. */
   def jpeg(message: Array[Byte]): BufferedImage =
     val from =
       message.indices.find(at => (message(at) & 0xff) == 0xff && (message(at + 1) & 0xff) == 0xd8).get

@@ -9,14 +9,13 @@ import scala.util.Random
 import skein.record.Samples
 import skein.units.Clock
 
-/** Writes frames to a server that are none, are cut off, claim what they are not, or say nothing of the
-  * protocol: on one connection after the other, a new one where the server ends the last.
+/** Writes invalid, truncated, mislabelled or meaningless frames to a server: on one connection after the
+  * other, a new one when the server closes the last.
   */
 private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
   private val random = Random(seed)
 
-  /** @return connections that it took
-    */
+  /** @return the number of connections that were used */
   def write(frames: Int): Int =
     var (written, connections) = (0, 0)
     while written < frames do
@@ -68,14 +67,11 @@ private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
     Array(first.toByte, (0x80 | payload.length).toByte) ++ mask ++
       payload.zipWithIndex.map((byte, at) => (byte ^ mask(at % 4)).toByte)
 
-/** Writes requests to a server that are none, or ask for what they may not: on one connection after the
-  * other.
-  */
+/** Writes invalid or forbidden requests to a server: on one connection after the other. */
 private[view] final class MalformedRequests(port: Int, seed: Long):
   private val random = Random(seed)
 
-  /** @return connections that it took
-    */
+  /** @return the number of connections that were used */
   def write(requests: Int): Int =
     var (written, connections) = (0, 0)
     while written < requests do
@@ -115,8 +111,8 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
             s"HTTP/1.1\r\n${host}X-Skein-Token: ${letters(16)}\r\nContent-Length: 0\r\n\r\n"
         )
 
-/** How a server bears as many malformed frames, then as many malformed requests, and then a thousand
-  * connections that stay open, while somebody looks: a million, for the figure.
+/** Tests a server with malformed frames, then with as many malformed requests, and then with a thousand
+  * connections that stay open, during a viewer's session: a million frames, for the documented figure.
   */
 @main def bearMalformedFrames(frames: Int): Unit =
   val shows = Shows()
@@ -140,13 +136,13 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
   told(f"$frames%,d requests on $more%,d connections", second)
   val third   = System.nanoTime()
   val sockets = Vector.fill(1000)(Socket("127.0.0.1", server.port))
-  // All but the most that may be open see their end.
+  // All but the greatest allowed number see their end.
   val ended = sockets.drop(ViewerLimits().connections).count(socket =>
     scala.util.Try(socket.getInputStream.read()).getOrElse(-1) == -1
   )
   told(s"1,000 connections, of which $ended were closed at once,", third)
   sockets.foreach(_.close())
-  // Whoever speaks the protocol is served all the same.
+  // A valid viewer is served nevertheless.
   val answer = java.net.http.HttpClient.newHttpClient().send(
     java.net.http.HttpRequest.newBuilder(java.net.URI.create(s"${server.url}/flights")).build(),
     java.net.http.HttpResponse.BodyHandlers.ofString

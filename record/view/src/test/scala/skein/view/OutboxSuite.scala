@@ -8,29 +8,29 @@ class OutboxSuite extends munit.FunSuite:
   private def drained(outbox: Outbox[String]): Vector[String] =
     Vector.unfold(outbox)(_.taken)
 
-  test("what waits goes in the order in which it came, whatever it belongs to"):
+  test("waiting messages are sent in order of arrival, of any subscription"):
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).offered(1, "c", 1)
     assertEquals(drained(outbox), Vector("a", "b", "c"))
 
-  test("of a subscription that has too much the oldest is lost, and only of that"):
+  test("of a subscription beyond its limit the oldest is dropped, and only of that"):
     val outbox = (1 to 5).foldLeft(Outbox.empty[String](limits).offered(2, "quiet", 1))((all, at) =>
       all.offered(1, at.toString, 1)
     )
     assertEquals(drained(outbox), Vector("quiet", "3", "4", "5"))
     assertEquals(outbox.lost, 2L)
 
-  test("where all is too much the oldest of all is lost, but the newest is kept, however large"):
+  test("beyond the total limit the oldest of all is dropped, but the newest is kept, however large"):
     val outbox = Outbox.empty[String](limits).offered(1, "old", 60).offered(2, "newer", 50)
     assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("newer"), 1L, 50L))
     assertEquals(drained(outbox.offered(3, "huge", 1000)), Vector("huge"))
 
-  test("of what is of use only while it is the newest, the newest alone waits, and others are lost"):
+  test("of messages that are useful only while newest, only the newest waits, and others are dropped"):
     val outbox = (1 to 4).foldLeft(Outbox.empty[String](limits).offered(2, "row", 1))((all, at) =>
       all.offered(1, s"image $at", 10, most = 1)
     )
     assertEquals((drained(outbox), outbox.lost), (Vector("row", "image 4"), 3L))
 
-  test("a notice goes first, and a newer one instead of it, but before none that it came after"):
+  test("a notice is sent first, a newer one replaces it, and notices keep their order"):
     val outbox =
       Outbox.empty[String](limits).offered(1, "row", 1).noticed(
         "time",
@@ -42,7 +42,7 @@ class OutboxSuite extends munit.FunSuite:
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).unsubscribed(1)
     assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("b"), 0L, 1L))
 
-  test("every message is taken once or lost, and what waits stays within its bounds"):
+  test("every message is taken once or dropped, and waiting ones stay within their bounds"):
     val random = Random(3)
     var outbox = Outbox.empty[Int](limits)
     var taken  = 0

@@ -15,7 +15,7 @@ class ProtocolLaws extends munit.FunSuite:
       "01 04 03 02 01 88 77 66 55 44 33 22 11 7b 7d"
     )
 
-  test("the time and the state of a playback are as the protocol lays them out"):
+  test("the time and the state of a playback are encoded as the protocol specifies"):
     assertEquals(hex(Protocol.timeIs(Instant.ofNanos(5))), "02 05 00 00 00 00 00 00 00")
     assertEquals(
       hex(
@@ -36,7 +36,7 @@ class ProtocolLaws extends munit.FunSuite:
     buffer.putLong(seek.getOrElse(0L)).putInt(request.length).put(request.getBytes("US-ASCII"))
     ByteString(buffer.array)
 
-  test("what a viewer says is read: subscriptions, playback, and what is not offered"):
+  test("viewers' messages are read: subscriptions, playback, and unsupported ones"):
     assertEquals(
       Protocol.read(
         """{"op":"subscribe","subscriptions":[{"id":4294967295,"channelId":2},{"id":0,"channelId":1}]}"""
@@ -61,7 +61,7 @@ class ProtocolLaws extends munit.FunSuite:
       Right(ClientMessage.Playback(playing = false, 1, None, ""))
     )
 
-  test("what is none of the protocol is refused, with what was expected"):
+  test("invalid messages are refused, with what was expected"):
     for (message, expected) <- Seq(
         "{"                                                                 -> "JSON",
         "[]"                                                                -> "JSON",
@@ -85,7 +85,7 @@ class ProtocolLaws extends munit.FunSuite:
       )
     do assert(Protocol.read(message).left.exists(_.contains(expected)), hex(message))
 
-  test("whatever bytes a viewer sends, nothing but a message or a refusal comes of them"):
+  test("for any bytes of a viewer, the result is a message or a refusal"):
     val random = Random(11)
     val words  = Vector(
       "{",

@@ -6,7 +6,7 @@ import skein.units.*
 
 class ShowSuite extends munit.FunSuite:
 
-  /** Topic and JSON of every message of data that waits for a viewer. */
+  /** Topic and JSON of every data message that waits for a viewer. */
   private def seen(show: Show, viewer: Viewer): Vector[(topic: String, row: ujson.Value)] =
     val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
     Vector
@@ -37,9 +37,7 @@ class ShowSuite extends munit.FunSuite:
     rows.zipWithIndex.map((row, at) => (at.toLong, row)).toVector
   )
 
-  test(
-    "a flight that flies shows its heading to whoever comes, then every record as it is taken from the feed"
-  ):
+  test("a running flight shows its heading to a new viewer, then every record as it is taken from the feed"):
     val feed   = Feed()
     val show   = LiveShow(heading, feed)
     val viewer = watching(show, "/skein/vehicle", "/skein/reading", "/vehicles/Pursuer/pose")
@@ -51,7 +49,7 @@ class ShowSuite extends munit.FunSuite:
     assertEquals(told.map(_.topic), Vector("/skein/reading", "/vehicles/Pursuer/pose"))
     assertEquals(told.head.row("sequence").num, 7.0)
 
-  test("whoever comes late sees the newest of every vehicle"):
+  test("a late viewer sees the newest of every vehicle"):
     val feed = Feed()
     val show = LiveShow(heading, feed)
     for step <- 1 to 3; name <- Seq("Pursuer", "Evader") do feed.offer(Samples.reading(step, name))
@@ -62,7 +60,7 @@ class ShowSuite extends munit.FunSuite:
       Vector(("Pursuer", 3.0), ("Evader", 3.0))
     )
 
-  /** The topics of all messages of data that wait, and their bytes. */
+  /** The topics of all waiting data messages, and their bytes. */
   private def came(show: Show, viewer: Viewer): Vector[(topic: String, bytes: Array[Byte])] =
     val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
     Vector
@@ -87,13 +85,13 @@ class ShowSuite extends munit.FunSuite:
       show.turn(at(10) + Span.ofMillis(25) * number)
     val told = Vector.unfold(())(_ => Option(came(show, viewer)).filter(_.nonEmpty).map((_, ()))).flatten
     assertEquals(told.count(_.topic == "/skein/image"), 10)
-    // The viewer took nothing meanwhile: of images the newest alone waits.
+    // The viewer took nothing meanwhile: of images only the newest waits.
     val files = told.filter(_.topic == image).map(_.bytes)
     assertEquals(files.size, 1)
     val jpeg = ImagePreviewsSuite.jpeg(files.head)
     assertEquals((jpeg.getWidth, jpeg.getHeight), (40, 30))
 
-  test("a channel of images says that its messages are of Protocol Buffers, and by which descriptors"):
+  test("a channel of images states that its messages are Protocol Buffers, with their descriptors"):
     val show     = LiveShow(heading, Feed(), sensors = Vector(sensor))
     val channels = ujson.read(Protocol.advertise(show.channels))("channels").arr
     val camera   = channels.find(_("topic").str == image).get
@@ -104,7 +102,7 @@ class ShowSuite extends munit.FunSuite:
     assert(java.util.Base64.getDecoder.decode(camera("schema").str).length > 100)
     assertEquals(channels.find(_("topic").str == "/scene").get("encoding").str, "json")
 
-  test("a jump over many images of a recording shows the newest before it, and no other"):
+  test("a seek over many images of a recording shows the newest before it, and no other"):
     val filmed =
       heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.image(step * 3)))
     val show   = RecordedShow.of(filmed.zipWithIndex.map((row, at) => (at.toLong, row)).toVector)
@@ -114,7 +112,7 @@ class ShowSuite extends munit.FunSuite:
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(1000)), ""), at(1)): Unit
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(33.0))
 
-  /** What the server says the time is, s, as often as it says so. */
+  /** The times that the server has sent, s, in order. */
   private def clock(viewer: Viewer): Vector[Double] = Vector
     .unfold(())(_ => viewer.take().map((_, ())))
     .collect {
@@ -122,7 +120,7 @@ class ShowSuite extends munit.FunSuite:
         bytes.drop(1).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getLong * 1e-9
     }
 
-  test("a flight's time begins with its first reading, and whoever comes later is told so"):
+  test("a flight's time begins with its first reading, and later viewers receive that"):
     val feed  = Feed()
     val show  = LiveShow(heading, feed)
     val early = watching(show, "/skein/clock")
@@ -159,7 +157,7 @@ class ShowSuite extends munit.FunSuite:
       Vector("/skein/ending")
     )
 
-  test("a gauge is asked no more often than it wants"):
+  test("a gauge is computed no more often than its interval"):
     var asked = 0
     val gauge =
       Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), () => { asked += 1; Some("{}") })
@@ -167,7 +165,7 @@ class ShowSuite extends munit.FunSuite:
     for turn <- 0 to 40 do show.turn(at(10) + Span.ofMillis(25) * turn)
     assertEquals(asked, 3)
 
-  test("a turn that fails is told, and the next one comes"):
+  test("a failing turn is reported, and the next one follows"):
     var asked   = 0
     def graph() =
       asked += 1
@@ -181,7 +179,7 @@ class ShowSuite extends munit.FunSuite:
     show.attempt(at(11))
     assertEquals(seen(show, viewer).map(_.topic), Vector("/skein/graph"))
 
-  test("a recording stands at its start, plays at its speed, and ends"):
+  test("a recording is stopped at its start, plays at its speed, and ends"):
     val show   = replay
     val viewer = watching(show, "/skein/reading")
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(1.0))
@@ -193,7 +191,7 @@ class ShowSuite extends munit.FunSuite:
     show.turn(at(9))
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(4.0, 5.0))
 
-  test("after a jump back the rows before it are there again, and the later ones come again"):
+  test("after a seek backwards earlier rows are shown again, and later ones can be played again"):
     val show         = replay
     val Some((a, b)) = show.recorded: @unchecked
     val viewer       = watching(show, "/skein/reading")
@@ -202,7 +200,7 @@ class ShowSuite extends munit.FunSuite:
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(150)), ""), at(1)): Unit
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(1.0, 2))
 
-  test("a jump over a whole flight shows all its rows, and a jump back those before it alone"):
+  test("a seek over a whole flight shows all its rows, and a seek backwards only those before it"):
     val show = RecordedShow.of(
       (heading.records ++ (1 to 2000).map(Samples.reading(_))).zipWithIndex.map((row, at) =>
         (at.toLong, row)
@@ -221,7 +219,7 @@ class ShowSuite extends munit.FunSuite:
       Vector(1.0)
     )
 
-  test("the answer to a jump names the request and the time"):
+  test("the answer to a seek names the request and the time"):
     val show         = replay
     val Some((a, _)) = show.recorded: @unchecked
     val viewer       = watching(show)
@@ -230,7 +228,7 @@ class ShowSuite extends munit.FunSuite:
     val expected = Protocol.Playing(Protocol.Status.Paused, a + Span.ofMillis(150), 1, seeked = true, "me")
     assertEquals(viewer.take(), Some(ServerBytes(Protocol.playbackState(expected))))
 
-  test("a viewer that was slow is told of a jump, before what came after it"):
+  test("a slow viewer receives the notice of a seek before later rows"):
     val show         = replay
     val Some((a, _)) = show.recorded: @unchecked
     val to           = a + Span.ofMillis(150)
@@ -255,7 +253,10 @@ class ShowSuite extends munit.FunSuite:
     )
     assertEquals(told.size, 5, "and two readings")
 
-  test("a viewer that takes nothing loses what is oldest, and is told how much when it looks again"):
+  test(
+    "a viewer that takes nothing loses the oldest messages, and receives their number when it reads " +
+      "again"
+  ):
     val feed   = Feed()
     val show   = LiveShow(heading, feed, limits = ViewerLimits(waiting = 10))
     val viewer = watching(show, "/skein/reading")

@@ -6,7 +6,7 @@ import skein.units.Instant
 
 class ViewDecisionsSuite extends munit.FunSuite:
 
-  test("a subscription is to a channel that there is, once, and within the limit"):
+  test("a subscription must name an existing channel, once, and within the limit"):
     val none = Subscriptions.none(ViewerLimits(subscriptions = 2), Set(1, 2))
     val two  = none.added(10, 1).flatMap(_.added(11, 1)).toOption.get
     assertEquals(two.of(1).toSet, Set(10L, 11L))
@@ -17,7 +17,7 @@ class ViewDecisionsSuite extends munit.FunSuite:
     assertEquals(two.removed(12).map(_ => ()), Left("there is no subscription 12"))
     assertEquals(two.removed(10).map(_.of(1).toSet), Right(Set(11L)))
 
-  test("a feed that nobody empties keeps the newest, and counts the others"):
+  test("a feed without a reader keeps the newest, and counts the others"):
     val feed           = Feed(capacity = 3)
     def event(at: Int) = Event(Instant.ofNanos(at), EventKind.Dropped, None, "")
     (1 to 5).foreach(at => feed.offer(event(at)))

@@ -17,7 +17,7 @@ import scala.util.Try
 import skein.record.*
 import skein.units.Clock
 
-/** The server on a real socket, looked at by Pekko's own client. */
+/** The server on a real socket, with Pekko's own client as a viewer. */
 class ViewServerLiveSuite extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("viewers")
 
@@ -25,8 +25,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
-  /** @param clock by which connections are silent
-    */
+  /** @param clock by which silence of connections is measured */
   private final class Served(limits: ViewerLimits, clock: Clock = Clock.system):
     val done: ConcurrentLinkedQueue[FlightControl] = ConcurrentLinkedQueue()
     val feed: Feed                                 = Feed()
@@ -53,7 +52,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
   private def serving(limits: ViewerLimits = ViewerLimits(), clock: Clock = Clock.system) =
     FunFixture[Served](_ => Served(limits, clock), served => await(served.server.close()): Unit)
 
-  /** Stands until it is set. */
+  /** A clock that stays at the time that was set. */
   private final class SetClock extends Clock:
     @volatile var seconds          = 0
     def now(): skein.units.Instant = skein.units.Instant.ofNanos(seconds * 1_000_000_000L)
@@ -90,7 +89,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
       await(Http().singleRequest(HttpRequest(uri = s"http://127.0.0.1:$port$path", headers = headers)))
     (response.status.intValue, await(response.entity.toStrict(10.seconds)).data.utf8String, response)
 
-  serving().test("a client is told of the topics, subscribes, and gets what the flight records"): served =>
+  serving().test("a client receives the topics, subscribes, and receives the flight's records"): served =>
     val client = connect(served.server.port, Protocol.Names*)()
     assertEquals(client.answer.isInstanceOf[ValidUpgrade], true)
     val info = client.until(text)
@@ -110,7 +109,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     client.close()
 
   serving().test(
-    "without a protocol that it speaks, from a foreign page, or by a foreign name nobody is let in"
+    "without a supported protocol, from a foreign page, or by a foreign name connections are refused"
   ): served =>
     val port     = served.server.port
     val accepted = Seq(
@@ -128,7 +127,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     )
     assertEquals(served.server.counts.refusedRequests, 6L)
 
-  serving().test("the page and all it names are there, and nothing of it is elsewhere"): served =>
+  serving().test("the page and all its resources are served, and it refers to no other site"): served =>
     val port              = served.server.port
     val (ok, html, asked) = get(port, "/")
     assertEquals(ok, 200)
@@ -157,7 +156,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   serving(ViewerLimits(refusals =
     3
-  )).test("a viewer that speaks nonsense is told so, and then turned out; others look on"): served =>
+  )).test("a viewer that sends invalid messages is warned, and then disconnected; others continue"): served =>
     val other = connect(served.server.port, Protocol.Names*)()
     val bad   = connect(served.server.port, Protocol.Names*)()
     for _ <- 0 to 3 do bad.send("nonsense")
@@ -181,9 +180,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private val standing = SetClock()
 
-  serving(ViewerLimits(connections = 4), standing).test(
-    "connections that say nothing, half a request or one word make room for those who speak"
-  ): served =>
+  serving(ViewerLimits(connections = 4), standing).test("silent connections, with half a request or one message, make room for active ones"): served =>
     import java.nio.charset.StandardCharsets.US_ASCII
     val port                      = served.server.port
     def ended(socket: Socket)     = Try(socket.getInputStream.readAllBytes()).isSuccess || true
@@ -198,7 +195,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
       s"Sec-WebSocket-Protocol: ${Protocol.Names.head}\r\n\r\n"
     val silent  = say("")
     val dripped = say(request)
-    // An answer has come, so it was heard.
+    // An answer has arrived, so the message was received.
     val spoken = say(upgrade)
     assertEquals(spoken.getInputStream.read(), 'H'.toInt)
     val viewer = connect(port, Protocol.Names*)()
@@ -235,7 +232,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     assertEquals(served.show.watching, 0)
     assertEquals(status(s"http://127.0.0.1:$port"), "101")
 
-  serving().test("a flight is paused, continued and ended by whoever has the token, and by nobody else"):
+  serving().test("a flight is paused, continued and ended only with the token"):
     served =>
       val port                                          = served.server.port
       def post(path: String, headers: HttpHeader*): Int =
@@ -257,7 +254,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
       import FlightControl.*
       assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
 
-  serving().test("of thirty thousand malformed frames none disturbs another viewer"): served =>
+  serving().test("thirty thousand malformed frames do not disturb another viewer"): served =>
     val seed  = 20261122L
     val other = connect(served.server.port, Protocol.Names*)()
     val took  = MalformedFrames(served.server.port, "/flights/stream-vpn", seed).write(30_000)

@@ -28,7 +28,7 @@ private[simulator] object CosysMethods:
     none("simListInstanceSegmentationObjects")(simulation => answer(simulation.objects.names)),
     many[(Boolean, Boolean)]("simListInstanceSegmentationPoses"):
       case (simulation, (ned, onlyVisible)) =>
-        if onlyVisible then CallOutcome.Threw("poses are told of all objects, not of those visible alone")
+        if onlyVisible then CallOutcome.Threw("poses are available of all objects, not only of visible ones")
         else inNed(ned)(answer(simulation.objects.names.map(simulation.objects.poseOf)))
     ,
     one[String]("simListSceneObjectsTags"): (_, regex) =>
@@ -84,7 +84,7 @@ private[simulator] object CosysMethods:
   )
 
   private def inNed(ned: Boolean)(run: => CallOutcome): CallOutcome =
-    if ned then run else CallOutcome.Threw("poses are told in NED alone: there are no Unreal coordinates")
+    if ned then run else CallOutcome.Threw("poses are available in NED alone: there are no Unreal coordinates")
 
   private def sensor(method: String, kind: String): ServerMethod =
     many[(String, String)](method):

@@ -15,5 +15,5 @@ private[simulator] trait Lockstep:
   /** The time to which physics must advance now, whatever the clock says; None: follow the clock. */
   def goal: Option[Instant]
 
-  /** Informs it of the current time, by the clock of the simulation's caller. */
+  /** Receives the current time, by the clock of the simulation's caller. */
   def told(at: Instant): Unit

@@ -82,7 +82,7 @@ private[simulator] object Shots:
     val asked = requests.map(wanted(simulation, vehicle, _))
     val size  = asked.iterator.collect { case Right(shot) => bytesOf(shot) }.sum
     if requests.size > MostImages then
-      Left(s"at most $MostImages images are rendered at once, not ${requests.size}")
+      Left(s"at most $MostImages images are rendered in one call, not ${requests.size}")
     else if size > MostBytes then Left(s"images of $size bytes in one answer; at most $MostBytes are sent")
     else
       asked.collectFirst { case Left(refusal) => refusal }.toLeft:

@@ -6,11 +6,11 @@ import java.nio.file.Path
 import scala.util.Using
 import skein.mcap.*
 
-/** MCAP files on a disk. Errors of the disk itself are thrown as `IOException`. */
+/** Reads and writes MCAP files on a disk. Errors of the disk itself are thrown as `IOException`. */
 object McapFile:
 
-  /** A new file, or one in the place of an older one, with what `body` writes; finished if it returns. If it
-    * throws, the file can be read up to the last chunk.
+  /** Creates or replaces a file with the records that `body` writes; finished if it returns. If it throws,
+    * the file can be read up to the last chunk.
     */
   def write[A](path: Path, options: WriterOptions = WriterOptions())(body: McapWriter => A): A =
     Using.resource(FileChannel.open(path, CREATE, TRUNCATE_EXISTING, WRITE)): channel =>
@@ -19,14 +19,14 @@ object McapFile:
       writer.finish()
       result
 
-  /** Reads the messages that `wanted` accepts, in the file's order. After an error they end. They must not be
+  /** Reads the messages that `wanted` accepts, in the file's order. They end after an error. They must not be
     * used after `body` returns.
     */
   def read[A](path: Path, wanted: TopicMessage => Boolean = _ => true, limits: McapLimits = McapLimits())(
       body: Iterator[Either[McapError, TopicMessage]] => A
   ): A = stream(path, limits)(records => body(records.messages.filter(_.forall(wanted))))
 
-  /** Reads all records in the file's order and holds every CRC; the stream must not be used after `body`
+  /** Reads all records in the file's order and verifies every CRC; the stream must not be used after `body`
     * returns.
     */
   def stream[A](path: Path, limits: McapLimits = McapLimits())(body: RecordStream => A): A =

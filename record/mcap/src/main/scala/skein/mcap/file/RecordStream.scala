@@ -4,8 +4,8 @@ import java.nio.ByteBuffer
 import java.nio.channels.ReadableByteChannel
 import skein.mcap.{McapError, McapLimits, Parsed, Record, StreamParser, TopicMessage}
 
-/** The records of a file that can be read once, from its start on, such as a pipe or a socket. After an error
-  * it ends. Reading blocks while the channel does, and throws its `IOException`.
+/** The records of a source that can be read once, from its start, such as a pipe or a socket. It ends after
+  * an error. Reading blocks while the channel does, and throws its `IOException`.
   */
 final class RecordStream(channel: ReadableByteChannel, limits: McapLimits = McapLimits())
     extends Iterator[Either[McapError, Parsed.Found]]:

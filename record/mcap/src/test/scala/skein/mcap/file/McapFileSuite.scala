@@ -15,7 +15,7 @@ class McapFileSuite extends munit.FunSuite, TemporaryFolders:
       }
     )
 
-  folder.test("what docs/mcap.md shows writes and reads a file"): folder =>
+  folder.test("the code in docs/mcap.md writes and reads a file"): folder =>
     val path = folder.resolve("flight.mcap")
     // begin
     McapFile.write(path): mcap =>
@@ -57,7 +57,7 @@ class McapFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(found.size, 2)
     assert(found.head.isRight && found.last == Left(classOf[McapError.CutOff]), s"$found")
 
-  folder.test("a stream reads from what can be read once"): folder =>
+  folder.test("a stream reads from a source that can be read once"): folder =>
     val path = folder.resolve("once.mcap")
     McapFile.write(path)(mcap => mcap.message(mcap.channel("/a", ""), 7, 1, 1, Bytes.utf8("x")))
     val stream   = RecordStream(Channels.newChannel(Files.newInputStream(path)))
@@ -66,7 +66,7 @@ class McapFileSuite extends munit.FunSuite, TemporaryFolders:
     }
     assertEquals(messages.toVector, Vector((Some("/a"), 7)))
 
-  folder.test("a stream ends with why it cannot go on"): folder =>
+  folder.test("a stream ends with the reason why it cannot continue"): folder =>
     val path = folder.resolve("cut.mcap")
     McapFile.write(path)(mcap => mcap.message(mcap.channel("/a", ""), 7, 1, 1, Bytes.utf8("x")))
     Files.write(path, Files.readAllBytes(path).dropRight(3))
@@ -74,7 +74,7 @@ class McapFileSuite extends munit.FunSuite, TemporaryFolders:
       case Left(McapError.CutOff(_, _, 5)) => ()
       case other                           => fail(s"$other")
 
-  folder.test("a newer file stands in the place of a longer older one"): folder =>
+  folder.test("a newer file replaces a longer older one completely"): folder =>
     val path = folder.resolve("twice.mcap")
     Files.write(path, new Array[Byte](5000))
     McapFile.write(path)(_ => ())
