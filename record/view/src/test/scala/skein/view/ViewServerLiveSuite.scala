@@ -180,7 +180,10 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private val standing = SetClock()
 
-  serving(ViewerLimits(connections = 4), standing).test("silent connections, with half a request or one message, make room for active ones"): served =>
+  serving(
+    ViewerLimits(connections = 4),
+    standing
+  ).test("silent connections, with half a request or one message, make room for active ones"): served =>
     import java.nio.charset.StandardCharsets.US_ASCII
     val port                      = served.server.port
     def ended(socket: Socket)     = Try(socket.getInputStream.readAllBytes()).isSuccess || true
@@ -232,27 +235,26 @@ class ViewServerLiveSuite extends munit.FunSuite:
     assertEquals(served.show.watching, 0)
     assertEquals(status(s"http://127.0.0.1:$port"), "101")
 
-  serving().test("a flight is paused, continued and ended only with the token"):
-    served =>
-      val port                                          = served.server.port
-      def post(path: String, headers: HttpHeader*): Int =
-        val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
-        val response = await(Http().singleRequest(request))
-        response.discardEntityBytes(): Unit
-        response.status.intValue
-      val right = RawHeader("X-Skein-Token", "right")
-      val path  = "/flights/stream-vpn/abort"
-      assertEquals(post(path), 401)
-      assertEquals(post(path, RawHeader("X-Skein-Token", "wrong")), 401)
-      assertEquals(post(path, right, Origin("https://evil.example")), 403)
-      assertEquals(post("/flights/other/abort", right), 404)
-      assertEquals(post("/hover"), 401)
-      assertEquals(post("/flights/stream-vpn/hover", right), 404)
-      assertEquals(served.done.size, 0)
-      for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
-        assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
-      import FlightControl.*
-      assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
+  serving().test("a flight is paused, continued and ended only with the token"): served =>
+    val port                                          = served.server.port
+    def post(path: String, headers: HttpHeader*): Int =
+      val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
+      val response = await(Http().singleRequest(request))
+      response.discardEntityBytes(): Unit
+      response.status.intValue
+    val right = RawHeader("X-Skein-Token", "right")
+    val path  = "/flights/stream-vpn/abort"
+    assertEquals(post(path), 401)
+    assertEquals(post(path, RawHeader("X-Skein-Token", "wrong")), 401)
+    assertEquals(post(path, right, Origin("https://evil.example")), 403)
+    assertEquals(post("/flights/other/abort", right), 404)
+    assertEquals(post("/hover"), 401)
+    assertEquals(post("/flights/stream-vpn/hover", right), 404)
+    assertEquals(served.done.size, 0)
+    for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
+      assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
+    import FlightControl.*
+    assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
 
   serving().test("thirty thousand malformed frames do not disturb another viewer"): served =>
     val seed  = 20261122L

@@ -84,7 +84,8 @@ private[simulator] object CosysMethods:
   )
 
   private def inNed(ned: Boolean)(run: => CallOutcome): CallOutcome =
-    if ned then run else CallOutcome.Threw("poses are available in NED alone: there are no Unreal coordinates")
+    if ned then run
+    else CallOutcome.Threw("poses are available in NED alone: there are no Unreal coordinates")
 
   private def sensor(method: String, kind: String): ServerMethod =
     many[(String, String)](method):
