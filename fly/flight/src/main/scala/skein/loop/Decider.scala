@@ -39,7 +39,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   /** What the policy answers, and what it is to remember.
     *
-    * @throws skein.units.OwnFailure if it throws, or answers with nothing that a vehicle could be told
+    * @throws skein.units.OwnFailure as [[decide]]
     */
   def answered(memory: Memory, view: TeamView, now: Instant): (Action, Any) =
     // A memory comes from this policy alone: from its start, or from its last decision.
