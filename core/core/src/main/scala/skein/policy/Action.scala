@@ -63,7 +63,7 @@ object Action:
       case Action.Along(_, along, _, _)         => along.value
       case _                                    => 0)
 
-    /** The same, where it is [[Action.Along]] a heading, as a velocity: what vehicles are told. */
+    /** Flight along a heading as a velocity; any other action as it is. */
     def byVelocity: Action = action match
       case Action.Along(heading, speed, down, yaw) =>
         val (cos, sin) = (StrictMath.cos(heading.value), StrictMath.sin(heading.value))

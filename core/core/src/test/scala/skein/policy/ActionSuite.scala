@@ -23,9 +23,19 @@ class ActionSuite extends munit.FunSuite:
     assertEquals(Action.VelocityAt(-0.01, 0, down).headingRad(0.7), math.Pi)
     assertEquals(Action.Turn(Yaw.Towards(Radians(0.3))).headingRad(0.7), 0.3)
     assertEquals(Action.Attitude(Radians(0.1), Radians(0.2), Radians(0.3), 0.5).headingRad(0.7), 0.3)
+    assertEquals(Action.Along(Radians(7), MetresPerSecond(0), down).headingRad(0.7), 7.0)
     for action <- still do assertEquals(action.headingRad(0.7), 0.7, action.toString)
 
   test("only what flies with a velocity has a speed: the horizontal one"):
     assertEquals(Action.Velocity(Vector3(3, 4, -12)).speed, MetresPerSecond(5))
     assertEquals(Action.VelocityAt(3, -4, down).speed, MetresPerSecond(5))
+    assertEquals(Action.Along(Radians(7), MetresPerSecond(5), down).speed, MetresPerSecond(5))
     for action <- still do assertEquals(action.speed, MetresPerSecond(0), action.toString)
+
+  test("flight along a heading is a velocity with its altitude and yaw; nothing else is changed"):
+    val along = Action.Along(Radians(0.5), MetresPerSecond(4), down, Yaw.Forward)
+    assertEquals(
+      along.byVelocity,
+      Action.VelocityAt(4 * StrictMath.cos(0.5), 4 * StrictMath.sin(0.5), down, Yaw.Forward)
+    )
+    for action <- still do assertEquals(action.byVelocity, action)

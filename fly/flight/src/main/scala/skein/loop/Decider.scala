@@ -40,7 +40,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   /** What the policy answers, and what it is to remember.
     *
-    * @throws skein.units.OwnFailure if it throws, or answers with nothing that a vehicle could be told
+    * @throws skein.units.OwnFailure as [[decide]]
     */
   def answered(memory: Memory, view: TeamView, now: Instant): (Action, Any) =
     answered(memory, observation(memory, view, now))

@@ -51,6 +51,24 @@ class DeciderSuite extends munit.FunSuite:
       told.getMessage.contains("the policy of Pursuer decided for what no vehicle can do: Along(NaN")
     )
 
+  test("a heading at the start's altitude is the whole decision; at another, its velocity is told too"):
+    final case class Straight(down: Metres, yaw: Yaw) extends Policy:
+      type Memory = Int
+      def start: Int                                            = 0
+      def choose(seen: Observation, memory: Int): (Action, Int) =
+        (Action.Along(Radians(7), MetresPerSecond(3), down, yaw), memory + 1)
+    def decided(policy: Policy) =
+      val decider          = Decider(scenario, 1, policy)
+      val (next, decision) = decider.decide(decider.start, view, millis(200))
+      assertEquals((next.headingRad, next.held), (7.0, 1))
+      assertEquals((decision.heading, decision.speed), (Radians(7), Some(MetresPerSecond(3))))
+      decision.action
+    val start = Metres(scenario.agents(1).startPositionNed.z)
+    assertEquals(decided(Straight(start, Yaw.Still)), None)
+    for (down, yaw) <- Seq(Metres(-3) -> Yaw.Still, start -> Yaw.Forward) do
+      val action = Action.Along(Radians(7), MetresPerSecond(3), down, yaw)
+      assertEquals(decided(Straight(down, yaw)), Some(action.byVelocity))
+
   private def failureOf(action: => Action): String =
     object Broken extends Policy:
       type Memory = Unit

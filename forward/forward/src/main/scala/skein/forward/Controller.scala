@@ -97,7 +97,7 @@ private[skein] final class Controller(
   private var sentNumber    = 0
   private var made, unused  = 0
 
-  /** Asks policies that are not asked by numbers alone. */
+  /** By which a policy decides that is no [[HeadingPolicy]]. */
   private val choosing                = Choosing(world.agents(agent), world.regardsYaw)
   private var chosenNorth, chosenEast = 0.0
   private var isChosen                = false

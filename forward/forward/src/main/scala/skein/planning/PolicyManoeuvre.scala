@@ -42,7 +42,7 @@ object PolicyManoeuvre:
       own = own.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
-  /** What is seen when the own vehicle has flown there and the others straight on. */
+  /** What is seen once the own vehicle has come there and the others went straight on. */
   private def later(
       seen: Observation,
       own: PlaneReading,

@@ -20,6 +20,11 @@ class ActionCellsSuite extends munit.FunSuite:
     test(s"$action is read back as it was"):
       assertEquals(ActionCells.of(action).action, action)
 
+  test("flight along a heading is read back as its velocity"):
+    for yaw <- yaws do
+      val along = Action.Along(Radians(0.5), MetresPerSecond(4), Metres(-20), yaw)
+      assertEquals(ActionCells.of(along).action, along.byVelocity)
+
   test("numbers that an action has not got are zero, so that equal actions have equal digests"):
     def numbers(action: Action) =
       val cells = ActionCells.of(action)
