@@ -22,11 +22,11 @@ sealed trait Record extends Recordable:
 sealed trait Recordable:
   def row: Record
 
-/** A row that is made later. */
+/** A row of any table that is made later. See [[LaterDecision]] for decisions. */
 final class LaterRow(make: => Record) extends Recordable:
   lazy val row: Record = make
 
-/** A decision whose row is made later, with what watches over the flight at once.
+/** A decision whose row is made later, with what those need who watch over the flight meanwhile.
   *
   * @param seesOthers whether it was made from more than its own and its opponent's reading
   */
@@ -51,7 +51,7 @@ object Record:
   * @param loop the label of a [[LoopKind]], or the name of a user's own loop
   * @param id names the flight in tables and pictures, for example `stream-vpn`
   * @param clock the label of a [[ClockKind]]
-  * @param scenario its title, and whose policy was flown in place of its own: for people
+  * @param scenario its title, and the policy in the place of its own, if there was one: for people
   * @param version of the program that recorded
   * @param scenarioName by which a program knows the scenario; without one, its title is its name
   */
@@ -79,7 +79,6 @@ final case class FlightRow(
   /** Whether its world is that of the recording's parameters. */
   def isBuiltIn: Boolean = simulator == Simulator.BuiltIn
 
-  /** The name of the scenario. */
   def nameOfScenario: String = scenarioName.getOrElse(scenario)
 
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
@@ -111,7 +110,7 @@ final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kine
 
 /** One answer of a sensor.
   *
-  * @param sequence counts the answers asked of this sensor, in the order in which they were asked for
+  * @param sequence counts the answers of this sensor, in the order of the questions
   * @param quantities names of the numbers, with units
   * @param numbers as many
   */
@@ -383,7 +382,7 @@ final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instan
 enum CommandOutcome:
   case Done
 
-  /** A newer command replaced it. */
+  /** A newer command replaced it, as most are where a loop decides once a period. */
   case Superseded
 
   case Failed(error: String)
