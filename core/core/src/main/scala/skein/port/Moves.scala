@@ -4,7 +4,7 @@ import skein.units.Span
 
 /** How AirSim takes moves of a vehicle, and how loops keep to it. */
 object Moves:
-  /** Unanswered moves of one vehicle, unless told otherwise: the one that flies and the one that replaces it.
+  /** Unanswered moves of one vehicle, unless set otherwise: the one that flies and the one that replaces it.
     * A third that comes while one replaces the other waits for its end, not its begin.
     */
   final val InFlight = 2
@@ -12,7 +12,7 @@ object Moves:
   /** As many may be set, for flights and for forward simulation: half of what a forecast remembers. */
   final val MostInFlight = 32
 
-  /** Why a vehicle cannot have so many moves in flight, if it cannot. */
+  /** What is wrong with this number of moves in flight, if anything is. */
   def mistake(inFlight: Int): Option[String] =
     Option.when(inFlight < 1 || inFlight > MostInFlight)(s"expected 1 to $MostInFlight, came $inFlight")
 

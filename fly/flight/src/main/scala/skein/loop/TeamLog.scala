@@ -67,7 +67,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
     failed(vehicle, what, error, None)
 
-  /** A vehicle did not tell where it is.
+  /** A question where a vehicle is was not answered.
     *
     * @param sequence of the question
     */
@@ -81,7 +81,6 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   /** A vehicle told where it is. */
   def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
 
-  /** A sensor said something. */
   def sensed(reading: SensorReading): Unit = recorder.offer(rows.measurement(reading))
 
   /** How a prediction turned out that one vehicle's controller made. */
@@ -137,7 +136,6 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     for other <- others do recorder.offer(LaterRow(rows.sighting(decision, other)))
     for sensed <- rows.sensed(decision) do recorder.offer(LaterRow(rows.sensing(decision, sensed)))
 
-  /** A command was sent, or has ended. */
   def steered(steering: SteeringEvent): Unit = steering.event match
     case Steered.Sent(decision, at)          => sent(decision, at)
     case Steered.Ended(decision, at, result) => ended(decision, at, result)

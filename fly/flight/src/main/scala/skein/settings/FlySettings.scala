@@ -78,13 +78,11 @@ final case class FlySettings(
   /** What stands in the world. */
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
 
-  /** Who flies. */
   def fleet: Fleet = scenario.fleet
 
   private def multirotors: Vector[Agent] = fleet.agents.filter(_.kind == VehicleKind.Multirotor)
   private def cars: Vector[Agent]        = fleet.agents.filter(_.kind == VehicleKind.Car)
 
-  /** How a flight's loop is run. */
   def loopSettings(plan: FlightPlan): LoopSettings =
     val all = loopSettings.copy(seed = plan.seed)
     if plan.solver.isEmpty then all else all.copy(deadline = Some(Deadline(deadlineOf(plan).get, fallback)))
@@ -177,7 +175,6 @@ final case class FlightPlan(
   def fleet(settings: FlySettings): Fleet =
     policy.fold(settings.fleet)(_.file.flownIn(settings.fleet))
 
-  /** Where its recording goes. */
   def file(folder: Path): Path = folder.resolve(FlightPlan.fileName(id))
 
   /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the
@@ -188,7 +185,6 @@ final case class FlightPlan(
       copy(id = s"$id-virtual${if index == 0 then "" else s"-${index + 1}"}", seed = seed + index)
 
 object FlightPlan:
-  /** Of the recording of a flight. */
   def fileName(id: String): String = id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb"
 
 object FlySettings:

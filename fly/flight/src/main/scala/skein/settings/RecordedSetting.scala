@@ -14,18 +14,17 @@ private[settings] trait RecordedSetting[A]:
 
   /** What is on record; nothing in a recording of a version that did not keep it.
     *
-    * @return or what was expected and came
+    * @return or what was expected, and what stands there
     */
   def read(name: String, parameters: Map[String, String])(using Scenarios): Either[String, Option[A]]
 
 private[settings] object RecordedSetting:
 
-  /** All fields of a case class. */
+  /** How a recording keeps the fields of a case class: by their types. */
   final class Fields[A <: Product](
       mirror: Mirror.ProductOf[A],
       fields: Vector[(String, RecordedSetting[Any])]
   ):
-    /** In the order of the fields. */
     def written(settings: A): Seq[ParameterRow] =
       fields.zip(settings.productIterator).flatMap { case ((name, field), value) =>
         field.written(name, value)
@@ -87,7 +86,7 @@ private[settings] object RecordedSetting:
     private val text =
       Text[PredictionModel](PredictionModel.recordedForms, PredictionModel.text)(PredictionModel.recorded)
 
-    /** In recordings of older versions. */
+    // In recordings of older versions.
     private val model =
       Text[PredictionModel](
         PredictionModel.recordedForms,
@@ -125,7 +124,7 @@ private[settings] object RecordedSetting:
   given RecordedSetting[Scenario] with
     def written(name: String, value: Scenario): Seq[ParameterRow] = ScenarioSettings.recorded(value)
 
-    /** The flight's columns say which it is. */
+    // The flight's columns say which it is.
     def read(name: String, parameters: Map[String, String])(using Scenarios) = Right(None)
 
   // These are in columns, or one of them is in a flight's plan.

@@ -123,6 +123,7 @@ private[record] object FieldColumns:
 
   /** Up to format 6, the text of the error stood in the place of `failed`. */
   given FieldColumns[CommandOutcome] = name =>
+    given FieldColumns[Option[String]] = error => added(optional(summon[FieldColumns[String]](error)))
     columns[OutcomeCells](name, "error").as(_.outcome, OutcomeCells.of)
 
   /** Directions stand in the place of the frame that ends the name. */
@@ -181,10 +182,6 @@ private[record] object FieldColumns:
       "actionYawMode",
       "actionYaw"
     ).as(_.action, ActionCells.of)
-
-  /** The column came with format 7. */
-  private given error: FieldColumns[Option[String]] =
-    name => added(optional(summon[FieldColumns[String]](name)))
 
   given option[A](using one: FieldColumns[A]): FieldColumns[Option[A]] = name => optional(one(name))
 

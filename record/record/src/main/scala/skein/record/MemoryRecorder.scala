@@ -14,7 +14,7 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
   private var closed = false
   private val failed = Promise[RecordError]()
 
-  /** Makes the row at once: decisions are larger, and nobody's command waits in virtual time. */
+  /** Makes the row now: it is smaller than the decision, and in virtual time no command waits for it. */
   def offer(record: Recordable): Unit = keep(record.row match
     // Many would not fit otherwise.
     case image: CameraImage => image.copy(pixels = image.pixels.compressed)

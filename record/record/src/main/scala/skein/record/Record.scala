@@ -5,13 +5,13 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** One row of a recording; each case class below is one table. Column names are the field names followed by
-  * the unit: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`,
+/** One row of a recording; each case class below is one table. Column names are the field names with the unit
+  * behind them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`,
   * `Mps`, `Rad`, `RadPerS`. `validAt`, `actsAt` and `predictedFor` are on the simulator's clock, all other
   * instants on the controller's.
   *
-  * Every table begins with the column `row`, which the recorder assigns: the index of the record in the order
-  * of acceptance.
+  * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order
+  * in which all records of the flight were accepted.
   */
 sealed trait Record extends Recordable:
   def row: Record = this
@@ -22,11 +22,11 @@ sealed trait Record extends Recordable:
 sealed trait Recordable:
   def row: Record
 
-/** A row that is made later. */
+/** A row of any table that is made later. See [[LaterDecision]] for decisions. */
 final class LaterRow(make: => Record) extends Recordable:
   lazy val row: Record = make
 
-/** A decision whose row is made later, with what watches over the flight at once.
+/** A decision whose row is made later, with what those need who watch over the flight meanwhile.
   *
   * @param seesOthers whether it was made from more than its own and its opponent's reading
   */
@@ -40,7 +40,7 @@ final class LaterDecision(
   lazy val row: DecisionRow = make
 
 object Record:
-  /** The bytes of an image or a cloud, if the record is one. */
+  /** The large part of an image or a cloud. */
   def blobOf(record: Record): Option[Blob] = record match
     case image: CameraImage => Some(image.pixels)
     case cloud: Cloud       => Some(cloud.xyz)
@@ -51,7 +51,7 @@ object Record:
   * @param loop the label of a [[LoopKind]], or the name of a user's own loop
   * @param id names the flight in tables and pictures, for example `stream-vpn`
   * @param clock the label of a [[ClockKind]]
-  * @param scenario its title, and whose policy was flown in place of its own: for people
+  * @param scenario its title, and the policy in the place of its own, if there was one: for people
   * @param version of the program that recorded
   * @param scenarioName by which a program knows the scenario; without one, its title is its name
   */
@@ -70,16 +70,15 @@ final case class FlightRow(
     scenarioName: Option[String] = None
 ) extends Record:
 
-  /** The loop's kind; None for a user's own loop. */
+  /** Absent for a loop that is none of ours. */
   def loopKind: Option[LoopKind] = LoopKind.parse(loop).toOption
 
-  /** Whether it is the ground truth for other flights: the simulator was paused while the loop decided. */
+  /** Whether it is the truth that others are held against: the simulator stood still while a loop decided. */
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
 
   /** Whether its world is that of the recording's parameters. */
   def isBuiltIn: Boolean = simulator == Simulator.BuiltIn
 
-  /** The name of the scenario. */
   def nameOfScenario: String = scenarioName.getOrElse(scenario)
 
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
@@ -99,21 +98,21 @@ object VehicleRow:
   def of(agent: Agent): VehicleRow =
     VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
-  /** The parameter that states a vehicle's kind, if it is not a multirotor. */
+  /** The parameter that says what a vehicle is, where it is no multirotor. */
   def kind(name: String, kind: VehicleKind): Option[ParameterRow] =
     Option.when(kind != VehicleKind.Multirotor)(ParameterRow(s"kind.$name", kind.toString))
 
 /** One answer of the simulator.
   *
-  * @param sequence counts the readings of this vehicle in the order of the requests
+  * @param sequence counts the readings of this vehicle in the order in which they were asked for
   */
 final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
 
 /** One answer of a sensor.
   *
-  * @param sequence counts the answers of this sensor in the order of the requests
+  * @param sequence counts the answers of this sensor, in the order of the questions
   * @param quantities names of the numbers, with units
-  * @param numbers one for each quantity
+  * @param numbers as many
   */
 final case class MeasurementRow(
     sequence: Long,
@@ -128,11 +127,11 @@ final case class MeasurementRow(
 
 /** An image of a vehicle's camera.
   *
-  * @param sequence counts the received images of this camera
-  * @param kind kind of image, by AirSim's name, for example `Scene`
-  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, little-endian,
-  *   m
-  * @param fov horizontal; absent if unknown
+  * @param sequence counts the images of this camera that came
+  * @param kind what it shows, by AirSim's name, for example `Scene`
+  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, the lowest
+  *   first, m
+  * @param fov horizontal; absent where nobody has told
   * @param positionNed of the camera, world, when it was exposed
   * @param orientation from the camera's frame (front, right, down) to the world's
   * @param validAt when it was exposed
@@ -157,11 +156,11 @@ final case class CameraImage(
 
 /** A scan of a vehicle's lidar.
   *
-  * @param sequence counts the received scans of this lidar
+  * @param sequence counts the scans of this lidar that came
   * @param positionNed of the lidar, world
   * @param orientation from the lidar's frame (front, right, down) to the world's
   * @param validAt when it was scanned
-  * @param xyz of each point in the lidar's frame, m: three numbers of 32 bits, little-endian
+  * @param xyz of each point in the lidar's frame, m: three numbers of 32 bits, the lowest byte first
   */
 final case class Cloud(
     sequence: Long,
@@ -176,22 +175,22 @@ final case class Cloud(
     xyz: Blob
 ) extends Record
 
-/** A measurement that a decision used.
+/** A measurement that a decision was made from.
   *
-  * @param vehicle of the decision and the measurement
+  * @param vehicle that was decided for, and that measured
   * @param decision the decision's sequence
   * @param measurement the measurement's sequence
   */
 final case class Sensing(vehicle: String, decision: Long, sensor: String, measurement: Long) extends Record
 
-/** One decision for one vehicle, with all its inputs.
+/** One decision for one vehicle, with everything that it was made from.
   *
   * @param sequence counts the decisions for this vehicle
   * @param own the vehicle's own reading that was used; its columns begin with `own`
   * @param opponent the opponent's reading that was used; its columns begin with `opponent`
   * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
   *   other roles, the opponent seen from the vehicle
-  * @param relativeY likewise, to the right of that heading
+  * @param relativeY the same, to the right of that heading
   * @param headingBefore commanded last to this vehicle
   * @param opponentHeading commanded last to the opponent, as far as known
   * @param heading the one chosen
@@ -200,8 +199,7 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
   * @param predicted the predicted states of both vehicles, if the decision was made from them instead of the
   *   readings
   * @param speed the one chosen; absent where the vehicle always commands its own
-  * @param action the action decided; absent where heading and speed determine it, at the altitude of the
-  *   start
+  * @param action the action decided; absent where heading and speed say it, at the altitude of the start
   */
 final case class DecisionRow(
     sequence: Long,
@@ -222,13 +220,13 @@ final case class DecisionRow(
     action: Option[Action] = None
 ) extends Record
 
-/** Inputs of a decision besides its own and its opponent's reading: one row for each other vehicle, if the
-  * policy uses the whole team.
+/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle,
+  * where the policy regards the whole team.
   *
-  * @param decider the vehicle of the decision
+  * @param decider the vehicle that was decided for
   * @param decision the decision's sequence
-  * @param reading the sequence of the used reading of `vehicle`
-  * @param predicted its predicted state, if the decision used that instead of the reading
+  * @param reading the sequence of the reading of `vehicle` that was used
+  * @param predicted where it was expected to be, if that was decided upon instead of the reading
   */
 final case class Sighting(
     decider: String,
@@ -238,17 +236,17 @@ final case class Sighting(
     predicted: Option[PredictedMotion]
 ) extends Record
 
-/** The planning of a decision.
+/** How a decision was planned.
   *
   * @param decision the sequence of the decision of `vehicle`
-  * @param candidates simulated by all searches together
-  * @param slices that each of the searches finished before the deadline; all 0 if nothing was ready: then the
-  *   last plan continued, or the policy decided
-  * @param cost of the chosen plan; absent if none was tried
-  * @param took from the request to the decision
+  * @param candidates flown by all searches together
+  * @param slices that each of the searches finished before the deadline; all 0 where nothing was ready: then
+  *   the last plan went on, or the policy decided
+  * @param cost of the plan chosen; absent where none was tried
+  * @param took from asking until the decision was there
   * @param breaches of hard limits within the plan's horizon
-  * @param course the plan's positions; absent if the policy decided instead
-  * @param states initial states of the plan, if readings do not determine them completely
+  * @param course where the plan leads; absent where the policy decided in its place
+  * @param states from which it was planned, where readings do not tell all of them
   */
 final case class Planned(
     vehicle: String,
@@ -262,14 +260,14 @@ final case class Planned(
     states: Option[PlannedStates] = None
 ) extends Record
 
-/** A decision made in another process, with the times of its request and answer.
+/** A decision that was made in another process, and the times of its ways there and back.
   *
-  * @param decision the sequence of the decision of `vehicle`; the decision states when it was made, by the
-  *   known offset of the solver's clock
-  * @param question counts the requests for `vehicle`; missing ones were not answered in time
-  * @param askedAt when the request was sent
-  * @param receivedAt when the answer was received
-  * @param thinking from the arrival of the request at the solver to sending the answer, by the solver's clock
+  * @param decision the sequence of the decision of `vehicle`; the decision says when it was made, by what was
+  *   known of the solver's clock
+  * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
+  * @param askedAt when the question left
+  * @param receivedAt when the answer came
+  * @param thinking from the question's coming to the solver to the answer's leaving, by the solver's clock
   * @param clock absent before the first answer of a solver
   */
 final case class SolvedRow(
@@ -282,27 +280,27 @@ final case class SolvedRow(
     clock: Option[SolverClock]
 ) extends Record:
 
-  /** Time from sending the request to receiving the answer. */
+  /** From the question's leaving to the answer's coming. */
   def roundTrip: Span = receivedAt.since(askedAt)
 
-/** The solver's clock against the controller's, as known at the request for a decision.
+/** How the solver's clock stood to the controller's, as was known when a decision was asked for.
   *
   * @param offset the controller's clock minus the solver's
   * @param uncertainty the truth lies within ± this
   */
 final case class SolverClock(offset: Span, uncertainty: Span)
 
-/** The course of a plan: positions at the end of each step, world frame, m. The first step begins when the
-  * command acts.
+/** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command
+  * acts.
   */
 final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
-/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty if its kinematics
-  * determine them completely.
+/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty where its
+  * kinematics tell all of one.
   */
 final case class PlannedStates(own: Vector[Double], opponent: Vector[Double])
 
-/** A vehicle's predicted motion when the command acts. */
+/** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
 
 /** The paper's four observations at one decision. Both ages count from the *arrival* of the reading used, as
@@ -315,14 +313,14 @@ final case class Observations(
     sinceOpponentMove: Option[Span]
 )
 
-/** Ages of the used readings, since physics was sampled.
+/** How old the readings used were, from when physics was sampled.
   *
   * @param clockOffset the controller's clock minus the simulator's, as estimated then
   * @param uncertainty of the offset, and so of both ages: the truth lies within ± this
   */
 final case class TrueAge(own: Span, opponent: Span, clockOffset: Span, uncertainty: Span)
 
-/** The predicted states that a decision used instead of the readings.
+/** The predicted states that a decision was made from instead of the readings.
   *
   * @param actsAt when the command was expected to act, on the simulator's clock
   */
@@ -334,14 +332,14 @@ final case class Predicted(
     opponentVelocityNed: Vector3
 )
 
-/** A prediction that later readings verified.
+/** A prediction whose moment has come and was read.
   *
   * @param decider the vehicle for whose decision it was made
-  * @param vehicle whose position was predicted
+  * @param vehicle whose place was predicted
   * @param predictedFor on the simulator's clock
-  * @param age from the reading used to the time predicted for
+  * @param age from the reading that was carried forward to the moment predicted for
   * @param positionNed as predicted
-  * @param error distance to the vehicle's position at that time, interpolated between two readings
+  * @param error distance to where the vehicle was then, between two readings interpolated
   */
 final case class Prediction(
     decider: String,
@@ -384,7 +382,7 @@ final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instan
 enum CommandOutcome:
   case Done
 
-  /** A newer command replaced it. */
+  /** A newer command replaced it, as most are where a loop decides once a period. */
   case Superseded
 
   case Failed(error: String)
@@ -411,14 +409,14 @@ final case class Event(
     count: Option[Long] = None
 ) extends Record
 
-/** A vehicle's true position, if a loop samples it separately from its readings. Distances are computed from
-  * these rows if there are any, else from the readings.
+/** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these
+  * rows if there are any, else from the readings.
   */
 final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) extends Record
 
-/** How the flight ended: the last row; missing in a truncated recording.
+/** How the flight ended: the last row. There is none where the recording broke off before.
   *
-  * @param reason why it ended early
+  * @param reason why it ended before its time
   */
 final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
 
@@ -446,74 +444,84 @@ enum EventSubject:
 
 /** What an [[Event]] tells of; recorded by name. */
 enum EventKind:
-  /** A newer value replaced an unused one. */
+  /** A newer value replaced one that was not used yet. */
   case Dropped
 
   /** A period passed without its action because an earlier one had not ended. */
   case Skipped
 
+  /** A call was not answered in time. */
   case TimedOut
 
+  /** A policy did not decide in time. */
   case DeadlineMissed
 
-  /** A solver in another process was restarted or replaced: policies' memories start again. */
+  /** A solver in another process was started again, or another one answers: what policies remember begins
+    * anew.
+    */
   case SolverRestarted
 
-  /** An answer was received more than once; it counts once. */
+  /** An answer came more than once; it counts once. */
   case Repeated
 
-  /** A plan could not keep a hard limit. */
+  /** A plan could not keep within a hard limit. */
   case LimitBroken
 
-  /** An answer was received after its call had ended. */
+  /** An answer came after its call had been given up. */
   case LateReply
 
-  /** A bound on calls in flight refused a call. */
+  /** The bounds on calls in flight refused a call. */
   case Overloaded
 
+  /** The simulator answered with an error. */
   case Refused
 
+  /** A connection was lost. */
   case Disconnected
 
+  /** A connection is there again. */
   case Reconnected
 
-  /** The simulator was silent for longer than its answers take. */
+  /** Nothing was heard of the simulator for longer than its answers take. */
   case SimulatorSilent
 
+  /** The simulator was heard of again. */
   case SimulatorBack
 
-  /** A step of the paused simulator differed from the requested length. */
+  /** A step of the paused simulator was not as long as asked for. */
   case StepDrift
 
   /** The simulator's clock did not keep pace with the controller's for some seconds. */
   case ClockDrift
 
-  /** Readings contradicted the estimated clock offset, so its estimation was restarted. */
+  /** Readings contradicted the known offset of the clocks, so its estimation began anew. */
   case ClockRestarted
 
-  /** The simulator's clock ran backwards, stopped, jumped or differed between vehicles: the flight has no
-    * result.
+  /** The simulator's clock ran back, stood still, jumped or differed from vehicle to vehicle: the flight has
+    * no result.
     */
   case ClockBroken
 
-  /** Another client took control of a vehicle or moved it: the flight has no result. */
+  /** Somebody else took a vehicle from the flight or put it elsewhere: the flight has no result. */
   case VehicleTaken
 
-  /** The machine was too busy: the flight is not compared with others. */
+  /** The machine was too busy to fly: the flight is not compared with others. */
   case Starved
 
+  /** A vehicle touched something. */
   case Contact
 
-  /** A call was cancelled because the flight had ended. */
+  /** A call was given up because the flight had ended. */
   case Cancelled
 
-  /** A policy that learns in flight has a new version, or its learner reports something. */
+  /** A policy that learns in flight has a new version, or what else its learner says. */
   case Learned
 
-  /** A user paused the flight: its vehicles hover and no decisions are made, while its time continues. */
+  /** Somebody paused the flight: its vehicles hover and nobody decides, while its time runs on. */
   case Paused
 
-  /** A user continued a paused flight. */
+  /** A paused flight was continued from outside. */
   case Continued
 
+  /** The flight ended before its time. */
   case Aborted

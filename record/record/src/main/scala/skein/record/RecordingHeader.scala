@@ -8,7 +8,7 @@ final case class RecordingHeader(
 ):
   def records: Seq[Record] = flight +: (vehicles ++ parameters)
 
-  /** The value of a parameter. */
+  /** The value of a parameter, if the recording has it. */
   def parameter(name: String): Option[String] = parameters.find(_.name == name).map(_.value)
 
   /** The parameters whose names begin with a word and a full stop, by what follows. */

@@ -1,14 +1,13 @@
 package skein.record
 
-/** Who simulates the vehicles of a flight. */
+/** The simulator in which the vehicles of a flight fly. */
 enum Simulator:
   /** Skein's own, with the world of the recording's parameters. */
   case BuiltIn
 
-  /** Another, by its address or its name. */
+  /** Another, by its address, or by the name that a program gives it. */
   case Other(name: String)
 
-  /** As a recording has it. */
   def label: String = this match
     case BuiltIn     => Simulator.BuiltInLabel
     case Other(name) => name
