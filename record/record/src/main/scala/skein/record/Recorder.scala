@@ -6,8 +6,8 @@ import scala.concurrent.Future
 trait Recorder:
 
   /** Takes one record; never blocks, and makes no [[LaterRow]], from any thread. A record that cannot be kept
-    * makes [[failure]] complete; after a failure or [[close]], records are ignored, but for the [[Ending]]: it
-    * is the last row, and after a failure it is written as far as that is possible.
+    * makes [[failure]] complete; after a failure or [[close]], records are ignored, but for the [[Ending]]:
+    * it is the last row, and after a failure it is written as far as that is possible.
     */
   def offer(record: Recordable): Unit
 
