@@ -260,7 +260,7 @@ def test_with_no_delay_everything_is_as_without_the_wrapper():
             bare, wrapped = gym.make(name), DelayEnv(gym.make(name), STEP_S, ages=False, **settings)
             bare.action_space.seed(3)
             for seed in range(8):
-                (one, _), (other, _), ended = bare.reset(seed=seed), wrapped.reset(seed=seed), False
+                (one, _), (other, _) = bare.reset(seed=seed), wrapped.reset(seed=seed)
                 assert np.array_equal(one, other)
                 for _ in range(count):
                     action = bare.action_space.sample()
@@ -502,6 +502,25 @@ def test_arrays_of_other_kinds_stay_so_and_are_as_numpys(kind, settings):
         one, other = theirs.step(own(actions))[0], numpys.step(actions)[0]
 
 
+# The guide.
+
+
+def test_the_guides_code_runs():
+    guide = Path(__file__).parents[3] / "docs/guides/delay.md"
+    if not guide.exists():
+        pytest.skip("not in a checkout")
+    names = {}
+    for code in re.findall(r"```python\n(.*?)```", guide.read_text(), re.DOTALL):
+        exec(code, names)
+    envs = names["envs"]
+    assert names["env"].observation_space.shape == (4,) and names["seen"].shape == (64, 13)
+
+    class Batch:
+        num_envs, step = 64, staticmethod(lambda actions: envs.env.step(actions)[:3])
+
+    names["rollout"](Batch, lambda observation, age_s: (age_s > 0.05).astype(np.int64), envs.env.reset(seed=1)[0], 50)
+
+
 # PettingZoo and Stable-Baselines3.
 
 
@@ -553,14 +572,16 @@ def test_pettingzoo_finds_nothing_wrong():
 
     parallel_api_test(DelayParallelEnv(env, STEP_S, link="vpn", pending=2), num_cycles=200)
     env = DelayParallelEnv(parallel(), STEP_S, link="correlated:10s,uniform:0ms..500ms")
-    told, _ = env.reset(seed=4)
-    for step in range(1, 15):
-        told, *_ = env.step({agent: env.action_space(agent).sample() for agent in env.agents})
-        assert all(one in env.observation_space(agent) for agent, one in told.items())
-        age = told["one"][2]
-        assert age == pytest.approx((step - told["one"][0]) * STEP_S, abs=1e-6)
-        # One link: a correlated delay is both agents'.
-        assert told["two"]["age_s"][0] == pytest.approx(age)
+    for seed in (4, None, None):
+        told, _ = env.reset(seed=seed)
+        for step in range(1, 31):
+            told, *_ = env.step({agent: env.action_space(agent).sample() for agent in env.agents})
+            assert all(one in env.observation_space(agent) for agent, one in told.items())
+            age = told["one"][2]
+            assert age == pytest.approx((step - told["one"][0]) * STEP_S, abs=1e-6)
+            if "two" in told:
+                # One link: a correlated delay is both agents'.
+                assert told["two"]["age_s"][0] == pytest.approx(age)
 
 
 def test_stable_baselines3_finds_nothing_wrong():

@@ -41,14 +41,6 @@ def put(array: Any, slot: slice, value: Any) -> Any:
     return array
 
 
-def put_where(array: Any, slot: slice, mask: Any, value: Any) -> Any:
-    """The array with a value in these places of the first axis, where a mask is set."""
-    if type(array) is np.ndarray:
-        np.copyto(array[slot], value, where=beside(mask, array), casting="same_kind")
-        return array
-    return put(array, slot, namespace(array).where(beside(mask, array), value, array[slot]))
-
-
 def beside(flags: Any, array: Any) -> Any:
     """Flags or weights of the environments, with as many axes as the array."""
     return flags if flags.ndim == array.ndim else flags.reshape((-1,) + (1,) * (array.ndim - 1))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Tree, beside, cast, each, leaf, namespace, on, put, put_where
+from .arrays import Tree, beside, cast, each, leaf, namespace, on, put
 from .profiles import Trace, delays
 from .schedule import MOST_ROWS, Schedule, spawned
 
@@ -68,8 +68,8 @@ class Delay:
     dropout : float
         Share of the messages of each direction that are lost, from 0 to 0.9; as many in a row as one time in 10⁹.
     moves_in_flight : int, optional
-        Actions that may be unanswered, from 2, as AirSim's clients keep to 2. An action is answered when its successor
-        arrives. What waits for an answer is superseded by what is chosen after it.
+        Actions that may be unanswered, from 2. An action is answered when its successor arrives. What waits for an answer
+        is superseded by what is chosen after it.
     arrival : {'next', 'share'}
         What an action does that arrives within a step. ``next``: it acts from the next one on. ``share``: the step gets
         the mean of the actions that are in force during it, each weighted by its share of the step; for actions of floats.
@@ -87,6 +87,13 @@ class Delay:
         Steps of the environment from one decision to the next.
     seed : int, optional
         Of the link's own generators, until :meth:`begin` has one.
+
+    Attributes
+    ----------
+    row : int
+        Steps since the link began.
+    longest_age_s : float
+        Of an observation, s.
 
     Raises
     ------
@@ -144,11 +151,12 @@ class Delay:
         behind = (self._schedule.oldest_seen + self._ahead) // every + 2
         self._kept_observations = self._schedule.oldest_seen + 2
         self._kept_actions = max(self._schedule.oldest_acting, behind, pending) + 2
-        self._count, self._row, self._block = count, 0, -1
+        self._count, self.row, self._block = count, 0, -1
         self._seeds = np.random.SeedSequence(seed).spawn(links)
         self._links: Any = np.arange(count) % links if count > links else None
         self._observations: Tree = None
-        self._actions: Tree = None
+        self._actions: Tree = {}
+        self._idles: Tree = {}
         self._is_begun = False
 
     def begin(
@@ -179,20 +187,25 @@ class Delay:
             self._schedule.seed(self._seeds, line)
             # An environment that is given no seed later goes on with other numbers.
             self._seeds = [spawned(one, _LATER) for one in self._seeds]
-            self._row, self._block, self._is_begun = 0, -1, True
-        self._row = -(-self._row // self._every) * self._every
+            self.row, self._block, self._is_begun = 0, -1, True
+        self.row = -(-self.row // self._every) * self._every
         self._like = leaf(observations)
         self._xp = namespace(self._like)
         if self._observations is None:
             self._observations = each(lambda one: _ring(self._xp, one, self._kept_observations), observations)
             self._columns = on(self._like, np.arange(self._count))
             self._began = on(self._like, np.zeros(self._count, dtype=np.int64))
+            # Of no axes, since a Python number takes NumPy as long as the sum itself.
+            self._all = on(self._like, np.array(self._count))
+            kept = max(self._kept_observations, self._kept_actions)
+            self._begins = [on(self._like, np.array(one * self._count)) for one in range(kept)]
+            self._ages = on(self._like, np.repeat(np.arange(self._kept_observations) * self.step_s, self._count))
             self._links = None if self._links is None else on(self._like, self._links)
-        if self._actions is None and actions is not None:
+        if not len(self._actions) and actions is not None:
             self._allocate(actions)
         mask = on(self._like, np.ones(self._count, dtype=np.bool_) if mask is None else mask)
         self._void(mask)
-        now = self._slot(self._row, self._kept_observations)
+        now = self._slot(self.row, self._kept_observations)
         observations = each(
             lambda one, ring: self._xp.where(beside(mask, one), one, ring[now]), observations, self._observations
         )
@@ -208,14 +221,14 @@ class Delay:
         """
         if actions is not None:
             actions = each(lambda one: on(self._like, one), actions)
-            if self._actions is None:
+            if not len(self._actions):
                 self._allocate(actions)
-            now = self._slot(self._row // self._every, self._kept_actions)
+            now = self._slot(self.row // self._every, self._kept_actions)
             self._actions = each(lambda ring, one: put(_wide(ring, one), now, one), self._actions, actions)
         at = self._in_block()
         if self._is_shared:
             return self._mean(self._weights[at])
-        return self._chosen(self._of(self._acts[at]), self._row // self._every)
+        return self._chosen(self._of(self._acts[at]), self.row // self._every)
 
     def seen(self, observations: Tree, began: Any = None) -> Seen:
         """Lets a step pass, after which the environment is as these observations tell.
@@ -225,8 +238,8 @@ class Delay:
         began : array of bool, optional
             Where this step began a new episode: the observation is its first.
         """
-        self._row += 1
-        self._began = self._began - self._count
+        self.row += 1
+        self._began = self._began - self._all
         if began is not None:
             self._void(on(self._like, began))
         return self._look(observations)
@@ -235,7 +248,7 @@ class Delay:
     # the ring, were that of now the first: the number of the environment, less so many times the number of all.
 
     def _of(self, lags: Any) -> Any:
-        """The places of what is so old, by environment; see :meth:`_in_block`."""
+        """Places of what came so long ago, by environment, from what :meth:`_in_block` told."""
         if self._links is None:
             return lags
         return self._columns + (lags.take(self._links) if self._xp is np else lags[self._links])
@@ -247,56 +260,59 @@ class Delay:
 
     def _void(self, mask: Any) -> None:
         """Episodes begin: what was decided before is void, and the idle action stands in the place of the last."""
-        if self._xp is np and not np.count_nonzero(mask):
+        last = self._slot(-(-self.row // self._every) - 1, self._kept_actions)
+        if self._xp is np:
+            at = mask.nonzero()[0]
+            if len(at):
+                self._began[at] = at
+                each(lambda ring, idle: ring.__setitem__(at + last.start, idle[at]), self._actions, self._idles)
             return
-        self._began = put_where(self._began, slice(None), mask, self._columns)
-        if self._actions is not None:
-            last = self._slot(-(-self._row // self._every) - 1, self._kept_actions)
-            self._actions = each(lambda ring, idle: put_where(ring, last, mask, idle), self._actions, self._idles)
+        self._began = self._xp.where(mask, self._columns, self._began)
+        self._actions = each(lambda ring, idle: _put_where(ring, last, mask, idle), self._actions, self._idles)
 
     def _look(self, observations: Tree) -> Seen:
-        row, now = self._row, self._slot(self._row, self._kept_observations)
+        row, now = self.row, self._slot(self.row, self._kept_observations)
         self._observations = each(lambda ring, one: put(ring, now, one), self._observations, observations)
         at = self._in_block()
         arrived = self._of(self._seen[at])
         newest = self._xp.maximum(arrived, self._began)
-        places = newest + now.start
+        places = newest + self._begins[row % self._kept_observations]
         observation = each(lambda ring: _taken(self._xp, ring, places), self._observations)
         if self._is_zero:
             has = arrived >= self._began
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
-        lag = (self._columns - newest) / self._count
+        lag = self._columns - newest
         if self._predict is not None:
-            observation = self._predicted(observation, lag, int(self._most[at]))
+            observation = self._predicted(observation, lag // self._count, int(self._most[at]))
         pending = None
         if self._pending:
             ago = on(self._like, np.arange(self._pending, 0, -1) * self._count)
-            pending = self._chosen(self._columns[:, None] - ago, -(-row // self._every))
-        return Seen(observation, lag * self.step_s, pending)
+            pending = self._chosen(self._columns[:, None] + self._count - ago, -(-row // self._every))
+        return Seen(observation, self._ages.take(lag) if self._xp is np else self._ages[lag], pending)
 
     def _predicted(self, observation: Tree, lag: Any, most: int) -> Tree:
-        now = -(-self._row // self._every)
+        now = -(-self.row // self._every)
         for step in range(most + self._ahead):
-            ago = now - (self._row - lag + step - self._ahead) // self._every
-            places = self._columns - cast(ago, self._columns.dtype) * self._count
+            ago = now - (self.row - lag + step - self._ahead) // self._every
+            places = self._columns - (ago - 1) * self._count
             later = self._predict(observation, self._chosen(places, now))
             goes = step < lag + self._ahead
             observation = each(lambda old, new: self._xp.where(beside(goes, old), new, old), observation, later)
         return observation
 
     def _chosen(self, places: Any, now: int) -> Tree:
-        """What was chosen at these places, if now is this decision; the idle action if that was before the episode."""
+        """What was chosen at these places, if the next is this decision; the idle action where before the episode."""
         began = self._began
         if self._every > 1:
-            steps = (self._columns - began) // self._count + now * self._every - self._row
+            steps = (self._columns - began) // self._count + now * self._every - self.row
             began = self._columns - steps // self._every * self._count
-        begin = self._slot(now, self._kept_actions).start - self._count
-        newest = self._xp.maximum(places + self._count, began if places.ndim == 1 else began[:, None]) + begin
+        newest = self._xp.maximum(places, began if places.ndim == 1 else began[:, None])
+        newest = newest + self._begins[(now - 1) % self._kept_actions]
         return each(lambda ring: _taken(self._xp, ring, newest), self._actions)
 
     def _mean(self, weights: Any) -> Tree:
         """The mean of the actions in force during a step."""
-        now, shares, left = self._row // self._every, [], 1.0
+        now, shares, left = self.row // self._every, [], 1.0
         for lag in range(len(weights)):
             weight = weights[lag] if self._links is None else weights[lag][self._links]
             counts = self._columns - lag * self._count * self._every >= self._began
@@ -328,16 +344,16 @@ class Delay:
 
     def _in_block(self) -> int:
         """The place of this row in the schedule's block, which lies where the arrays do."""
-        at = self._schedule.row(self._row)
+        at = self._schedule.row(self.row)
         if self._block != self._schedule.first:
             self._block = self._schedule.first
             columns = np.arange(self._count) if self._links is None else 0
-            lags = self._schedule.seen, self._schedule.acts
-            self._seen, self._acts = (on(self._like, columns - one.astype(np.int64) * self._count) for one in lags)
+            seen, acts = (one.astype(np.int64) * self._count for one in (self._schedule.seen, self._schedule.acts))
+            self._seen, self._acts = on(self._like, columns - seen), on(self._like, columns - acts + self._count)
             self._most = self._schedule.seen.max(1)
             self._weights = on(self._like, self._schedule.weights) if self._is_shared else None
             # Keeps within 32 bits.
-            self._began = self._began.clip(-2 * MOST_ROWS * self._every * self._count)
+            self._began = self._began.clip(-4 * MOST_ROWS * self._every * self._count)
         return at
 
 
@@ -345,6 +361,10 @@ def _ring(xp: Any, one: Any, length: int) -> Any:
     """Room for so many arrays, one after the other."""
     ring = xp.concatenate([one] * length)
     return np.ascontiguousarray(ring) if xp is np else ring  # as ``take`` wants it, whatever the environment has
+
+
+def _put_where(ring: Any, slot: slice, mask: Any, value: Any) -> Any:
+    return put(ring, slot, namespace(ring).where(beside(mask, value), value, ring[slot]))
 
 
 def _taken(xp: Any, ring: Any, places: Any) -> Any:

@@ -28,7 +28,14 @@ class DelayParallelEnv(BaseParallelWrapper):
     """
 
     def __init__(
-        self, env: ParallelEnv, step_s: float, *, ages: bool = True, pending: int = 0, seed: int | None = None, **settings: Any
+        self,
+        env: ParallelEnv,
+        step_s: float,
+        *,
+        ages: bool = True,
+        pending: int = 0,
+        seed: int | None = None,
+        **settings: Any,
     ) -> None:
         super().__init__(env)
         self._delays: dict[Any, Delay] = {}
@@ -57,6 +64,10 @@ class DelayParallelEnv(BaseParallelWrapper):
         else:
             self._seed = None
         self._live = set()
+        # Who left earlier is as far on the link as the others.
+        now = max((one.row for one in self._delays.values()), default=0)
+        for one in self._delays.values():
+            one.row = now
         return {agent: self._told(agent, one, seed) for agent, one in observations.items()}, infos
 
     def step(self, actions: dict[Any, Any]) -> tuple[dict[Any, Any], ...]:

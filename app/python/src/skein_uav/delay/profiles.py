@@ -3,7 +3,7 @@
 A profile is a text, as Skein's ``--link`` takes it. It tells round trips; one direction takes half of one:
 
 * ``none``; ``direct``, about 36 ms; ``vpn``, 20 to 200 ms; ``vpn-mixed``, ``vpn`` and ``direct`` in turns;
-* ``constant:200ms``, ``uniform:10ms..40ms``, ``lognormal:36ms,0.3`` (median, standard deviation of the logarithm);
+* ``constant:200ms``, ``uniform:10ms..40ms``, ``lognormal:36ms,0.3`` (median, deviation of the logarithm);
 * ``file:PATH``, round trips in ms, one a line;
 * ``correlated:250ms,PROFILE``: one sample holds for both directions, and is drawn anew after exponentially
   distributed times with this mean, so that the correlation of delays falls as e^(-t/250 ms).
@@ -47,7 +47,7 @@ class Trace:
     Parameters
     ----------
     delays_s : array of float, shape (times,) or (times, environments)
-        In s, at least 0. Of one axis, each environment begins at a random place; of two, each at the begin of its own.
+        In s. Of one axis, each environment begins at a random place; of two, each at the begin of its own.
     every_s : float, optional
         From one to the next, s; by default a step of the environment.
     """
@@ -178,7 +178,7 @@ def _parsed(text: str, what: str) -> Delays:
     if kind == "file":
         return _read(rest, what)
     if kind == "rate":
-        raise ValueError(f"{what}: expected a link without a rate, since nobody knows how large messages are, came {text!r}")
+        raise ValueError(f"{what}: expected a link without a rate, since messages have no size here, came {text!r}")
     raise ValueError(f"{what}: expected {_FORMS}, came {text!r}")
 
 

@@ -68,12 +68,12 @@ class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
 
     def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
         """Decides, upon what the last call told."""
-        acting = self._delay.acting(batched(action))
+        acting, reward = self._delay.acting(batched(action)), None
         for number in range(self._substeps):
             if number:
                 acting = self._delay.acting()
             observation, more, terminated, truncated, info = self.env.step(each(lambda one: one[0], acting))
-            reward = reward + more if number else more
+            reward = more if reward is None else reward + more
             seen = self._delay.seen(batched(observation))
             if terminated or truncated:
                 break

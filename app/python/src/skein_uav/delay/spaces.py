@@ -36,9 +36,11 @@ class Telling:
         Of one environment.
     """
 
-    def __init__(self, observation: gym.Space, action: gym.Space, longest_age_s: float, ages: bool, pending: int) -> None:
+    def __init__(
+        self, observation: gym.Space, action: gym.Space, longest_age_s: float, ages: bool, pending: int
+    ) -> None:
         if pending and not isinstance(action, (Box, Discrete)):
-            raise ValueError(f"pending: expected 0 with actions other than Box and Discrete, came {pending} of {action}")
+            raise ValueError(f"pending: expected 0 with actions that are no Box and no Discrete, came {pending}")
         self._ages, self._pending, self._action = ages, pending, action
         is_vector = isinstance(observation, Box) and len(observation.shape) == 1
         self._is_flat = is_vector and np.issubdtype(observation.dtype, np.floating)
@@ -62,7 +64,8 @@ class Telling:
             if pending and isinstance(action, Discrete):
                 parts["pending"] = MultiDiscrete(np.full(pending, action.n), start=np.full(pending, action.start))
             elif pending:
-                parts["pending"] = Box(np.stack([action.low] * pending), np.stack([action.high] * pending), dtype=action.dtype)
+                least, most = (np.stack([one] * pending) for one in (action.low, action.high))
+                parts["pending"] = Box(least, most, dtype=action.dtype)
             self.space = Dict(parts)
 
     def told(self, seen: Seen) -> Tree:
@@ -75,7 +78,7 @@ class Telling:
             if self._ages:
                 told["age_s"] = cast(seen.age_s[:, None], namespace(seen.age_s).float32)
             if self._pending:
-                told["pending"] = cast_like(seen.pending, self._action)
+                told["pending"] = seen.pending
             return told
         parts = [observation]
         if self._ages:
@@ -87,10 +90,6 @@ class Telling:
                 pending = pending[:, :, None] == values
             parts.append(pending.reshape(len(pending), -1))
         return joined(parts, self.space.shape[0])
-
-
-def cast_like(pending: Any, action: gym.Space) -> Any:
-    return cast(pending, action.dtype) if namespace(pending) is np else pending
 
 
 def idle(space: gym.Space) -> Any:

@@ -17,9 +17,9 @@ from .spaces import Telling, idle
 class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
     """Lets a link and a loop's timing stand between a policy and many environments; each has a link of its own.
 
-    As :class:`skein_uav.delay.single.DelayEnv`. With seeds s, s + 1, …, each environment meets the delays of a single one
-    with its seed, in its first episode. All modes of automatic resets work; ``final_obs`` is what is seen at the end.
-    Arrays may be of NumPy, PyTorch or JAX; what is told is of the environment's kind.
+    As :class:`skein_uav.delay.single.DelayEnv`. In its first episode each environment meets the delays of a single one
+    with its seed. All modes of automatic resets work; ``final_obs`` is what is seen at the end. Arrays may be of NumPy,
+    PyTorch or JAX; what is told is of the environment's kind.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
         if "substeps" in settings or "every" in settings:
             raise ValueError("substeps: wrap each environment in DelayEnv before a vector is made of them")
         if env.metadata.get("autoreset_mode") is None:
-            raise ValueError("env: expected metadata['autoreset_mode'], one of gymnasium.vector.AutoresetMode, came none")
+            raise ValueError("env: expected metadata['autoreset_mode'], of gymnasium.vector.AutoresetMode, came none")
         self._mode = AutoresetMode(env.metadata["autoreset_mode"])
         self._idle = idle(env.single_action_space) if idle_action is None else idle_action
         self._delay = Delay(env.num_envs, step_s, pending=pending, idle_action=self._idle, **settings)
@@ -75,13 +75,15 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Decides in every environment, upon what the last call told."""
         observations, rewards, terminated, truncated, infos = self.env.step(self._delay.acting(actions))
-        if self._mode is AutoresetMode.SAME_STEP and "final_obs" in infos:
-            seen = self._finals(observations, terminated | truncated, infos)
+        if self._mode is AutoresetMode.DISABLED:
+            seen = self._delay.seen(observations)
         elif self._mode is AutoresetMode.NEXT_STEP:
             seen = self._delay.seen(observations, self._ended)
             self._ended = terminated | truncated
+        elif "final_obs" in infos:
+            seen = self._finals(observations, terminated | truncated, infos)
         else:
-            seen = self._delay.seen(observations)
+            seen = self._delay.seen(observations, terminated | truncated)
         return self._telling.told(seen), rewards, terminated, truncated, infos
 
     def _finals(self, observations: Any, done: Any, infos: dict[str, Any]) -> Any:
