@@ -29,6 +29,7 @@ ThisBuild / packageDoc / publishArtifact := Publishing.isWanted
 ThisBuild / packageSrc / publishArtifact := Publishing.isWanted
 ThisBuild / Test / publishArtifact       := false // else the two above hold for tests, too
 ThisBuild / pomPostProcess              := Publishing.withoutTests
+ThisBuild / mimaFailOnNoPrevious        := false // what is not published, and what begins a series
 ThisBuild / Test / fork               := true
 ThisBuild / run / fork                := true
 ThisBuild / Test / testForkedParallel := false
@@ -51,6 +52,16 @@ lazy val root =
     .aggregate(flight, kafka, observe, torture, environment, learn, recognition, blocks, cluster, cli, python)
     .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
+    // The API reference of all parts: .ci/docs.
+    .enablePlugins(ScalaUnidocPlugin)
+    .settings(
+      ScalaUnidoc / unidoc / unidocProjectFilter := inDependencies(cli) -- inProjects(testing, vtimeAgent),
+      ScalaUnidoc / unidoc / scalacOptions ++= Seq(
+        "-project", "Skein",
+        "-dynamic-side-menu", // one for all pages: in each, it made a gigabyte
+        "-no-link-warnings"   // links of docstrings heed imports
+      )
+    )
     // The archive and the wheel.
     .settings(
       Compile / Keys.`package` / aggregate := false,
@@ -63,8 +74,14 @@ lazy val root =
       }
     )
 
-/** What a part is published as: `skein-core` and so on. */
-def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)
+/** What a part is published as: `skein-core` and so on. Its public methods stay within a series of releases. */
+def artifact(part: String, does: String): Seq[Setting[?]] = Seq(
+  name                  := s"skein-$part",
+  description           := does,
+  mimaPreviousArtifacts := Publishing.previous(version.value).toSet.map { (released: String) =>
+    (organization.value % moduleName.value % released).cross(projectID.value.crossVersion)
+  }
+)
 
 /** What tests of several modules share. */
 lazy val testing = project.in(file("core/testing")).settings(publish / skip := true, libraryDependencies ++= munit.map(_.withConfigurations(None)))
@@ -101,9 +118,8 @@ lazy val mujoco = project.in(file("vehicles/mujoco"))
 /** Rewrites clock readings as classes load. Java alone; the JVM is started with its jar as `-javaagent`. */
 lazy val vtimeAgent = project
   .in(file("stream/vtime-agent"))
+  .settings(artifact("vtime-agent", "Rewrites clock readings of Pekko as classes load"))
   .settings(
-    name             := "skein-vtime-agent",
-    description      := "Rewrites clock readings of Pekko as classes load",
     crossPaths       := false,
     autoScalaLibrary := false,
     exportJars       := true,

@@ -8,6 +8,16 @@ object Publishing {
   /** Whether this sbt was started to publish. */
   val isWanted: Boolean = sys.props.getOrElse("sun.java.command", "").contains("publish")
 
+  /** The release that `version` must be compatible with, if it does not begin a series. A series is all of `0.1`, or
+    * all of `1`.
+    */
+  def previous(version: String): Option[String] =
+    version.takeWhile(_ != '-').split('.').map(_.toInt) match {
+      case Array(major, minor, patch) if patch > 0          => Some(s"$major.$minor.${patch - 1}")
+      case Array(major, minor, _) if major > 0 && minor > 0 => Some(s"$major.${minor - 1}.0")
+      case _                                                => None
+    }
+
   /** A part, as it would be released. */
   private final case class Part(name: String, pom: Elem, classifiers: Set[String]) {
 

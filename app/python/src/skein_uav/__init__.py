@@ -1,5 +1,7 @@
 """Control loops for teams of drones under real latency: flights, searches and environments.
 
+Examples
+--------
 >>> import skein_uav as skein
 >>> skein.spread(loop=["stream", "predictive"], link="vpn", seeds=20)       # doctest: +SKIP
 """

@@ -31,14 +31,14 @@ _DEADLINE_MS = 20.0
 
 @dataclass(frozen=True)
 class Flights:
-    """The result of :func:`fly`.
+    """The result of `fly`.
 
     Attributes
     ----------
     tables : dict of str to DataFrame
         What the report shows, by title; units stand in the columns' names.
     recordings : list of Path
-        One DuckDB file a flight; :func:`skein_uav.load` opens one.
+        One DuckDB file a flight; `skein_uav.load` opens one.
     report : Path
         A page with tables and pictures.
     """
@@ -66,7 +66,7 @@ class Flights:
 
 @dataclass(frozen=True)
 class Found:
-    """The result of :func:`search`.
+    """The result of `search`.
 
     Attributes
     ----------
@@ -126,10 +126,10 @@ def fly(
     settings : mapping, optional
         Of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional
-        A policy file, as :func:`search` writes one, or an ONNX file of another framework.
+        A policy file, as `search` writes one, or an ONNX file of another framework.
     pursuer, evader : callable, optional
         A policy written in Python: from an observation, ndarray of float32 of shape (9,), to a number from -1 to 1, as
-        in :mod:`skein_uav.environments`. All flights call it on one thread while they run. It must not count its calls:
+        in `skein_uav.environments`. All flights call it on one thread while they run. It must not count its calls:
         a rehearsal before live flights calls it, too.
 
         Each of `policy`, `pursuer` and `evader` has flights of its own, in which all other vehicles use the scenario's
@@ -199,7 +199,7 @@ def spread(
     seeds : int
         Flights for each loop and link.
     loop, link, duration_s, scenario, settings, verbose
-        As in :func:`fly`.
+        As in `fly`.
     **options
         Any other option of ``./skein spread``.
 

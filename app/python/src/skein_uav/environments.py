@@ -115,7 +115,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     render_mode : {None, 'rgb_array'}
         A picture of each environment, seen by the learner.
     backend : {'process', 'socket', 'unix:PATH'}
-        Java in this process; in one of its own; in that of a :class:`skein_uav.served.Server`, for processes that fork.
+        Java in this process; in one of its own; in that of a `skein_uav.served.Server`, for processes that fork.
 
     Attributes
     ----------
@@ -206,7 +206,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         ----------
         seed : int, sequence of int, or None
             Environment i takes ``seed + i``, or the i-th, whole numbers from 0 of any size
-            (:func:`skein_uav.seeds.folded`); equal seeds give equal episodes, to the last bit. None: continues.
+            (`skein_uav.seeds.folded`); equal seeds give equal episodes, to the last bit. None: continues.
         options : dict, optional
             ``reset_mask``, an array of bool: only these are reset.
 
@@ -304,7 +304,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
 
 
 class PursuitEnv(gym.Env[Floats, Floats]):
-    """One duel; see :class:`PursuitVectorEnv`, whose parameters it takes."""
+    """One duel; see `PursuitVectorEnv`, whose parameters it takes."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
 

@@ -1,6 +1,6 @@
 """The duel as a ParallelEnv of PettingZoo: the caller decides for both sides.
 
-Observations, actions and rewards are those of :mod:`skein_uav.environments`. The sum of both rewards is 0.
+Observations, actions and rewards are those of `skein_uav.environments`. The sum of both rewards is 0.
 
 A step lasts until the loop lets a side decide. Under ``paused`` both always decide simultaneously. Over a link one side may
 still be waiting for an answer while the other decides alone; then its observation stays unchanged and its action is
@@ -34,7 +34,7 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
     render_mode : {None, 'rgb_array'}
         What the pursuer sees, as a picture.
     backend : {'process', 'socket', 'unix:PATH'}
-        As in :class:`skein_uav.environments.PursuitVectorEnv`.
+        As in `skein_uav.environments.PursuitVectorEnv`.
     **settings
         ``loop``, ``link``, ``period_ms``, ``plant``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
         ``start_within_m`` and ``moves_in_flight``, as there.

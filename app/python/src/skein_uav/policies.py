@@ -14,7 +14,7 @@ import numpy as np
 
 from .batch import FIELDS, Floats
 
-#: From what is seen, shape (9,), to a number from -1 to 1; see :mod:`skein_uav.environments`.
+#: From what is seen, shape (9,), to a number from -1 to 1; see `skein_uav.environments`.
 Policy = Callable[[Floats], Any]
 
 _QUESTION = 4 * FIELDS

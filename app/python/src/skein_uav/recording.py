@@ -84,5 +84,5 @@ class Recording(Mapping[str, pd.DataFrame]):
 
 
 def load(recording: str | os.PathLike[str]) -> Recording:
-    """Opens a recording of a flight; see :class:`Recording`."""
+    """Opens a recording of a flight; see `Recording`."""
     return Recording(recording)

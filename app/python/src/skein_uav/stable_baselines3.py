@@ -13,7 +13,7 @@ from .environments import PursuitVectorEnv
 
 
 class PursuitVecEnv(VecEnv):
-    """Many duels side by side; see :class:`skein_uav.environments.PursuitVectorEnv`, whose parameters it takes."""
+    """Many duels side by side; see `skein_uav.environments.PursuitVectorEnv`, whose parameters it takes."""
 
     def __init__(self, num_envs: int = 64, **settings: Any) -> None:
         self._env = PursuitVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **settings)

@@ -60,7 +60,7 @@ class Delay:
     step_s : float
         Simulated time of a step of the environment, s.
     link : str, float, array or Trace
-        Both directions: a profile (:mod:`skein_uav.delay.profiles`), or one-way delays in s.
+        Both directions: a profile (`skein_uav.delay.profiles`), or one-way delays in s.
     observation_delay, action_delay : str, float, array or Trace, optional
         One direction, in the place of ``link``. A profile tells round trips here, too: one direction takes half.
     compute_s : float
@@ -86,7 +86,7 @@ class Delay:
     every : int
         Steps of the environment from one decision to the next.
     seed : int, optional
-        Of the link's own generators, until :meth:`begin` has one.
+        Of the link's own generators, until `begin` has one.
 
     Attributes
     ----------
@@ -248,7 +248,7 @@ class Delay:
     # the ring, were that of now the first: the number of the environment, less so many times the number of all.
 
     def _of(self, lags: Any) -> Any:
-        """Places of what came so long ago, by environment, from what :meth:`_in_block` told."""
+        """Places of what came so long ago, by environment, from what `_in_block` told."""
         if self._links is None:
             return lags
         return self._columns + (lags.take(self._links) if self._xp is np else lags[self._links])

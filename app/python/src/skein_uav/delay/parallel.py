@@ -18,7 +18,7 @@ class DelayParallelEnv(BaseParallelWrapper):
     """Lets a link and a loop's timing stand between the agents' policies and an environment.
 
     Each agent's observations and actions have delays of their own. Over a ``correlated`` link, or one that is busy at
-    times, its state is common to all. Otherwise as :class:`skein_uav.delay.single.DelayEnv`.
+    times, its state is common to all. Otherwise as `skein_uav.delay.single.DelayEnv`.
 
     Parameters
     ----------

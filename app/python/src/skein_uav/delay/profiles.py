@@ -101,7 +101,7 @@ class Delays:
 
 
 def delays(given: str | float | ArrayLike | Trace | Delays, what: str = "delays") -> Delays:
-    """One direction of a link, by a profile's text, a constant in s, an array of delays in s, or a :class:`Trace`.
+    """One direction of a link, by a profile's text, a constant in s, an array of delays in s, or a `Trace`.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Which observation is seen and which action acts, step by step: what a link decides, and no environment.
 
 Delays do not depend on what is sent. So the schedule is made ahead, in blocks of steps, on the host, and for all links at
-once; :class:`skein_uav.delay.Delay` applies it to arrays wherever they are.
+once; `skein_uav.delay.Delay` applies it to arrays wherever they are.
 
 A *row* is a step of the wrapped environment, of ``step_s``; row r begins at ``r * step_s``. Rows count on over episodes:
 the link does not begin anew with them.
@@ -48,7 +48,7 @@ class Schedule:
     every : int
         Rows from one decision to the next.
     shares : bool
-        Whether :attr:`weights` are told.
+        Whether `weights` are told.
 
     Attributes
     ----------

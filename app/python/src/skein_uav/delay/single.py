@@ -27,7 +27,7 @@ class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
     step_s : float
         Simulated time of a step of the environment, s.
     ages : bool
-        Whether ages are told beside the observation (:class:`skein_uav.delay.spaces.Telling`).
+        Whether ages are told beside the observation (`skein_uav.delay.spaces.Telling`).
     pending : int
         How many of the last decisions are told as well.
     substeps : int
@@ -36,7 +36,7 @@ class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
         What acts before an action of the episode has arrived; by default 0, or the nearest action to it.
     **settings
         ``link``, ``observation_delay``, ``action_delay``, ``compute_s``, ``dropout``, ``moves_in_flight``, ``arrival``,
-        ``first``, ``predict`` and ``seed``, as of :class:`skein_uav.delay.Delay`.
+        ``first``, ``predict`` and ``seed``, as of `skein_uav.delay.Delay`.
     """
 
     def __init__(

@@ -17,7 +17,7 @@ from .spaces import Telling, idle
 class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
     """Lets a link and a loop's timing stand between a policy and many environments; each has a link of its own.
 
-    As :class:`skein_uav.delay.single.DelayEnv`. In its first episode each environment meets the delays of a single one
+    As `skein_uav.delay.single.DelayEnv`. In its first episode each environment meets the delays of a single one
     with its seed. All modes of automatic resets work; ``final_obs`` is what is seen at the end. Arrays may be of NumPy,
     PyTorch or JAX; what is told is of the environment's kind.
 
