@@ -72,7 +72,7 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private def ran(command: String*): Either[String, String] =
     val output = StringBuilder()
     try
-      val status = Process(command, Some(root.resolve("python").toFile): Option[File])
+      val status = Process(command, Some(root.resolve("app/python").toFile): Option[File])
         .!(ProcessLogger(line => output.append(line).append('\n'): Unit))
       Either.cond(
         status == 0,
