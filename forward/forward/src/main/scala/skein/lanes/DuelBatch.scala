@@ -5,7 +5,6 @@ import skein.forward.{
   Delays,
   Duel,
   LoopTiming,
-  QuadrotorResponse,
   VelocityResponse
 }
 import skein.lanes.policy.PolicyLanes

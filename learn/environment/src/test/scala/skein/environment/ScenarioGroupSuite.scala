@@ -44,9 +44,9 @@ class ScenarioGroupSuite extends munit.FunSuite:
 
   test("the engine is reported: scalar for another scenario, SIMD for the duel"):
     val team = Learner(surround, 2).batch.engine
-    assert(team.startsWith("scalar: environments of surround"), team)
+    assert(team.text.startsWith("scalar: environments of surround"), team)
     val duel = Learner(EnvironmentSettings(), 2).batch.engine
-    assert(duel.startsWith("SIMD, "), duel)
+    assert(duel.text.startsWith("SIMD, "), duel)
 
   for (loop, link) <- Seq("stream" -> "vpn", "predictive" -> "direct", "paused" -> "none") do
     test(s"stepped under $loop over $link, motion and rewards equal the reference's with equal policies"):

@@ -61,7 +61,7 @@ private[simulator] object Argument:
   private val Greatest = 1e9f
 
   given Argument[Vector3r] = checked(record(Vector3r.Zero)): vector =>
-    if Seq(vector.x_val, vector.y_val, vector.z_val).forall(math.abs(_) <= FarthestM) then None
+    if Seq(vector.x_val, vector.y_val, vector.z_val).forall(math.abs(_) <= Greatest) then None
     else Some("the numbers of a vector are within 1e9")
 
   given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
