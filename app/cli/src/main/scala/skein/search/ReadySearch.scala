@@ -64,7 +64,7 @@ trait ReadySearch:
     val fresh    =
       Vector(engine(space.defaults, Judge.Winner), engine(baseline.candidate, Judge.Baseline)).distinct
     together.text + (if fresh == Vector(together) then ""
-                else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
+                     else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
 
   /** Whether candidates share episodes: an episode's timetable costs as much as it saves some hundred
     * candidates, so few fly faster each with delays of its own.

@@ -118,20 +118,20 @@ final case class SearchSetup(
     by: SearchMethod,
     accelerator: Option[Accelerator] = None
 ) extends ReadySearch:
-  def space: SearchSpace                       = family.space
-  def name: String                             = family.name
-  def method: String                           = question.method
-  def loop: String                             = question.conditions.loopText
-  def link: String                             = question.link
-  def text: String                             = objective.text
-  def formula: String                          = objective.formula
-  def unit: String                             = objective.unit
-  def durationS: Double                        = conditions.duel.durationS
-  def periodMs: Double                         = question.conditions.periodMs
-  def vehicles: String                         = conditions.vehicle.description
-  def model: String                            = conditions.vehicle.name
-  def blockEpisodes: Int                       = Effort.blockEpisodes(flown(Judge.Candidates).isFast, conditions.vehicle)
-  def fresh: Option[Int]                       = question.fresh
+  def space: SearchSpace = family.space
+  def name: String       = family.name
+  def method: String     = question.method
+  def loop: String       = question.conditions.loopText
+  def link: String       = question.link
+  def text: String       = objective.text
+  def formula: String    = objective.formula
+  def unit: String       = objective.unit
+  def durationS: Double  = conditions.duel.durationS
+  def periodMs: Double   = question.conditions.periodMs
+  def vehicles: String   = conditions.vehicle.description
+  def model: String      = conditions.vehicle.name
+  def blockEpisodes: Int = Effort.blockEpisodes(flown(Judge.Candidates).isFast, conditions.vehicle)
+  def fresh: Option[Int] = question.fresh
   def label(candidate: Vector[Double]): String = policy(candidate).label
   def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
 

@@ -250,10 +250,10 @@ final case class TeamSetup(
 
   def engine(candidate: Vector[Double], judge: Judge): Engine = flownBy match
     case TeamEngine.Reduced(_, delays) => asked.engine(this.candidate(candidate), share(judge), Seq(delays))
-    case TeamEngine.Whole(flights)  => flights.engine
+    case TeamEngine.Whole(flights)     => flights.engine
 
   override def rate(threads: Int): Option[String] = flownBy match
-    case _: TeamEngine.Reduced        => None
+    case _: TeamEngine.Reduced     => None
     case TeamEngine.Whole(flights) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
   override def fliesForward: Boolean = !isVirtual
@@ -266,12 +266,12 @@ final case class TeamSetup(
     case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
 
   def effort: Effort = flownBy match
-    case _: TeamEngine.Reduced        => Effort.ofTeam(flown)
+    case _: TeamEngine.Reduced     => Effort.ofTeam(flown)
     case TeamEngine.Whole(flights) => flights.effort
 
   def blockEpisodes: Int = flownBy match
     case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(flown.fliesByLanes, conditions.vehicle)
-    case TeamEngine.Whole(flights)      => flights.blockEpisodes
+    case TeamEngine.Whole(flights)         => flights.blockEpisodes
 
   private def candidate(values: Vector[Double]): TeamCandidate =
     val own      = scenario(values)

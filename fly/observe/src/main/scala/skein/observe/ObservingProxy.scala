@@ -17,8 +17,8 @@ import skein.units.{Clock, Instant}
   * pass in their order, none is added, held back or lost, whatever they mean.
   *
   * What passes is looked at elsewhere, one piece after the other. That may lag behind by
-  * [[ObservingProxy.MostWaiting]]; what comes beyond is passed on and not looked at, which is counted, and its
-  * connection is not understood any more.
+  * [[ObservingProxy.MostWaiting]]; what comes beyond is passed on and not looked at, which is counted, and
+  * its connection is not understood any more.
   */
 final class ObservingProxy private (
     listening: Listening,

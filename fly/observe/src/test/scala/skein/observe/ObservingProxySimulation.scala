@@ -37,7 +37,14 @@ class ObservingProxySimulation extends munit.FunSuite:
         for
           server <- SimulatorServer.start(settings, network.host("simulator"), clock)
           link = EmulatedLink(LinkProfile.symmetric(profile), seed, clock)
-          proxy <- ObservingProxy.start(Address("controller", 41452), server.address, link, here, clock, system.dispatcher)
+          proxy <- ObservingProxy.start(
+            Address("controller", 41452),
+            server.address,
+            link,
+            here,
+            clock,
+            system.dispatcher
+          )
           client = AirSimClient(RpcClient(here, proxy.address, clock))
           direct = AirSimClient(RpcClient(here, server.address, clock))
           beside <- named(direct, "Evader")

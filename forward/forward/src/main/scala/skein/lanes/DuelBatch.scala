@@ -125,7 +125,11 @@ final class DuelBatch(
     else apart.fold(Some(_), (plant, _) => LoopSupport.refusal(timing, 2, link, plant))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
-  private def lanesOf(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean): Either[String, String] =
+  private def lanesOf(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      shareEpisodes: Boolean
+  ): Either[String, String] =
     for
       _ <- plant
       _ <- Seq(pursuer, evader)

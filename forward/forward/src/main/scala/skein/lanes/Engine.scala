@@ -49,10 +49,10 @@ object Engine:
   ): Engine =
     val refused = refusals.flatten
     (lanes, gpu) match
-      case (Left(why), _)                                      => stepped.getOrElse(scalar(why))
-      case (_, Some(Right(faster)))                            => faster
+      case (Left(why), _)                                         => stepped.getOrElse(scalar(why))
+      case (_, Some(Right(faster)))                               => faster
       case _ if refused.nonEmpty && refused.size == refusals.size => stepped.getOrElse(scalar(refused.head))
-      case (Right(what), _)                                    =>
+      case (Right(what), _)                                       =>
         val why = gpu.flatMap(_.left.toOption).fold("")(why => s" ($why)")
         if refused.isEmpty then Engine(Kind.Lanes, s"SIMD, $what$why", sideBySide)
         else

@@ -118,7 +118,11 @@ private object SteppedRollouts:
     model match
       case _: SteppedResponse => Some(Engine(Engine.Kind.Bodies, s"vehicles side by side; $Loops"))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
-        Some(Engine(Engine.Kind.Quadrotors, s"SIMD, ${LaneMath.LANES} quadrotors at a time; $Loops", LaneMath.LANES))
+        Some(Engine(
+          Engine.Kind.Quadrotors,
+          s"SIMD, ${LaneMath.LANES} quadrotors at a time; $Loops",
+          LaneMath.LANES
+        ))
       case _ => None
 
   private val Loops = "their loops by the scalar engine"

@@ -57,7 +57,9 @@ final class TeamBatch(
       steppedOf(candidate),
       if isPlain then Accelerator.engine(accelerator, accelerated, together)
       else
-        accelerated.map(_ => Left("the GPU flies teams without memory that look at the newest readings alone"))
+        accelerated.map(_ =>
+          Left("the GPU flies teams without memory that look at the newest readings alone")
+        )
       ,
       LaneFunction.COUNT
     )

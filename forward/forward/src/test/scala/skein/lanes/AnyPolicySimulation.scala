@@ -130,7 +130,8 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   test("one that promises to fly in the plane flies by the scalar engine, and fails if it does not"):
     val team = fleet(_, Role.Evader -> (_ => Promising), Role.Pursuer -> (_ => Chase))
     val one  = candidates(team, 1, 5).head
-    val told = TeamBatch(LoopTiming.Stream(), lag, 1).engine(one, shareEpisodes = true, Seq(DelayTable.vpn)).text
+    val told =
+      TeamBatch(LoopTiming.Stream(), lag, 1).engine(one, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(clue(told).startsWith("scalar: a policy is no formula: "))
     val failed = intercept[OwnFailure](ScalarTeam(LoopTiming.Stream(), lag).fly(one, DelayTable.vpn, 4))
     assert(clue(failed.getMessage).startsWith("the policy Promising decided for Land"))

@@ -39,9 +39,9 @@ enum Steered[+C, +R]:
   *   - '''Cancels when''' downstream cancels.
   *
   * @param minInterval between two commands sent: the rate cap
-  * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of
-  *   a long round trip carry more commands than one a round trip; only for links that never deliver several
-  *   in a burst
+  * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of a long
+  *   round trip carry more commands than one a round trip; only for links that never deliver several in a
+  *   burst
   * @param send one command; the future ends when the move ends
   * @param park makes the vehicle hover, so that the outstanding moves are answered; sent as the last command,
   *   and after a lost answer

@@ -28,12 +28,12 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
       val told  = s"${timing.productPrefix}, shared delays: $shared"
       val batch = DuelBatch(duel, timing, model, threads = 1)
       val all   = new DuelWorlds:
-        def size: Int                       = 3
-        override def shareEpisodes: Boolean = shared
-        def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
-        def link(world: Int): Delays        = DelayTable.vpn
-        def pursuer(world: Int): HeadingPolicy     = PaperPursuer(0.6 + 0.04 * world)
-        def evader(world: Int): HeadingPolicy      = PaperEvader(7 + 0.1 * world)
+        def size: Int                          = 3
+        override def shareEpisodes: Boolean    = shared
+        def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
+        def link(world: Int): Delays           = DelayTable.vpn
+        def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.04 * world)
+        def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.1 * world)
       val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn)).text
       assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
       val flown = batch.fly(all)

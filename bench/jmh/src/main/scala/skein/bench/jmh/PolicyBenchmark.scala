@@ -25,12 +25,12 @@ class PolicyBenchmark extends Rate:
     val policies = chosen.space.random(1024, 1).map(chosen.policy).toArray
     val opponent = ChauffeurEvader()
     worlds = new DuelWorlds:
-      def size: Int                       = policies.length
-      override def shareEpisodes: Boolean = true
-      def key(world: Int): Int            = 1
-      def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy     = policies(world)
-      def evader(world: Int): HeadingPolicy      = opponent
+      def size: Int                          = policies.length
+      override def shareEpisodes: Boolean    = true
+      def key(world: Int): Int               = 1
+      def link(world: Int): Delays           = DelayTable.vpn
+      def pursuer(world: Int): HeadingPolicy = policies(world)
+      def evader(world: Int): HeadingPolicy  = opponent
 
   @TearDown
   def show(): Unit = println(f"witness, mean of the last 10 s: $witness%.4f m")
