@@ -49,10 +49,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     assertEquals(PaperDuel().recordedAs("pairs"), "pairs")
     assertEquals(Surround().recordedAs("ringM"), "surround.ringM")
     assertEquals(
-      Scenarios.ours.ofRecording(
-        "duel, pursuer lead-pursuit lead=1",
-        Map("pairs" -> "2", "asPublished" -> "false")
-      ),
+      Scenarios.ours.ofRecording("duel", Map("pairs" -> "2", "asPublished" -> "false")),
       Right(PaperDuel(pairs = 2))
     )
 

@@ -10,13 +10,13 @@ import skein.record.{MemoryRecorder, Recording}
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.testing.Waiting
+import skein.testing.{Lengthy, Waiting}
 import skein.units.*
 
 /** [[RunningSimulatorSimulation]] over real sockets and on the real clock, shortened; the simulator's clock
   * runs faster, since the ways to the starts are most of it.
   */
-class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting:
+class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting, Lengthy:
   private given system: ActorSystem = ActorSystem("RunningSimulatorLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 

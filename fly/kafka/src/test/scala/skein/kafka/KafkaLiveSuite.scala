@@ -13,11 +13,11 @@ import skein.policy.Action
 import skein.record.{EventKind, MemoryRecorder, Recording}
 import skein.scenario.Scenarios
 import skein.settings.{RecordedPlan, SolverChoice}
-import skein.testing.Unhurried
+import skein.testing.Lengthy
 import skein.units.*
 
 /** A solver behind Kafka's own broker, on loopback. */
-class KafkaLiveSuite extends munit.FunSuite, Unhurried:
+class KafkaLiveSuite extends munit.FunSuite, Lengthy:
   private given system: ActorSystem = ActorSystem("KafkaLiveSuite")
   private given Scenarios           = Scenarios.ours
   import system.dispatcher

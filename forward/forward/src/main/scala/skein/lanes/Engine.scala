@@ -45,7 +45,7 @@ object Engine:
       refusals: Seq[Option[String]],
       stepped: Option[Engine],
       gpu: Option[Either[String, Engine]],
-      sideBySide: Int
+      sideBySide: => Int
   ): Engine =
     val refused = refusals.flatten
     (lanes, gpu) match
