@@ -42,7 +42,6 @@ final case class ClockAlignment private (
 ):
   import ClockAlignment.{FormerRuns, Memory, Tick, drift, lowQuartile}
 
-  /** Controller's clock minus simulator's. */
   lazy val offset: Span =
     val toSimulator   = lowQuartile(latest)(bounds => Span.Zero - bounds.lower)
     val fromSimulator = lowQuartile(latest)(_.upper)
@@ -132,7 +131,6 @@ final case class ClockAlignment private (
 
 object ClockAlignment:
 
-  /** Bounds of the offset by one reading. */
   final case class Bounds(lower: Span, upper: Span)
 
   /** Readings that the estimate between the bounds is made from: more of them estimate a quartile better,
@@ -152,7 +150,6 @@ object ClockAlignment:
   /** A running simulator's clock advances within this: three physics steps of AirSim. */
   val Tick: Span = Span.ofMillis(9)
 
-  /** By a single reading. */
   def of(reading: Stamped[?]): ClockAlignment =
     val bounds = Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
     ClockAlignment(

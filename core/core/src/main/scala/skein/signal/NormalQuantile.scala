@@ -11,7 +11,6 @@ private[skein] object NormalQuantile:
 
   private val tail = 0.02425
 
-  /** `p` in (0, 1). */
   def apply(p: Double): Double =
     if p < tail then lower(math.sqrt(-2 * StrictMath.log(p)))
     else if p > 1 - tail then -lower(math.sqrt(-2 * StrictMath.log1p(-p)))

@@ -13,12 +13,10 @@ final class SplitMix64(seed: Long):
 
   private var state = seed
 
-  /** Uniform over all 2^64^ values. */
   def nextLong(): Long =
     state += Gamma
     mix(state)
 
-  /** Uniform in [0, 1), in steps of 2^−53^. */
   def nextDouble(): Double = (nextLong() >>> 11) * Step
 
   /** Uniform in 0 until `bound`, which is positive. */
