@@ -1,6 +1,7 @@
 package skein.policy
 
-/** Runs models that are no networks of ours. Those on the class path are found by `java.util.ServiceLoader`.
+/** Runs models that are not Skein's own networks. Implementations on the class path are found by
+  * `java.util.ServiceLoader`.
   */
 trait ModelRunner:
 

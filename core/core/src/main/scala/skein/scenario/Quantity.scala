@@ -2,7 +2,7 @@ package skein.scenario
 
 import skein.units.OwnFailure
 
-/** Where all vehicles are at one moment, by their positions in the scenario. World frame NED, m. */
+/** Positions of all vehicles at one moment, by their places in the scenario. World frame NED, m. */
 final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
 

@@ -1,12 +1,12 @@
 package skein.signal
 
-/** Why a text is not a latency profile. `message` says what was expected, what came and where. */
+/** Why a text is not a latency profile. `message` states what was expected, what was received, and where. */
 enum LatencyError(val message: String):
 
   case UnknownProfile(text: String)
       extends LatencyError(s"unknown latency profile \"$text\"; expected ${LatencyError.forms}")
 
-  /** A profile's name is right and what follows it is not. */
+  /** A profile's name is valid and the rest of it is not. */
   case Malformed(text: String, expected: String, came: String)
       extends LatencyError(s"latency profile \"$text\": expected $expected, got \"$came\"")
 

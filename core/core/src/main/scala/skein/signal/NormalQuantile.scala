@@ -6,7 +6,7 @@ package skein.signal
   * `LatencyDistributionSuite`.
   */
 private[skein] object NormalQuantile:
-  /** A normal variable lies within so many standard deviations of its mean with 95 % probability. */
+  /** A normal variable lies within this number of standard deviations of its mean with 95 % probability. */
   val TwoSided95 = 1.959964
 
   private val tail = 0.02425

@@ -17,5 +17,5 @@ object Clock:
 
     def now(): Instant = Instant.ofNanos(epochNanos + System.nanoTime())
 
-  /** A clock that reads nanoseconds since the Unix epoch from elsewhere, such as virtual time's. */
+  /** A clock that reads nanoseconds since the Unix epoch from a function, such as virtual time. */
   def ofNanos(nanos: () => Long): Clock = () => Instant.ofNanos(nanos())
