@@ -2,7 +2,7 @@ package skein.units
 
 import skein.units.Instant
 
-/** The only source of time in live code, so that the same code runs in virtual time. */
+/** The only source of time in live code, so that the code also runs in virtual time. */
 trait Clock:
   /** Nanoseconds since the Unix epoch; never runs backwards. */
   def now(): Instant

@@ -4,10 +4,6 @@ import skein.units.Vector3
 
 /** What a vehicle knows of its opponent by something else than readings. */
 private[skein] trait OpponentView:
-  /** Where the opponent is taken to be, m, how it moves, m/s, and how old what is known of it is.
-    *
-    * @param aheadS until what is decided now acts, where the own place is predicted for that moment
-    */
   def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double)
 
   /** The vehicle decides, and looks into this direction from now on. */
