@@ -47,7 +47,7 @@ final class DuelEvaluator(
   private def evader(candidate: HeadingPolicy): HeadingPolicy =
     if role == Role.Evader then candidate else opponent
 
-  /** The candidate does not enter the key: all meet the same delays. */
+  /** Keys do not depend on the candidate: all candidates have equal delays. */
   private final class Worlds(policies: Array[HeadingPolicy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                          = policies.length * keys.length
     override def shareEpisodes: Boolean    = DuelEvaluator.this.shareEpisodes
