@@ -8,14 +8,12 @@ import scala.concurrent.{ExecutionContext, Future}
 private[skein] final class Opened(using ExecutionContext):
   private val closers = AtomicReference(List.empty[() => Future[Done]])
 
-  /** Keeps in mind how `resource` is closed. */
+  /** Registers how `resource` is closed, and returns it. */
   def closing[A](resource: A)(close: A => Future[Done]): A =
     val _ = closers.updateAndGet((() => close(resource)) :: _)
     resource
 
-  /** Closes everything, each when the one before has ended, also where one fails; fails with the first
-    * failure.
-    */
+  /** Closes all in turn, even if one fails; fails with the first failure. */
   def close(): Future[Done] =
     closers.getAndSet(Nil).foldLeft(Future.successful[Done](Done)): (before, close) =>
       before.transformWith(ended => close().transform(closed => ended.flatMap(_ => closed)))
