@@ -4,7 +4,7 @@ import java.util.concurrent.atomic.AtomicReference
 import org.apache.pekko.Done
 import scala.concurrent.{ExecutionContext, Future}
 
-/** What was opened, to be closed in the opposite order. */
+/** Holds resources that were opened, and closes them in the opposite order. */
 private[skein] final class Opened(using ExecutionContext):
   private val closers = AtomicReference(List.empty[() => Future[Done]])
 
