@@ -75,7 +75,7 @@ final case class VehicleForecast[S] private (
     Estimate(model.kinematics(flown), at, newest.validAt, model.numbers(flown))
 
   /** The vehicle's position at an instant on the simulator's clock, by cubic interpolation between the two
-    * readings around it; absent without two such readings within [[MaxGap]].
+    * readings around it; absent without two such readings within [[VehicleForecast.MaxGap]].
     */
   def positionNedAt(validAt: Instant): Option[Vector3] =
     readings

@@ -194,7 +194,7 @@ private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPre
 
   private def vector(of: Int => PolicyInput) = Vector3(tag(of(0)), tag(of(1)), tag(of(2)))
 
-  /** The observation as an example for tracing; its inputs are in the order of [[inputs]]. */
+  /** The observation as an example for tracing; its inputs are in the order of the formula's. */
   val example: Example = Example(
     "seen",
     Observation(

@@ -142,7 +142,7 @@ final case class Violation(
     worstAtS: Double
 )
 
-/** The part of a limit that plans observe. */
+/** The part of a limit that plans are able to observe. */
 enum Kept:
   /** Least distance between any two vehicles, in the plane, m. */
   case Apart(leastM: Double)

@@ -62,7 +62,6 @@ final case class PaperDuel(
 object PaperDuel:
   val Name = "duel"
 
-  /** The paper's, m. */
   val AltitudeM = 20.0
 
   private val distance =

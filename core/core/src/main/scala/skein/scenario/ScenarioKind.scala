@@ -80,7 +80,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 private final class Reader(val what: String, val read: String => Option[Any])
 
 private object Reader:
-  /** As what a default is. */
+  /** The reader for values of a default's type. */
   def of(scenario: String, default: Any): Reader = default match
     case _: Int     => Reader("a whole number", _.toIntOption)
     case _: Long    => Reader("a whole number", _.toLongOption)

@@ -17,7 +17,7 @@ final class Tracks private (
 
   def instants: Range = northM.head.indices
 
-  /** Between two instants, s. */
+  /** Time between two successive instants of the tracks, s. */
   def stepS: Double = Tracks.step.toSeconds
 
   def timeS(instant: Int): Double = instant * stepS

@@ -5,7 +5,7 @@ import skein.units.*
 /** How long round trips take, given by its inverse cumulative distribution function. */
 enum LatencyDistribution:
 
-  /** Every round trip takes an equal time. */
+  /** Every round trip takes an equal, constant time. */
   case Constant(roundTrip: Span)
 
   /** Round trips are uniform between two bounds. */

@@ -22,7 +22,7 @@ object Decimals:
       if number.abs < MostInFull then withoutSignOfZero(String.format(Locale.ROOT, s"%.${decimals}f", number))
       else significant(4)
 
-    /** [[fixed]], padded to this width for columns. */
+    /** `fixed`, padded to this width for columns. */
     def fixed(decimals: Int, width: Int): String =
       val text = fixed(decimals)
       " " * (width - text.length) + text

@@ -17,10 +17,10 @@ object Vector3:
 
 /** A rotation from body FRD to world NED as a unit quaternion. */
 final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
-  /** Roll, rad, positive to the right. */
+  /** Roll angle of the body, rad, positive to the right. */
   def rollRad: Double = StrictMath.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
 
-  /** Pitch, rad, positive upwards. */
+  /** Pitch angle of the body, rad, positive upwards. */
   def pitchRad: Double = StrictMath.asin((2 * (w * y - x * z)).max(-1.0).min(1.0))
 
   /** Yaw, rad from north towards east, −π to π. */

@@ -8,24 +8,24 @@ enum HorizontalMode:
   /** The four goals are the controls of the four rotors, 0 to 1; roll and pitch are not controlled. */
   case Rotors
 
-  /** Roll rate and pitch rate, rad/s. */
+  /** Goals are roll rate and pitch rate, rad/s. */
   case Rates
 
-  /** Roll and pitch, rad. */
+  /** Goals are roll angle and pitch angle, rad. */
   case Angles
 
-  /** Velocity north and east, m/s. */
+  /** Goals are the velocities north and east, m/s. */
   case Velocity
 
-  /** Position north and east, m. */
+  /** Goals are the positions north and east, m. */
   case Position
 
 /** The meaning of a setpoint's vertical goal, `third`. */
 enum VerticalMode:
-  /** Throttle of all rotors, 0 to 1. */
+  /** The goal is the throttle of all rotors, 0 to 1. */
   case Throttle
 
-  /** Velocity down, m/s. */
+  /** The goal is the velocity down, m/s, negative upwards. */
   case Velocity
 
   /** Position down (z of NED: negative above the origin), m. */
@@ -33,7 +33,7 @@ enum VerticalMode:
 
 /** The meaning of a setpoint's goal for yaw, `yawGoal`. */
 enum YawMode:
-  /** Yaw rate, rad/s. */
+  /** The goal is the yaw rate, rad/s, clockwise from above. */
   case Rate
 
   /** Yaw, rad from north towards east, reached the shorter way. */

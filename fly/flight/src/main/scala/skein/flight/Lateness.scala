@@ -32,5 +32,5 @@ private[flight] object Lateness:
   /** Largest share of late ticks in a comparable flight. */
   val MostLate = 0.05
 
-  /** Fewer tell nothing. */
+  /** Least number of ticks for a judgement. */
   private val LeastTicks = 20

@@ -11,7 +11,7 @@ private[loop] object UntilCertain:
   /** Limit of the attempts, the first one included. */
   val Attempts = 20
 
-  /** Pause before they are told again. */
+  /** Pause between two attempts, by the actor system's clock. */
   val Pause: Span = Span.ofMillis(500)
 
   /** The result of the last attempt; one that fails is not certain. */

@@ -49,10 +49,7 @@ private[skein] object ConfigMistakes:
     ConfigKeys.optionOf(origin).getOrElse:
       if origin.description.startsWith(Ours) then path else s"${origin.description}: $path"
 
-  /** The source of the value at a path.
-    *
-    * @return [[at]] of the value, or the path alone if there is no value
-    */
+  /** The source of the value at a path, or the path alone if there is no value. */
   def at(path: String, config: Config): String =
     if config.hasPath(path) then at(path, config.getValue(path).origin) else path
 

@@ -16,7 +16,7 @@ private object FittedFile:
   def list(name: String, texts: Vector[String]): String =
     texts.map(text => s"    ${ConfigUtil.quoteString(text)}").mkString(s"  $name = [\n", "\n", "\n  ]")
 
-  /** Six significant digits. */
+  /** Formats a number with six significant digits. */
   def number(value: Double): String =
     BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
 

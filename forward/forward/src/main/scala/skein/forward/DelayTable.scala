@@ -49,7 +49,7 @@ object DelayTable:
   * support.
   */
 trait TabledDelays extends Delays:
-  /** The longest, s. */
+  /** The longest one-way delay of the link, s. */
   def maxS: Float
 
   private[skein] def stretches(worldKey: Int): TableStretch

@@ -21,8 +21,8 @@ import skein.forecast.VehicleForecast;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/** The history of one vehicle in many worlds: its last reading, the commands sent since, and which of them are
- * assumed to be in effect. The scalar reference is {@link VehicleForecast} with a {@link
+/** The history of one vehicle in many worlds: its last reading, the commands sent since, and which of them
+ * are assumed to be in effect. The scalar reference is {@link VehicleForecast} with a {@link
  * skein.vehicle.PlantModel}: the past matters by the commands within the dead time, and by the memory of
  * {@link ForecastVehicles}.
  *
@@ -75,8 +75,8 @@ final class ForecastTrack {
   /** Backing arrays of {@link #turnS} and of the directions. */
   private float[][] ofTurns;
 
-  /** By vector: index of the first valid turn (those of {@link #held} before it are unused), and the number of
-   * turns.
+  /** By vector: index of the first valid turn (those of {@link #held} before it are unused), and the number
+   * of turns.
    */
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
 

@@ -30,7 +30,7 @@ final class FuturesOffers extends LaneOffers {
 
   private final int periodGrains, timeoutGrains, ahead, most;
 
-  /** Steps kept: a power of two. */
+  /** Number of steps kept, always a power of two. */
   private final int ring;
 
   // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
@@ -180,8 +180,8 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Takes an agent's next offers in worlds where no other agent has an earlier one; at equal times, the first
-   * agent's is first.
+  /** Takes an agent's next offers in worlds where no other agent has an earlier one; at equal times, the
+   * first agent's is first.
    */
   private boolean take(int agent) {
     int[] own = soonest[agent];

@@ -21,9 +21,9 @@ import skein.lanes.policy.Directions;
 import skein.vehicle.FirstOrderLag;
 import skein.vehicle.ReducedModel;
 
-/** The vehicles of one role in many worlds, with first-order lag, and the commands on their way to them, which
- * take effect at different times in each world. Positions are those at a row's begin; readings are sampled at
- * different times in each world, and include the commands in effect before.
+/** The vehicles of one role in many worlds, with first-order lag, and the commands on their way to them,
+ * which take effect at different times in each world. Positions are those at a row's begin; readings are
+ * sampled at different times in each world, and include the commands in effect before.
  *
  * <p>The response to commanded velocities is linear: position and velocity are those without the commands
  * under way, plus each such command's change times its step response, s(t) = t − lag·(1 − r(t)) and 1 − r(t),
@@ -64,8 +64,8 @@ public final class LagVehicles extends LaneVehicles {
   private static final int[] AT_BEGIN = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** By slot: when the command takes effect, from its own row's begin, s; e to that time over the lag; and the
-   * change of the commanded velocity.
+  /** By slot: when the command takes effect, from its own row's begin, s; e to that time over the lag; and
+   * the change of the commanded velocity.
    */
   private float[] commands;
 

@@ -30,7 +30,7 @@ public abstract class LaneFlights extends LaneVehicles {
 
   private final int size, keptRows, periodGrains, pieceGrains;
 
-  /** A power of two. */
+  /** Number of slots for pieces, always a power of two. */
   private int slots = 16;
 
   private int[] begins, rowOf;

@@ -6,8 +6,8 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 
-/** What is known of vehicles in many worlds from their readings and commands, and predictions of their states.
- * The scalar reference is {@link Forecast}, with a single clock here.
+/** What is known of vehicles in many worlds from their readings and commands, and predictions of their
+ * states. The scalar reference is {@link Forecast}, with a single clock here.
  */
 public final class LaneForecast {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -61,7 +61,7 @@ public final class LaneForecast {
     for (ForecastVehicles each : vehicles) each.start();
   }
 
-  /** To a period; they are taken in turn. */
+  /** Moves to a period; periods are processed in order. */
   void startRow(int number) {
     row = number;
     for (ForecastTrack track : tracks) track.startRow(row);

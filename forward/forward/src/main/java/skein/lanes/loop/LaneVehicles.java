@@ -13,9 +13,9 @@ import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times count
- * from the begin of a period; periods are processed in order. {@link LagVehicles} and {@link LaneFlights} are
- * the two representations of commands not yet in effect.
+/** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times
+ * count from the begin of a period; periods are processed in order. {@link LagVehicles} and {@link
+ * LaneFlights} are the two representations of commands not yet in effect.
  */
 public abstract class LaneVehicles {
   static final int WORLDS = LanePolicy.WORLDS;

@@ -19,10 +19,11 @@ import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/** The views of many worlds under the {@code stream} loop, row by row: row m has the view of request m. Nearly
- * always all its answers arrive before anything of the next row, which SIMD code handles here; where it is
- * otherwise, a {@link ViewSource} computes the world's views one by one until the regular case returns. Then
- * a row may have no view of a world, or several: so a row has one or more rounds, with at most one view each.
+/** The views of many worlds under the {@code stream} loop, row by row: row m has the view of request m.
+ * Nearly always all its answers arrive before anything of the next row, which SIMD code handles here; where
+ * it is otherwise, a {@link ViewSource} computes the world's views one by one until the regular case returns.
+ * Then a row may have no view of a world, or several: so a row has one or more rounds, with at most one view
+ * each.
  *
  * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and equal to those of
  * {@link Rollout} to the nanosecond.
@@ -142,7 +143,7 @@ public final class LaneViews {
     return Nanos.of(seconds) % GRAIN_NS == 0;
   }
 
-  /** Back to the start of an episode. */
+  /** Resets to the start of an episode with these worlds. */
   void start(int[] worldKeys, TabledDelays[] worldLinks) {
     keys = worldKeys;
     links = worldLinks;

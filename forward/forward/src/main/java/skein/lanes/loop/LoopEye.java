@@ -95,7 +95,7 @@ public class LoopEye extends CameraTrackerLanes {
     Arrays.fill(longAgo, -LaneViews.grains(Math.min(loop.periodS(), LaneFlights.MOST_PIECE_S)));
   }
 
-  /** Back to the start of an episode. */
+  /** Resets to the start of an episode with these worlds. */
   public void start(int[] worldKeys, TabledDelays[] links) {
     forget();
     row = 0;
@@ -141,8 +141,8 @@ public class LoopEye extends CameraTrackerLanes {
     return (float) (ns * 1e-9);
   }
 
-  /** Takes images, and evaluates them, up to given moments. The camera does not turn between decisions, so all
-   * images are taken before any is evaluated.
+  /** Takes images, and evaluates them, up to given moments. The camera does not turn between decisions, so
+   * all images are taken before any is evaluated.
    *
    * @param until from the period's begin; {@link LaneOffers#NONE} in worlds that stay unchanged
    */

@@ -16,9 +16,9 @@ import skein.simd.BoundFunction;
 import skein.simd.LaneCall;
 import skein.vehicle.Plant;
 
-/** Vehicles that move by a {@link Plant}, whose commands take effect at different times in each world. A piece
- * is one step, whose stored numbers {@link PlantPieces} defines; before the first command there is none, and
- * the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
+/** Vehicles that move by a {@link Plant}, whose commands take effect at different times in each world. A
+ * piece is one step, whose stored numbers {@link PlantPieces} defines; before the first command there is
+ * none, and the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
  */
 public final class PlantFlights extends LaneFlights {
   private static final int STATE = PlantPieces.State() * WORLDS;

@@ -28,7 +28,6 @@ import skein.forward.TabledDelays;
 final class PredictiveOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
 
-  /** Long past. */
   private static final int PAST = -1_000_000_000;
 
   private static final LaneVectors ALL = LaneVectors.all();

@@ -3,8 +3,8 @@ package skein.lanes.timetable;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/** Predicts the vehicles of one role in many worlds from their readings, by a {@link Timetable}: the predicted
- * moments and the commands in effect are equal in all worlds. The scalar reference is a {@code
+/** Predicts the vehicles of one role in many worlds from their readings, by a {@link Timetable}: the
+ * predicted moments and the commands in effect are equal in all worlds. The scalar reference is a {@code
  * skein.vehicle.VehicleModel} in a {@code skein.forecast.Forecast}.
  */
 public abstract class PredictedVehicles {

@@ -10,7 +10,7 @@ import skein.vehicle.{PlaneReading, Plant, PlantState}
 private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
   def count: Int = form.count
 
-  /** What it begins with. */
+  /** The plant's initial state, number by number. */
   val initial: Array[Float] = PlantState.numbers(plant.initial).map(_.toFloat).toArray
   if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
